@@ -1,0 +1,92 @@
+//! What the loading device prescribes.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// The controlled quantity of a quasi-static path.
+///
+/// A device of stiffness k moves its far end by Δ and feels P = k(Δ − δ), so it prescribes
+/// Δ = δ + P/k; k → ∞ is displacement control, k → 0 is force control.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Control {
+    /// The approach δ is prescribed (fixed grips).
+    Displacement,
+    /// The force P is prescribed (dead load).
+    Force,
+    /// The far end of a spring of this stiffness, a force per length, is prescribed.
+    Stiffness(f64),
+}
+
+impl Control {
+    /// The controlled quantity at approach `delta` and force `p`: δ, P, or Δ = δ + P/k.
+    pub fn value(self, delta: f64, p: f64) -> f64 {
+        match self {
+            Self::Displacement => delta,
+            Self::Force => p,
+            Self::Stiffness(k) => delta + p / k,
+        }
+    }
+
+    /// The same control with its stiffness divided by `unit`.
+    #[must_use]
+    pub fn in_units(self, unit: f64) -> Self {
+        match self {
+            Self::Stiffness(k) => Self::Stiffness(k / unit),
+            other => other,
+        }
+    }
+}
+
+impl fmt::Display for Control {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Displacement => f.write_str("displacement"),
+            Self::Force => f.write_str("force"),
+            Self::Stiffness(k) => write!(f, "stiffness={k}"),
+        }
+    }
+}
+
+impl FromStr for Control {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "displacement" => return Ok(Self::Displacement),
+            "force" => return Ok(Self::Force),
+            _ => {}
+        }
+        let expected = "expected displacement, force or stiffness=K with K > 0";
+        let Some(number) = text.strip_prefix("stiffness=") else {
+            return Err(expected.to_owned());
+        };
+        match number.parse::<f64>() {
+            Ok(k) if k.is_finite() && k > 0.0 => Ok(Self::Stiffness(k)),
+            _ => Err(format!("the stiffness must be a positive number; {expected}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_what_it_prints() {
+        for control in [Control::Displacement, Control::Force, Control::Stiffness(0.15)] {
+            assert_eq!(control.to_string().parse(), Ok(control));
+        }
+        for bad in ["", "stiffness", "stiffness=", "stiffness=-1", "stiffness=inf", "Force", "load"] {
+            assert!(bad.parse::<Control>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn json_is_the_documented_form() {
+        let json = |c: Control| serde_json::to_string(&c).unwrap();
+        assert_eq!(json(Control::Displacement), "\"displacement\"");
+        assert_eq!(json(Control::Stiffness(0.15)), "{\"stiffness\":0.15}");
+    }
+}

@@ -1,0 +1,76 @@
+//! What the numerics ask of a gap.
+
+use std::fmt::Debug;
+
+/// The gap and its exact derivatives at one radius.
+///
+/// Units: `value` a length, `first` 1, `second` 1/length, `third` 1/length².
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Jet {
+    /// h(r).
+    pub value: f64,
+    /// h'(r).
+    pub first: f64,
+    /// h''(r).
+    pub second: f64,
+    /// h'''(r); used to locate limit points, not to solve.
+    pub third: f64,
+}
+
+/// An axisymmetric initial gap h(r) between the undeformed bodies, with h(0) = 0.
+pub trait Gap: Debug + Send + Sync {
+    /// The gap and its derivatives at the radius `r ≥ 0`.
+    fn jet(&self, r: f64) -> Jet;
+
+    /// The shortest wave of the gap, or `None` when it has none.
+    ///
+    /// Step lengths, mesh warnings and the crest index are measured by it.
+    fn feature_length(&self) -> Option<f64>;
+
+    /// The length by which the problem is reduced (the radius of curvature, where there is one).
+    fn reference_length(&self) -> f64;
+}
+
+/// A gap measured in another length: h̃(r̃) = h(L r̃)/L.
+#[derive(Debug)]
+pub struct Scaled<G> {
+    gap: G,
+    length: f64,
+}
+
+impl<G: Gap> Scaled<G> {
+    /// The gap `gap`, lengths divided by `length`.
+    pub fn new(gap: G, length: f64) -> Self {
+        Self { gap, length }
+    }
+}
+
+impl<G: Gap> Gap for Scaled<G> {
+    fn jet(&self, r: f64) -> Jet {
+        let l = self.length;
+        let jet = self.gap.jet(l * r);
+        Jet { value: jet.value / l, first: jet.first, second: jet.second * l, third: jet.third * l * l }
+    }
+
+    fn feature_length(&self) -> Option<f64> {
+        self.gap.feature_length().map(|f| f / self.length)
+    }
+
+    fn reference_length(&self) -> f64 {
+        self.gap.reference_length() / self.length
+    }
+}
+
+impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
+    fn jet(&self, r: f64) -> Jet {
+        (**self).jet(r)
+    }
+
+    fn feature_length(&self) -> Option<f64> {
+        (**self).feature_length()
+    }
+
+    fn reference_length(&self) -> f64 {
+        (**self).reference_length()
+    }
+}

@@ -1,0 +1,21 @@
+//! The problem: two elastic bodies, the gap between them, their adhesion, and the device that loads them.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`gap`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
+//! | [`shape`] | the gap shapes a person can choose |
+//! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
+//! | [`groups`] | the dimensionless groups people quote |
+//! | [`control`] | what the loading device prescribes |
+
+pub mod control;
+pub mod gap;
+pub mod groups;
+pub mod problem;
+pub mod shape;
+
+pub use control::Control;
+pub use gap::{Gap, Jet};
+pub use groups::Groups;
+pub use problem::{Problem, Reduced, Units};
+pub use shape::Shape;

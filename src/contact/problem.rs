@@ -1,0 +1,67 @@
+//! The problem and its reduced form.
+
+use super::gap::{Gap, Scaled};
+use super::shape::Shape;
+use std::sync::Arc;
+
+/// An adhesive contact problem in the user's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Problem {
+    /// E*, a stress: 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂.
+    pub effective_modulus: f64,
+    /// γ, the energy gained per unit area of contact (the work of adhesion), a stress times a length.
+    pub work_of_adhesion: f64,
+    /// The initial gap.
+    pub shape: Shape,
+}
+
+/// The factors between reduced and the user's units: user = reduced × factor.
+///
+/// Reduced units have E* = 1 and lengths divided by the gap's reference length (R = 1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// Of r, s, δ, λ, A.
+    pub length: f64,
+    /// Of P.
+    pub force: f64,
+    /// Of U and losses.
+    pub energy: f64,
+    /// Of the device stiffness k and of dP/dδ.
+    pub stiffness: f64,
+    /// Of pressures.
+    pub pressure: f64,
+    /// Of γ.
+    pub work_of_adhesion: f64,
+}
+
+/// A problem in reduced units: what the core solves.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// γ/(E* L).
+    pub work_of_adhesion: f64,
+    /// The gap in units of its reference length.
+    pub gap: Arc<dyn Gap>,
+    /// The way back to the user's units.
+    pub units: Units,
+}
+
+impl Problem {
+    /// The same problem with E* = 1 and lengths in units of the gap's reference length.
+    pub fn reduced(&self) -> Reduced {
+        let length = self.shape.reference_length();
+        let modulus = self.effective_modulus;
+        let units = Units {
+            length,
+            force: modulus * length * length,
+            energy: modulus * length * length * length,
+            stiffness: modulus * length,
+            pressure: modulus,
+            work_of_adhesion: modulus * length,
+        };
+        Reduced {
+            work_of_adhesion: self.work_of_adhesion / units.work_of_adhesion,
+            gap: Arc::new(Scaled::new(self.shape, length)),
+            units,
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! The gap shapes a person can choose.
+
+use super::gap::{Gap, Jet};
+use std::f64::consts::TAU;
+
+/// A gap shape with its parameters, in any consistent units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// The paraboloid h = r²/(2R), eq. (20).
+    Sphere {
+        /// Combined radius of curvature R, a length.
+        radius_of_curvature: f64,
+    },
+    /// The paraboloid with axisymmetric waves, h = r²/(2R) + A(1 − cos(2πr/λ)), eq. (23).
+    WavySphere {
+        /// Combined radius of curvature R, a length.
+        radius_of_curvature: f64,
+        /// Amplitude A of the wave, a length.
+        amplitude: f64,
+        /// Wavelength λ, a length.
+        wavelength: f64,
+    },
+}
+
+impl Shape {
+    /// The name used in preset files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Sphere { .. } => "sphere",
+            Self::WavySphere { .. } => "wavy-sphere",
+        }
+    }
+
+    /// R of the paraboloid the shape is built on.
+    pub fn radius_of_curvature(&self) -> f64 {
+        match *self {
+            Self::Sphere { radius_of_curvature } | Self::WavySphere { radius_of_curvature, .. } => {
+                radius_of_curvature
+            }
+        }
+    }
+
+    /// Amplitude A and wavelength λ, where the shape has waves.
+    pub fn wave(&self) -> Option<(f64, f64)> {
+        match *self {
+            Self::Sphere { .. } => None,
+            Self::WavySphere { amplitude, wavelength, .. } => Some((amplitude, wavelength)),
+        }
+    }
+}
+
+impl Gap for Shape {
+    fn jet(&self, r: f64) -> Jet {
+        let radius = self.radius_of_curvature();
+        let mut jet =
+            Jet { value: r * r / (2.0 * radius), first: r / radius, second: 1.0 / radius, third: 0.0 };
+        if let Some((amplitude, wavelength)) = self.wave() {
+            let q = TAU / wavelength;
+            let (sin, cos) = (q * r).sin_cos();
+            // 1 − cos x = 2 sin²(x/2): keeps its digits near the axis, where h matters as a difference.
+            let half = (0.5 * q * r).sin();
+            jet.value += 2.0 * amplitude * half * half;
+            jet.first += amplitude * q * sin;
+            jet.second += amplitude * q * q * cos;
+            jet.third -= amplitude * q * q * q * sin;
+        }
+        jet
+    }
+
+    fn feature_length(&self) -> Option<f64> {
+        // A wave without amplitude is no feature: the mesh and the steps need not resolve it.
+        self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
+    }
+
+    fn reference_length(&self) -> f64 {
+        self.radius_of_curvature()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_agree_with_central_differences() {
+        let shapes = [
+            Shape::Sphere { radius_of_curvature: 1.7 },
+            Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 },
+        ];
+        for shape in shapes {
+            for i in 1..40 {
+                let r = 0.013 * f64::from(i);
+                let e = 1e-6;
+                let (lo, at, hi) = (shape.jet(r - e), shape.jet(r), shape.jet(r + e));
+                for (difference, exact) in [
+                    (hi.value - lo.value, at.first),
+                    (hi.first - lo.first, at.second),
+                    (hi.second - lo.second, at.third),
+                ] {
+                    let slope = difference / (2.0 * e);
+                    assert!(
+                        (slope - exact).abs() <= 1e-5 * (1.0 + exact.abs()),
+                        "{shape:?} r={r}: {slope} {exact}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_wave_without_amplitude_is_no_feature() {
+        let flat = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0, wavelength: 0.1 };
+        assert_eq!(flat.feature_length(), None);
+        assert_eq!(flat.jet(0.3), Shape::Sphere { radius_of_curvature: 1.0 }.jet(0.3));
+    }
+}

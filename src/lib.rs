@@ -1,0 +1,3 @@
+//! pulloff.
+
+pub mod contact;
