@@ -1,0 +1,48 @@
+//! Kalker's functional in a basis of trial pressures.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
+//! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
+//! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
+//! | [`rings`] | the paper's ring elements (13)-(18) |
+//!
+//! A [`Basis`] is all that the rest of the program knows of a discretization: at a contact radius and an
+//! approach it answers with the equilibrium residual, force and energy and their exact derivatives.
+//! Everything here is in reduced units (E* = 1).
+
+pub mod functional;
+pub mod kernel;
+pub mod newton;
+pub mod rings;
+
+pub use functional::{Evaluation, Forms};
+pub use newton::{NewtonFailure, NewtonSettings, Solved, solve};
+pub use rings::{Rings, RingsError};
+
+use crate::contact::Reduced;
+use std::fmt::Debug;
+
+/// A basis of trial pressures on a disc.
+pub trait Basis: Debug + Send + Sync {
+    /// The residual, force and energy at contact radius `s > 0` and approach `delta`.
+    fn evaluate(&self, problem: &Reduced, s: f64, delta: f64) -> Evaluation;
+
+    /// The approach at which a disc of radius `s` is in equilibrium, evaluated there.
+    ///
+    /// F is quadratic in δ at fixed s; the physical root is the smaller one, with tension at the edge.
+    /// `None` when it has no real root, which rings too coarse for the gap can produce.
+    fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation>;
+
+    /// The contact pressure as (r, p) pairs from the axis outward, compression positive.
+    fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)>;
+
+    /// The number of unknown pressures.
+    fn size(&self) -> usize;
+
+    /// The largest number of elements per wave of length `wavelength` in a contact of radius `s`.
+    fn elements_per_wave(&self, s: f64, wavelength: f64) -> f64;
+
+    /// Decimal digits of the contact radius the basis can be trusted for at radius `s`.
+    fn trusted_digits(&self, problem: &Reduced, s: f64) -> f64;
+}

@@ -1,0 +1,103 @@
+//! Observed order of convergence against Hertz and JKR, and Newton's rounds from a threefold radius.
+
+use pulloff::contact::{Control, Problem, Reduced, Shape};
+use pulloff::ritz::{NewtonSettings, Rings, Solved, solve};
+use pulloff::theory::{hertz, jkr::Jkr};
+
+/// The smooth sphere E* = R = 1.
+fn sphere(gamma: f64) -> Reduced {
+    let shape = Shape::Sphere { radius_of_curvature: 1.0 };
+    Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced()
+}
+
+/// s of JKR at the approach `delta`, on the stable branch.
+fn jkr_radius(jkr: &Jkr, delta: f64) -> f64 {
+    let (mut lo, mut hi) = (jkr.fixed_grips_radius(), 10.0);
+    for _ in 0..200 {
+        let s = 0.5 * (lo + hi);
+        if jkr.approach(s) > delta { hi = s } else { lo = s }
+    }
+    lo
+}
+
+/// Newton from three times the true radius.
+fn from_threefold(gamma: f64, rings: usize, control: Control, value: f64, exact: f64) -> Solved {
+    let basis = Rings::shared(rings).unwrap();
+    solve(basis.as_ref(), &sphere(gamma), control, value, 3.0 * exact, NewtonSettings::default())
+        .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
+}
+
+fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).abs().log2()).collect()
+}
+
+#[test]
+fn jkr_converges_linearly_in_force_and_radius() {
+    let (delta, gamma) = (0.1, 0.01);
+    let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+    let exact = jkr_radius(&jkr, delta);
+    let (mut radius, mut force) = (Vec::new(), Vec::new());
+    for rings in [80, 160, 320, 640, 1280] {
+        let found = from_threefold(gamma, rings, Control::Displacement, delta, exact).evaluation;
+        radius.push(found.contact_radius / exact - 1.0);
+        force.push(found.force / jkr.force(exact) - 1.0);
+    }
+    for order in orders(&radius).into_iter().chain(orders(&force)) {
+        assert!((0.9..=1.1).contains(&order), "orders {:?} {:?}", orders(&radius), orders(&force));
+    }
+    // The constants documented for the rings.
+    assert!((radius[1].abs() * 160.0 - 0.16).abs() < 0.02, "{radius:?}");
+    assert!((force[1].abs() * 160.0 - 1.4).abs() < 0.1, "{force:?}");
+}
+
+#[test]
+fn hertz_force_converges_quadratically() {
+    let delta = 0.1;
+    let exact = hertz::contact_radius(1.0, delta);
+    let mut errors = Vec::new();
+    for rings in [20, 40, 80, 160, 320] {
+        let found = from_threefold(0.0, rings, Control::Displacement, delta, exact).evaluation;
+        errors.push(found.force / hertz::force(1.0, 1.0, delta) - 1.0);
+        assert!((found.contact_radius / exact - 1.0).abs() < 0.6 / rings as f64);
+    }
+    assert!((errors[0].abs() / 5.9e-4 - 1.0).abs() < 0.05, "{errors:?}");
+    for order in orders(&errors) {
+        assert!((1.8..=2.2).contains(&order), "{:?}", orders(&errors));
+    }
+}
+
+#[test]
+fn newton_needs_at_most_six_rounds_from_a_threefold_radius_at_given_approach() {
+    for gamma in [1e-5, 1e-4, 1e-3, 0.01, 0.1] {
+        let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+        let smallest = jkr.approach(jkr.fixed_grips_radius());
+        for delta in [0.9 * smallest, 0.5 * smallest, 0.0, 0.01, 0.1, 0.5] {
+            let exact = jkr_radius(&jkr, delta);
+            let found = from_threefold(gamma, 200, Control::Displacement, delta, exact);
+            let s = found.evaluation.contact_radius;
+            assert!((s / exact - 1.0).abs() < 0.02, "γ={gamma} δ={delta}: {s} {exact}");
+            println!("γ={gamma} δ={delta}: {}", found.rounds);
+            assert!(found.rounds <= 6, "γ={gamma} δ={delta}: {} rounds", found.rounds);
+        }
+    }
+}
+
+#[test]
+fn newton_at_given_force_from_a_threefold_radius() {
+    for gamma in [1e-4, 1e-3, 0.01, 0.1] {
+        let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+        for share in [-0.9, -0.5, 0.0, 1.0, 10.0] {
+            let force = share * jkr.pull_off_force();
+            let (mut lo, mut hi) = (jkr.pull_off_radius(), 10.0);
+            for _ in 0..200 {
+                let s = 0.5 * (lo + hi);
+                if jkr.force(s) > force { hi = s } else { lo = s }
+            }
+            let found = from_threefold(gamma, 200, Control::Force, force, lo);
+            let s = found.evaluation.contact_radius;
+            assert!((s / lo - 1.0).abs() < 0.03, "γ={gamma} P={share}P_c: {s} {lo}");
+            println!("γ={gamma} P={share}P_c: {}", found.rounds);
+            assert!(found.rounds <= 7, "γ={gamma} P={share}P_c: {} rounds", found.rounds);
+        }
+    }
+}
