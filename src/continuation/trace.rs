@@ -1,0 +1,128 @@
+//! Steps until the end value, and why it stopped.
+
+use super::branch::{Branch, Point};
+use super::corrector::{Constraint, correct};
+use super::settings::Settings;
+use super::step::{StepFailure, Stepper};
+use super::system::{System, Vector};
+
+/// Where a trace ends: exactly where one unknown takes a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// Which unknown.
+    pub unknown: usize,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Why a trace stopped. Only the first is the wanted end; none of them loses points.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Stop {
+    /// The end value was reached, exactly.
+    #[error("the end value was reached")]
+    End,
+    /// The caller asked it to.
+    #[error("stopped on request")]
+    Cancelled,
+    /// The point limit was reached.
+    #[error("the limit of {0} points was reached before the end value")]
+    PointLimit(usize),
+    /// No further step was possible.
+    #[error("{0}")]
+    Failed(StepFailure),
+}
+
+/// Traces the curve from `start` to `end`, at most `settings.points` points.
+///
+/// `go_on` is asked between points; when it says no, what has been traced is kept.
+pub fn trace(
+    system: &dyn System,
+    start: Point,
+    end: End,
+    settings: &Settings,
+    mut go_on: impl FnMut(&Branch) -> bool,
+) -> (Branch, Stop) {
+    let mut stepper = Stepper::new(settings.clone());
+    let mut branch = Branch { points: vec![start], ..Branch::default() };
+    let stop = loop {
+        let Some(last) = branch.points.last() else { break Stop::End };
+        if branch.points.len() >= settings.points {
+            break Stop::PointLimit(settings.points);
+        }
+        if !go_on(&branch) {
+            break Stop::Cancelled;
+        }
+        match stepper.step(system, last) {
+            Err(failure) => break Stop::Failed(failure),
+            Ok(next) => {
+                let side = |p: &Point| p.y[end.unknown] - end.value;
+                let crossed = side(last) * side(&next) <= 0.0;
+                if crossed {
+                    let landed = land(system, last, &next, end, settings).unwrap_or(next);
+                    branch.points.push(landed);
+                    break Stop::End;
+                }
+                branch.points.push(next);
+            }
+        }
+    };
+    branch.work = stepper.work;
+    (branch, stop)
+}
+
+/// The point between two neighbours at which the end value is taken.
+fn land(system: &dyn System, from: &Point, to: &Point, end: End, settings: &Settings) -> Option<Point> {
+    let mut row = Vector::zeros(system.unknowns());
+    row[end.unknown] = 1.0;
+    let (a, b) = (from.y[end.unknown], to.y[end.unknown]);
+    let share = if a == b { 1.0 } else { (end.value - a) / (b - a) };
+    let guess = &from.y + (&to.y - &from.y) * share;
+    let corrected = correct(system, guess, &Constraint::Plane { row, value: end.value }, settings).ok()?;
+    let mut point = Point::corrected(corrected, &from.frame.tangent)?;
+    // Newton meets the plane to rounding; the caller asked for this very value.
+    point.y[end.unknown] = end.value;
+    point.length = (&point.y - &from.y).norm();
+    point.turning = super::step_size::turning(from, &point);
+    Some(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::examples::{Circle, Cubic};
+
+    #[test]
+    fn lands_exactly_on_the_end_value() {
+        let start = Cubic.point(-3.0);
+        let (branch, stop) =
+            trace(&Cubic, start, End { unknown: 0, value: 2.5 }, &Settings::new(2), |_| true);
+        assert_eq!(stop, Stop::End);
+        let last = branch.points.last().unwrap();
+        assert_eq!(last.y[0].to_bits(), 2.5f64.to_bits());
+        assert!((last.y[1] - Cubic::p(2.5)).abs() < 1e-12);
+        assert!(branch.points.iter().all(|p| (p.y[1] - Cubic::p(p.y[0])).abs() < 1e-8));
+    }
+
+    #[test]
+    fn keeps_its_points_at_the_point_limit_and_on_request() {
+        let mut settings = Settings::new(2);
+        settings.points = 7;
+        let end = End { unknown: 0, value: 2.5 };
+        let (branch, stop) = trace(&Cubic, Cubic.point(-3.0), end, &settings, |_| true);
+        assert_eq!((branch.points.len(), stop), (7, Stop::PointLimit(7)));
+        let (branch, stop) = trace(&Cubic, Cubic.point(-3.0), end, &Settings::new(2), |b| b.points.len() < 4);
+        assert_eq!((branch.points.len(), stop), (4, Stop::Cancelled));
+    }
+
+    #[test]
+    fn goes_round_a_circle_without_turning_back() {
+        let mut settings = Settings::new(2);
+        settings.points = 200;
+        let (branch, _) =
+            trace(&Circle, Circle.point(0.0), End { unknown: 0, value: 9.0 }, &settings, |_| true);
+        for pair in branch.points.windows(2) {
+            let turn = pair[0].y[0] * pair[1].y[1] - pair[0].y[1] * pair[1].y[0];
+            assert!(turn > 0.0);
+        }
+    }
+}
