@@ -1,0 +1,221 @@
+//! The equilibrium curve between two contact radii, by either tracer, and its limit points.
+
+use super::equilibrium::{Equilibrium, Scales, inward, unknown};
+use crate::contact::{Control, Gap, Reduced};
+use crate::continuation::sweep::sweep;
+use crate::continuation::trace::trace;
+use crate::continuation::{Branch, End, Point, Settings, Stop, Work, events, locate};
+use crate::ritz::{Basis, Evaluation};
+use std::sync::Arc;
+
+/// Steps of a sweep per wave of the gap: a wave drawn or searched with fewer loses its shape.
+pub const SWEEP_STEPS_PER_WAVE: f64 = 40.0;
+/// Largest step of a sweep relative to the radius: the curve behaves like √s towards s = 0.
+pub const SWEEP_RATIO: f64 = 0.025;
+/// Points of a sweep: 500 waves at the full density.
+pub const SWEEP_POINTS: usize = 20_000;
+/// The edge moves at most this share of a wave per arc-length step: without it traces go astray.
+pub const WAVE_SHARE: f64 = 1.0 / 12.0;
+
+/// Why a curve ends where it does.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum CurveStop {
+    /// It reached the end contact radius.
+    #[error("the end contact radius was reached")]
+    End,
+    /// The basis has no equilibrium beyond.
+    #[error("the basis has no equilibrium below the contact radius {0:.6e} (more rings may help)")]
+    NoEquilibrium(f64),
+    /// The tracer stopped for another reason.
+    #[error("{0}")]
+    Tracer(Stop),
+}
+
+/// Whether the control is smallest or largest at a limit point, along the contact radius.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turn {
+    /// A minimum over s: the edge runs inward from here (unloading).
+    Minimum,
+    /// A maximum over s: the edge runs outward from here (loading).
+    Maximum,
+}
+
+/// A limit point of a control on a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The control that turns here.
+    pub control: Control,
+    /// Which way it turns.
+    pub turn: Turn,
+    /// The index of the curve point before it.
+    pub index: usize,
+    /// The located point.
+    pub point: Point,
+}
+
+/// The equilibrium curve, its points from the largest contact radius to the smallest.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// The equations it solves, with its scales.
+    pub equilibrium: Equilibrium,
+    /// Its points, running inward.
+    pub branch: Branch,
+    /// Why it ends.
+    pub stop: CurveStop,
+}
+
+/// The radii of a sweep from `from` to `to`, both included, in that order.
+pub fn radii(from: f64, to: f64, feature_length: Option<f64>, steps_per_wave: f64) -> Vec<f64> {
+    let (lo, hi) = (from.min(to), from.max(to));
+    let by_wave = feature_length.map_or(f64::INFINITY, |wave| wave / steps_per_wave);
+    // With more waves than the budget allows the steps grow, so that the sweep still ends at `to`.
+    let by_budget = (hi - lo) / SWEEP_POINTS as f64 * 2.0;
+    let mut down = vec![hi];
+    let mut s = hi;
+    while down.len() < SWEEP_POINTS {
+        s -= (SWEEP_RATIO * s).min(by_wave.max(by_budget));
+        if s <= lo {
+            break;
+        }
+        down.push(s);
+    }
+    if lo < hi {
+        down.push(lo);
+    }
+    if from < to {
+        down.reverse();
+    }
+    down
+}
+
+/// The settings of the arc-length tracer for a gap with this feature length.
+pub fn settings(equilibrium: &Equilibrium) -> Settings {
+    let mut settings = Settings::new(3);
+    if let Some(wave) = equilibrium.problem.gap.feature_length() {
+        settings.largest_increment[unknown::CONTACT_RADIUS] =
+            WAVE_SHARE * wave / equilibrium.scales.contact_radius;
+    }
+    settings
+}
+
+impl Curve {
+    /// The curve from `from` down to `to` through the explicit root at every radius.
+    ///
+    /// `None` when there is no equilibrium at `from`, or `go_on` said no before the first point.
+    pub fn swept(
+        problem: Reduced,
+        basis: Arc<dyn Basis>,
+        from: f64,
+        to: f64,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Option<Self> {
+        let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
+        let wanted = steps.len();
+        let evaluations: Vec<Evaluation> = steps
+            .into_iter()
+            .take_while(|_| go_on())
+            .map_while(|s| basis.equilibrium(&problem, s))
+            .filter(|e| e.approach.is_finite() && e.force.is_finite())
+            .collect();
+        let reached = evaluations.last()?.contact_radius;
+        let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
+        let branch = branch_through(&equilibrium, &evaluations);
+        if branch.points.is_empty() {
+            return None;
+        }
+        let complete = branch.points.len() == wanted;
+        let stop = if complete { CurveStop::End } else { CurveStop::NoEquilibrium(reached) };
+        Some(Self { equilibrium, branch, stop })
+    }
+
+    /// The curve from `from` down to `to` by spherical arc-length continuation, landing exactly on `to`.
+    ///
+    /// The scales of the arc length are the ranges of δ, P and s over a coarse explicit curve.
+    /// `None` when there is no equilibrium at `from`.
+    pub fn traced(
+        problem: Reduced,
+        basis: Arc<dyn Basis>,
+        from: f64,
+        to: f64,
+        points: usize,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Option<Self> {
+        /// Coarse sampling for the ranges only.
+        const STEPS_PER_WAVE: f64 = 8.0;
+        let steps = radii(from, to, problem.gap.feature_length(), STEPS_PER_WAVE);
+        let evaluations: Vec<Evaluation> =
+            steps.into_iter().map_while(|s| basis.equilibrium(&problem, s)).collect();
+        let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
+        let start = equilibrium.explicit(from)?;
+        let mut settings = settings(&equilibrium);
+        settings.points = points;
+        let value = to / equilibrium.scales.contact_radius;
+        let end = End { unknown: unknown::CONTACT_RADIUS, value };
+        let (branch, stop) = trace(&equilibrium, start, end, &settings, |_| go_on());
+        let stop = if stop == Stop::End { CurveStop::End } else { CurveStop::Tracer(stop) };
+        Some(Self { equilibrium, branch, stop })
+    }
+
+    /// The largest contact radius of the curve.
+    pub fn outermost(&self) -> f64 {
+        self.branch.points.first().map_or(0.0, |p| self.equilibrium.contact_radius(p))
+    }
+
+    /// The smallest contact radius of the curve.
+    pub fn innermost(&self) -> f64 {
+        self.branch.points.last().map_or(0.0, |p| self.equilibrium.contact_radius(p))
+    }
+
+    /// Continues the curve inward or outward to the radius `to`; false when nothing could be added.
+    pub fn extend(&mut self, to: f64) -> bool {
+        let inward = to < self.innermost();
+        let from = if inward { self.innermost() } else { self.outermost() };
+        let Equilibrium { problem, basis, .. } = &self.equilibrium;
+        let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
+        let mut evaluations: Vec<Evaluation> =
+            steps.into_iter().skip(1).map_while(|s| basis.equilibrium(problem, s)).collect();
+        if !inward {
+            evaluations.reverse();
+        }
+        let added = branch_through(&self.equilibrium, &evaluations);
+        let grew = !added.points.is_empty();
+        self.branch.work += added.work;
+        if inward {
+            self.branch.points.extend(added.points);
+        } else {
+            self.branch.points.splice(0..0, added.points);
+        }
+        grew
+    }
+
+    /// The limit points of `control` on the curve, located to rounding, from the start inward.
+    pub fn limit_points(&self, control: Control) -> Vec<Limit> {
+        let settings = settings(&self.equilibrium);
+        let row = self.equilibrium.control_row(control);
+        let mut work = Work::default();
+        events::brackets(&self.equilibrium, &self.branch.points, &row, &settings, &mut work)
+            .into_iter()
+            .filter_map(|bracket| {
+                // Rows differ by many orders between units: the location wants a unit row.
+                let unit = row.normalize();
+                locate::limit_point(&self.equilibrium, &bracket, &unit, &settings, &mut work)
+            })
+            .map(|found| Limit {
+                control,
+                turn: if found.bend > 0.0 { Turn::Minimum } else { Turn::Maximum },
+                index: found.index,
+                point: found.point,
+            })
+            .collect()
+    }
+}
+
+/// A branch through explicit solutions in the order given, running inward.
+fn branch_through(equilibrium: &Equilibrium, evaluations: &[Evaluation]) -> Branch {
+    sweep(
+        evaluations,
+        |e| Some((equilibrium.unknowns_of(e), equilibrium.linearization(e, e.force))),
+        &inward(),
+        |_| true,
+    )
+}

@@ -1,0 +1,88 @@
+//! What a jump dissipates, computed twice.
+//!
+//! At constant control the device and the bodies together hold the potential
+//!
+//! ```text
+//! displacement  U            force  U − Pδ            stiffness k  U + ½k(Δ − δ)²
+//! ```
+//!
+//! A jump dissipates its drop. Along the curve dU = P dδ, so the drop is also the area between the curve and
+//! the control line, −∫(P − P_line) dδ from before to after, with P_line = 0, P*, k(Δ* − δ). After a pull-off the
+//! curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is no such
+//! place: the load falls for ever and no loss is reported.
+
+use super::curve::radii;
+use super::equilibrium::{Equilibrium, State};
+use crate::contact::{Control, Gap};
+use gauss_quad::GaussLegendre;
+
+/// Steps per wave of the area's Gauss rule, four nodes each: the two losses then agree to about 1e-10.
+const STEPS_PER_WAVE: f64 = 20.0;
+
+/// Below this share of the radius, and one step of a wave, a pull-off's area is one last piece to s = 0.
+const LAST_PIECE: f64 = 0.02;
+
+/// The potential of bodies and device at `state`, the control held at `value`.
+pub fn potential(control: Control, value: f64, state: &State) -> f64 {
+    match control {
+        Control::Displacement => state.energy,
+        Control::Force => state.energy - value * state.approach,
+        Control::Stiffness(k) => state.energy + 0.5 * k * (value - state.approach).powi(2),
+    }
+}
+
+/// The energy lost in a jump as the drop of the potential; `after` is `None` for a pull-off.
+///
+/// `None` for a pull-off under a dead load.
+pub fn loss(control: Control, value: f64, before: &State, after: Option<&State>) -> Option<f64> {
+    match (after, control) {
+        (Some(after), _) => Some(potential(control, value, before) - potential(control, value, after)),
+        (None, Control::Force) => None,
+        (None, _) => Some(potential(control, value, before)),
+    }
+}
+
+/// The energy lost in a jump as the area between the curve and the control line.
+///
+/// `None` for a pull-off under a dead load, or where the basis has no equilibrium on the way.
+pub fn area(
+    equilibrium: &Equilibrium,
+    control: Control,
+    value: f64,
+    before: f64,
+    after: Option<f64>,
+) -> Option<f64> {
+    if after.is_none() && control == Control::Force {
+        return None;
+    }
+    let feature = equilibrium.problem.gap.feature_length();
+    let last_piece = feature.map_or(f64::INFINITY, |wave| wave / STEPS_PER_WAVE).min(LAST_PIECE * before);
+    let mut radii = radii(before, after.unwrap_or(last_piece), feature, STEPS_PER_WAVE);
+    if after.is_none() {
+        radii.push(0.0);
+    }
+    let line = |delta: f64| match control {
+        Control::Displacement => 0.0,
+        Control::Force => value,
+        Control::Stiffness(k) => k * (value - delta),
+    };
+    let rule = GaussLegendre::new(4.try_into().ok()?);
+    let mut area = 0.0;
+    let mut solvable = true;
+    for pair in radii.windows(2) {
+        // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
+        let (a, b) = (pair[0].sqrt(), pair[1].sqrt());
+        area -= rule.integrate(a, b, |x| match equilibrium.basis.equilibrium(&equilibrium.problem, x * x) {
+            Some(e) => (e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x,
+            None => {
+                solvable = false;
+                0.0
+            }
+        });
+    }
+    if let (None, Control::Stiffness(k)) = (after, control) {
+        // From δ = 0 along P = 0 to the slack spring at δ = Δ*.
+        area += 0.5 * k * value * value;
+    }
+    solvable.then_some(area)
+}

@@ -1,0 +1,100 @@
+//! Where the edge lands when it runs at constant control.
+//!
+//! Between two neighbouring limit points the control is monotone along the curve, so a curve with its limit
+//! points put in as nodes answers with plain comparisons: running inward, the control first rises above its
+//! value and the landing is where it falls back through it; running outward, where it rises back. Either way
+//! the control grows with s there, which is stability.
+
+use super::curve::{Curve, Limit};
+use crate::contact::Control;
+use crate::continuation::locate::control_value;
+use crate::continuation::{Point, Vector, Work};
+
+/// Which way the edge runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Run {
+    /// The contact shrinks.
+    Inward,
+    /// The contact grows.
+    Outward,
+}
+
+/// The points of a curve with the limit points of one control among them, running inward.
+#[derive(Debug, Clone)]
+pub struct Nodes {
+    /// The control whose limit points are nodes.
+    pub control: Control,
+    row: Vector,
+    points: Vec<Point>,
+    /// Indices of the limit points among the nodes.
+    limits: Vec<usize>,
+}
+
+/// A landing: the state and the node before it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Landing {
+    /// The stable state.
+    pub point: Point,
+    /// The last node the edge has passed or reached on its way.
+    pub node: usize,
+}
+
+impl Nodes {
+    /// The nodes of `curve` for the control of `limits`, which are its limit points.
+    pub fn new(curve: &Curve, control: Control, limits: &[Limit]) -> Self {
+        let mut points = Vec::with_capacity(curve.branch.points.len() + limits.len());
+        let mut indices = Vec::with_capacity(limits.len());
+        let mut limits = limits.iter().peekable();
+        for (index, point) in curve.branch.points.iter().enumerate() {
+            points.push(point.clone());
+            while let Some(limit) = limits.next_if(|limit| limit.index == index) {
+                indices.push(points.len());
+                points.push(limit.point.clone());
+            }
+        }
+        Self { control, row: curve.equilibrium.control_row(control), points, limits: indices }
+    }
+
+    /// The controlled quantity at a node.
+    pub fn value(&self, node: usize) -> f64 {
+        self.row.dot(&self.points[node].y)
+    }
+
+    /// The nodes.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The first limit point at or after node `node` at which the control is smallest.
+    pub fn next_minimum(&self, node: usize) -> Option<usize> {
+        self.limits.iter().copied().find(|&at| {
+            at >= node
+                && at > 0
+                && at + 1 < self.points.len()
+                && self.value(at) < self.value(at - 1).min(self.value(at + 1))
+        })
+    }
+
+    /// Runs from node `node` at the control value `value` to the next stable state.
+    ///
+    /// `None` when the curve has none in that direction.
+    pub fn run(&self, curve: &Curve, node: usize, value: f64, run: Run) -> Option<Landing> {
+        let settings = super::curve::settings(&curve.equilibrium);
+        let mut work = Work::default();
+        let miss = |at: usize| self.value(at) - value;
+        let land = |from: usize, to: usize, work: &mut Work| {
+            let (a, b) = (&self.points[from], &self.points[to]);
+            control_value(&curve.equilibrium, a, b, &self.row, value, &settings, work)
+        };
+        match run {
+            Run::Inward => {
+                let at = (node + 1..self.points.len()).find(|&k| miss(k) <= 0.0 && miss(k - 1) > 0.0)?;
+                Some(Landing { point: land(at - 1, at, &mut work)?, node: at - 1 })
+            }
+            Run::Outward => {
+                let at = (0..node).rev().find(|&k| miss(k) >= 0.0 && miss(k + 1) < 0.0)?;
+                Some(Landing { point: land(at, at + 1, &mut work)?, node: at })
+            }
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The quasi-static path of a loading device along the equilibrium curve.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`equilibrium`] | the contact as a system of two equations in (δ, P, s); states, stability, controls |
+//! | [`curve`] | the equilibrium curve by either tracer, its limit points under any control |
+//! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
+//! | [`jump`] | where the edge lands when it runs at constant control |
+//! | [`energy`] | what a jump dissipates, computed twice |
+//! | [`unload`] | the whole unloading: snaps, pull-off, losses |
+//!
+//! All numbers are in reduced units.
+
+pub mod curve;
+pub mod energy;
+pub mod equilibrium;
+pub mod jump;
+pub mod start;
+pub mod unload;
+
+pub use curve::{Curve, CurveStop, Limit, Turn};
+pub use equilibrium::{Equilibrium, Scales, Stability, State};
+pub use start::{Start, StartError};
+pub use unload::{Event, EventKind, PathStop, Unloading};

@@ -1,0 +1,247 @@
+//! The whole unloading: from the start state inward, through every snap, to the pull-off.
+
+use super::curve::{Curve, CurveStop};
+use super::energy;
+use super::equilibrium::{Equilibrium, State};
+use super::jump::{Landing, Nodes, Run};
+use crate::contact::Control;
+use crate::continuation::Point;
+
+/// What happened at an instability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    /// The edge ran to another stable state.
+    Snap,
+    /// The bodies came apart.
+    PullOff,
+}
+
+/// One instability of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Snap or pull-off.
+    pub kind: EventKind,
+    /// The controlled quantity at which it happens.
+    pub control_value: f64,
+    /// The limit point.
+    pub before: State,
+    /// The landing; `None` after a pull-off.
+    pub after: Option<State>,
+    /// Energy lost, by the drop of the potential; `None` for a pull-off under a dead load.
+    pub dissipated: Option<f64>,
+    /// The same by the area between the curve and the control line.
+    pub dissipated_by_area: Option<f64>,
+}
+
+/// Why the path ended.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum PathStop {
+    /// The bodies came apart.
+    #[error("the bodies came apart (pull-off)")]
+    PullOff,
+    /// The end contact radius was reached in a stable state.
+    #[error("the end contact radius was reached in a stable state")]
+    End,
+    /// The curve ends before.
+    #[error("the curve ends: {0}")]
+    Curve(CurveStop),
+}
+
+/// A quasi-static unloading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unloading {
+    /// What was controlled.
+    pub control: Control,
+    /// The first state on the physical path.
+    pub start: State,
+    /// The state asked for, when it was unstable and the edge first ran outward from it.
+    pub asked: Option<State>,
+    /// The instabilities in order.
+    pub events: Vec<Event>,
+    /// Why it ended.
+    pub stop: PathStop,
+    /// The state of smallest force on the path.
+    pub min_force: State,
+    /// The state of smallest approach on the path.
+    pub min_approach: State,
+}
+
+/// Why an unloading could not start.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum UnloadError {
+    /// The start is unstable and nothing outward is stable.
+    #[error(
+        "the start state (contact radius {contact_radius:.6e}, reduced) is unstable under {control} control and no stable \
+         state lies outward up to the contact radius {searched:.6e}"
+    )]
+    UnstableStart {
+        /// s of the start.
+        contact_radius: f64,
+        /// The control.
+        control: Control,
+        /// The largest radius searched.
+        searched: f64,
+    },
+}
+
+/// How far outward a stable state is looked for, as a multiple of the start radius.
+const OUTWARD_REACH: f64 = 1000.0;
+/// How far inward a landing is looked for, as a share of the radius of the last limit point: the curve
+/// is smooth and monotone towards s = 0 long before.
+const INWARD_REACH: f64 = 1e-4;
+
+impl Unloading {
+    /// The sum of the losses that are defined.
+    pub fn total_dissipated(&self) -> f64 {
+        self.events.iter().filter_map(|event| event.dissipated).sum()
+    }
+}
+
+/// Unloads under `control` along `curve`, from its outermost point down to its innermost.
+///
+/// The curve is extended where a landing lies beyond it: `curve` keeps the longer branch.
+///
+/// # Errors
+/// [`UnloadError`] when the start is unstable and no stable state lies outward.
+pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadError> {
+    let asked_radius = curve.outermost();
+    let end_radius = curve.innermost();
+    let asked_state = curve.branch.points.first().map(|p| curve.equilibrium.state(p));
+    let stable = |curve: &Curve, point: &Point| curve.equilibrium.stability(point).under(control);
+
+    let unstable_start = curve.branch.points.first().is_some_and(|p| !stable(curve, p));
+    if unstable_start {
+        run_outward(curve, control, asked_radius)?;
+    }
+    let mut nodes = Nodes::new(curve, control, &curve.limit_points(control));
+    let mut here = Landing { point: nodes.points()[0].clone(), node: 0 };
+    let start = curve.equilibrium.state(&here.point);
+
+    let mut path = Vec::new();
+    let mut events = Vec::new();
+    let stop = loop {
+        let minimum = nodes.next_minimum(here.node + 1);
+        let last = minimum.unwrap_or(nodes.points().len() - 1);
+        path.push(here.point.clone());
+        path.extend(
+            nodes.points()[here.node + 1..=last.max(here.node)]
+                .iter()
+                .take_while(|p| curve.equilibrium.contact_radius(p) >= end_radius * (1.0 - 1e-12))
+                .cloned(),
+        );
+        let Some(limit) =
+            minimum.filter(|&at| curve.equilibrium.contact_radius(&nodes.points()[at]) >= end_radius)
+        else {
+            break match curve.stop {
+                CurveStop::End => PathStop::End,
+                stop => PathStop::Curve(stop),
+            };
+        };
+        let value = nodes.value(limit);
+        let before_point = nodes.points()[limit].clone();
+        let mut landing = nodes.run(curve, limit, value, Run::Inward);
+        if landing.is_none() {
+            let s = curve.equilibrium.contact_radius(&before_point);
+            if INWARD_REACH * s < curve.innermost() && curve.extend(INWARD_REACH * s) {
+                // Indices before the extension stay true: it only adds points at the end.
+                nodes = Nodes::new(curve, control, &curve.limit_points(control));
+                landing = nodes.run(curve, limit, value, Run::Inward);
+            }
+        }
+        let before = curve.equilibrium.state(&before_point);
+        events.push(event(&curve.equilibrium, control, value, before, landing.as_ref().map(|l| &l.point)));
+        match landing {
+            None => break PathStop::PullOff,
+            Some(landing) if curve.equilibrium.contact_radius(&landing.point) < end_radius => {
+                path.push(landing.point);
+                break PathStop::End;
+            }
+            Some(landing) => here = landing,
+        }
+    };
+    let smallest = |of: Control| {
+        let limits = curve.limit_points(of);
+        // The extremes over the path: its own points, and limit points of the quantity between them.
+        let on_path =
+            limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, &path, &events, p));
+        let state = |p: &Point| curve.equilibrium.quantities(&p.y);
+        let least = path.iter().chain(on_path).min_by(|a, b| {
+            let value = |p: &Point| {
+                let [delta, force, _] = state(p);
+                of.value(delta, force)
+            };
+            value(a).total_cmp(&value(b))
+        });
+        least.map_or(start, |p| curve.equilibrium.state(p))
+    };
+    let (min_force, min_approach) = (smallest(Control::Force), smallest(Control::Displacement));
+    let asked = asked_state.filter(|_| unstable_start);
+    Ok(Unloading { control, start, asked, events, stop, min_force, min_approach })
+}
+
+/// Whether `point` lies on the stable pieces of a path: between its outermost and innermost point, and not
+/// inside a jump.
+fn is_on(equilibrium: &Equilibrium, path: &[Point], events: &[Event], point: &Point) -> bool {
+    let s = equilibrium.contact_radius(point);
+    let radius = |p: Option<&Point>| p.map_or(0.0, |p| equilibrium.contact_radius(p));
+    let inside = s <= radius(path.first()) && s >= radius(path.last());
+    inside
+        && events.iter().all(|event| {
+            let after = event.after.map_or(0.0, |a| a.contact_radius);
+            s >= event.before.contact_radius || s <= after
+        })
+}
+
+/// An event with its losses.
+fn event(
+    equilibrium: &Equilibrium,
+    control: Control,
+    value: f64,
+    before: State,
+    landing: Option<&Point>,
+) -> Event {
+    let after = landing.map(|point| equilibrium.state(point));
+    Event {
+        kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+        control_value: value,
+        before,
+        after,
+        dissipated: energy::loss(control, value, &before, after.as_ref()),
+        dissipated_by_area: energy::area(
+            equilibrium,
+            control,
+            value,
+            before.contact_radius,
+            after.map(|a| a.contact_radius),
+        ),
+    }
+}
+
+/// From an unstable start outward, at constant control, to the next stable state, which becomes the first
+/// point of the curve.
+fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<(), UnloadError> {
+    let row = curve.equilibrium.control_row(control);
+    let value = curve.branch.points.first().map_or(0.0, |p| row.dot(&p.y));
+    let limit = OUTWARD_REACH * from;
+    let mut reach = from;
+    loop {
+        reach = (1.5 * reach).min(limit);
+        let grew = curve.extend(reach);
+        let nodes = Nodes::new(curve, control, &curve.limit_points(control));
+        let start = nodes
+            .points()
+            .iter()
+            .position(|p| curve.equilibrium.contact_radius(p) <= from * (1.0 + 1e-12))
+            .unwrap_or(0);
+        if let Some(landing) = nodes.run(curve, start, value, Run::Outward) {
+            // The path starts at the landing: what lies outward of it is not on it.
+            let s = curve.equilibrium.contact_radius(&landing.point);
+            curve.branch.points.retain(|p| curve.equilibrium.contact_radius(p) < s);
+            curve.branch.points.insert(0, landing.point);
+            return Ok(());
+        }
+        if !grew || reach >= limit {
+            return Err(UnloadError::UnstableStart { contact_radius: from, control, searched: reach });
+        }
+    }
+}

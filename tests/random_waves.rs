@@ -1,0 +1,93 @@
+//! Every limit point of sixty random wavy spheres is found by the arc-length trace.
+//!
+//! The truth is the explicit curve δ(s), P(s) of the same discretization: sign changes of its exact slopes on
+//! a grid of a hundredth of a wave.
+
+use pulloff::contact::{Control, Problem, Reduced, Shape};
+use pulloff::continuation::trace::Stop;
+use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Limit};
+use pulloff::ritz::{Basis, Rings};
+use std::sync::Arc;
+
+const FROM: f64 = 1.0;
+const TO: f64 = 0.03;
+
+/// A wavy sphere with E* = R = 1 and its wavelength.
+fn draw(random: &mut fastrand::Rng) -> (Reduced, f64) {
+    let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo + (hi - lo) * random.f64();
+    let gamma = 10f64.powf(between(random, -3.5, -2.5));
+    let amplitude = between(random, 0.002, 0.006);
+    let wavelength = between(random, 0.1, 0.25);
+    let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength };
+    (Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced(), wavelength)
+}
+
+/// The intervals of s in which a slope of the explicit curve changes its sign: of δ, of P.
+fn sign_changes(problem: &Reduced, basis: &Arc<dyn Basis>, wavelength: f64) -> [Vec<(f64, f64)>; 2] {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let steps = ((FROM - TO) / (wavelength / 100.0)).ceil() as usize;
+    let mut found = [Vec::new(), Vec::new()];
+    let mut last: Option<(f64, [f64; 2])> = None;
+    for i in 0..=steps {
+        let s = FROM + (TO - FROM) * i as f64 / steps as f64;
+        let slopes = basis.equilibrium(problem, s).unwrap().slopes();
+        if let Some((before, old)) = last {
+            for (found, (a, b)) in found.iter_mut().zip(old.into_iter().zip(slopes)) {
+                if (a > 0.0) != (b > 0.0) {
+                    found.push((s, before));
+                }
+            }
+        }
+        last = Some((s, slopes));
+    }
+    found
+}
+
+fn radii(equilibrium: &Equilibrium, limits: &[Limit]) -> Vec<f64> {
+    limits.iter().map(|l| equilibrium.contact_radius(&l.point)).collect()
+}
+
+#[test]
+fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres() {
+    let mut random = fastrand::Rng::with_seed(20_260_611);
+    let basis: Arc<dyn Basis> = Rings::shared(400).unwrap();
+    let (mut points, mut evaluations, mut rejections, mut total) = (Vec::new(), 0, 0, 0);
+    for problem_number in 0..60 {
+        let (problem, wavelength) = draw(&mut random);
+        let truth = sign_changes(&problem, &basis, wavelength);
+        let traced = Curve::traced(problem.clone(), basis.clone(), FROM, TO, 5000, || true).unwrap();
+        assert_eq!(traced.stop, CurveStop::End, "{problem_number}");
+        assert_ne!(traced.stop, CurveStop::Tracer(Stop::Cancelled));
+        let swept = Curve::swept(problem, basis.clone(), FROM, TO, || true).unwrap();
+        for (control, truth) in [Control::Displacement, Control::Force].into_iter().zip(truth) {
+            let by_trace = radii(&traced.equilibrium, &traced.limit_points(control));
+            let by_sweep = radii(&swept.equilibrium, &swept.limit_points(control));
+            for (lo, hi) in &truth {
+                let inside = by_trace.iter().any(|s| lo <= s && s <= hi);
+                assert!(
+                    inside,
+                    "problem {problem_number}, {control}: none between {lo} and {hi}: {by_trace:?}"
+                );
+            }
+            // Both tracers make the same branch: the same limit points, to rounding.
+            assert_eq!(by_trace.len(), by_sweep.len(), "problem {problem_number}, {control}");
+            for (a, b) in by_trace.iter().zip(&by_sweep) {
+                assert!((a / b - 1.0).abs() < 1e-8, "problem {problem_number}, {control}: {a} {b}");
+            }
+            total += by_trace.len();
+        }
+        points.push(traced.branch.points.len());
+        evaluations += traced.branch.work.evaluations;
+        rejections += traced.branch.work.rejections;
+    }
+    points.sort_unstable();
+    let median = points[30];
+    println!(
+        "median {median} points (from {} to {}), {} evaluations and {} rejections a trace, {total} limit points",
+        points[0],
+        points[59],
+        evaluations / 60,
+        rejections / 60,
+    );
+    assert!(median < 100, "median of {median} points");
+}
