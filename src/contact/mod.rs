@@ -7,15 +7,18 @@
 //! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
+//! | [`start`] | how the start of a path is given |
 
 pub mod control;
 pub mod gap;
 pub mod groups;
 pub mod problem;
 pub mod shape;
+pub mod start;
 
 pub use control::Control;
 pub use gap::{Gap, Jet};
 pub use groups::Groups;
 pub use problem::{Problem, Reduced, Units};
 pub use shape::Shape;
+pub use start::Start;

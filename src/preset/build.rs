@@ -1,0 +1,229 @@
+//! Values → preset: defaults, required keys, and the checks that span several keys.
+//!
+//! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
+
+use super::invalid::Invalid;
+use super::model::{BasisSpec, Material, PathSpec, Preset};
+use super::schema::{
+    Applies, Fallback, PARAMETERS, Parameter, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
+    parameter,
+};
+use super::value::Value;
+use crate::contact::Start;
+use crate::contact::{Control, Shape};
+use std::collections::BTreeMap;
+
+/// Values by dotted key. A part of a value (`path.control.stiffness`) is not a key here.
+pub type Values = BTreeMap<&'static str, Value>;
+
+/// The preset these values make.
+///
+/// # Errors
+/// All that is wrong, at least one.
+pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
+    let mut given = Given { values, faults: Vec::new() };
+    given.check_each();
+    given.check_shape();
+    let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(key)).collect();
+    if let [first, second, ..] = starts[..] {
+        given.faults.push(Invalid::Starts { first, second });
+    }
+    let radius_of_curvature = given.number("gap.radius_of_curvature");
+    let gap = match given.text("gap.shape").as_str() {
+        "wavy-sphere" => Shape::WavySphere {
+            radius_of_curvature,
+            amplitude: given.number("gap.amplitude"),
+            wavelength: given.number("gap.wavelength"),
+        },
+        // An unknown word is among the faults already.
+        _ => Shape::Sphere { radius_of_curvature },
+    };
+    let start = match starts.first() {
+        Some(&key) if key == START_KEYS[1] => Start::Approach(given.number(key)),
+        Some(&key) if key == START_KEYS[2] => Start::Force(given.number(key)),
+        Some(&key) => Start::ContactRadius(given.number(key)),
+        None => Start::ContactRadius(START_OVER_CURVATURE * radius_of_curvature),
+    };
+    let end = "path.end_contact_radius";
+    let preset = Preset {
+        title: given.text("title"),
+        material: Material {
+            effective_modulus: given.number("material.effective_modulus"),
+            work_of_adhesion: given.number("material.work_of_adhesion"),
+        },
+        gap,
+        basis: BasisSpec::Rings { rings: usize::try_from(given.integer("basis.rings")).unwrap_or_default() },
+        path: PathSpec {
+            control: given.control("path.control"),
+            start,
+            end_contact_radius: values.contains_key(end).then(|| given.number(end)),
+        },
+    };
+    let mut faults = given.collapsed();
+    if faults.is_empty() {
+        faults = across(&preset);
+    }
+    if faults.is_empty() { Ok(preset) } else { Err(faults) }
+}
+
+/// The checks that span several keys.
+fn across(preset: &Preset) -> Vec<Invalid> {
+    let radius = preset.gap.radius_of_curvature();
+    let mut faults = Vec::new();
+    let end = preset.path.end_contact_radius;
+    let start = match preset.path.start {
+        Start::ContactRadius(s) => Some(s),
+        Start::Approach(_) | Start::Force(_) => None,
+    };
+    for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end)] {
+        if let Some(value) = value.filter(|s| *s > RADIUS_OVER_CURVATURE * radius) {
+            faults.push(Invalid::Wide { key, value, radius });
+        }
+    }
+    if let (Some(start), Some(end)) = (start, end)
+        && end >= start
+    {
+        faults.push(Invalid::EndBeyondStart { key: "path.end_contact_radius", end, start });
+    }
+    faults
+}
+
+/// The values with what was found wrong so far. A value that is missing or wrong reads as one that keeps
+/// the rest going; no preset comes of it.
+struct Given<'a> {
+    values: &'a Values,
+    faults: Vec<Invalid>,
+}
+
+impl Given<'_> {
+    fn check_each(&mut self) {
+        for (key, value) in self.values {
+            if let Some(Err(fault)) = parameter(key).map(|row| row.check(value.clone())) {
+                self.faults.push(fault);
+            }
+        }
+    }
+
+    /// Keys of other shapes are faults.
+    fn check_shape(&mut self) {
+        let Some(shape) = self.values.get("gap.shape").map(ToString::to_string) else { return };
+        for row in self.values.keys().filter_map(|key| parameter(key)) {
+            if let Applies::Shapes(shapes) = row.applies
+                && !row.fits(&shape)
+            {
+                let belongs = shapes.join(" or ");
+                self.faults.push(Invalid::OtherShape { key: row.key, belongs, shape: shape.clone() });
+            }
+        }
+    }
+
+    /// The checked value of a key, or its default; else it is missing.
+    fn value(&mut self, key: &'static str) -> Option<Value> {
+        let row = parameter(key)?;
+        if let Some(value) = self.values.get(key) {
+            return row.check(value.clone()).ok();
+        }
+        let fallback = match row.fallback {
+            Fallback::Number(x) => Some(Value::Number(x)),
+            Fallback::Integer(n) => Some(Value::Integer(n)),
+            Fallback::Text(text) => row.check(text.into()).ok(),
+            Fallback::Required | Fallback::Described(_) => None,
+        };
+        if fallback.is_none() {
+            self.faults.push(Invalid::Missing { key: row.key, allowed: row.allowed() });
+        }
+        fallback
+    }
+
+    fn number(&mut self, key: &'static str) -> f64 {
+        if let Some(Value::Number(x)) = self.value(key) { x } else { f64::NAN }
+    }
+
+    fn integer(&mut self, key: &'static str) -> i64 {
+        if let Some(Value::Integer(n)) = self.value(key) { n } else { 0 }
+    }
+
+    fn text(&mut self, key: &'static str) -> String {
+        if let Some(Value::Text(text)) = self.value(key) { text } else { String::new() }
+    }
+
+    fn control(&mut self, key: &'static str) -> Control {
+        if let Some(Value::Control(control)) = self.value(key) { control } else { Control::Displacement }
+    }
+
+    /// The faults; the missing keys of a table that is missing as a whole become one.
+    fn collapsed(self) -> Vec<Invalid> {
+        let present =
+            |table| self.values.keys().any(|key| parameter(key).and_then(Parameter::table) == Some(table));
+        let mut faults: Vec<Invalid> = Vec::new();
+        for fault in self.faults {
+            let table = match &fault {
+                Invalid::Missing { key, .. } => parameter(key).and_then(Parameter::table),
+                _ => None,
+            };
+            let fault = match table.filter(|table| !present(table)) {
+                Some(table) => Invalid::MissingTable { table, keys: required(table).join(", ") },
+                None => fault,
+            };
+            if !faults.contains(&fault) {
+                faults.push(fault);
+            }
+        }
+        faults
+    }
+}
+
+/// The names that a table needs in every preset.
+fn required(table: &str) -> Vec<&'static str> {
+    PARAMETERS
+        .iter()
+        .filter(|row| row.table() == Some(table))
+        .filter(|row| row.fallback == Fallback::Required && row.applies == Applies::Always)
+        .map(Parameter::name)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(pairs: &[(&'static str, Value)]) -> Values {
+        pairs.iter().cloned().collect()
+    }
+
+    #[test]
+    fn defaults_are_the_documented_ones() {
+        let preset = build(&values(&[
+            ("material.effective_modulus", 2.0.into()),
+            ("material.work_of_adhesion", 0.0.into()),
+            ("gap.shape", "sphere".into()),
+            ("gap.radius_of_curvature", 3.0.into()),
+        ]))
+        .unwrap();
+        assert_eq!(preset.basis, BasisSpec::Rings { rings: 200 });
+        assert_eq!(preset.path.control, Control::Displacement);
+        assert_eq!(preset.path.start, Start::ContactRadius(1.5));
+        assert_eq!(preset.path.end_contact_radius, None);
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_said() {
+        let faults = build(&values(&[
+            ("gap.shape", "sphere".into()),
+            ("gap.amplitude", 1.0.into()),
+            ("path.start_force", 1.0.into()),
+            ("path.start_approach", 1.0.into()),
+        ]))
+        .unwrap_err();
+        let lines: Vec<_> = faults.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            lines,
+            [
+                "gap.amplitude belongs to wavy-sphere, and the gap is a sphere",
+                "path.start_force and path.start_approach both say where the path starts: give exactly one",
+                "gap.radius_of_curvature is missing: it must be a number from 1e-30 to 1e30",
+                "the table [material] is missing: it needs effective_modulus, work_of_adhesion",
+            ]
+        );
+    }
+}

@@ -1,0 +1,167 @@
+//! What can be wrong with a key or a value, in one line each.
+
+use super::schema::{FORMAT, RADIUS_OVER_CURVATURE};
+use thiserror::Error;
+
+/// A key or a value that a preset cannot have. Foreign text in it is already safe to show.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Invalid {
+    /// No row of the table has this key.
+    #[error("unknown key {key}{}", hint(*.meant))]
+    UnknownKey {
+        /// The key as written.
+        key: String,
+        /// The known key most alike.
+        meant: Option<&'static str>,
+    },
+    /// The text is no TOML.
+    #[error("{what}")]
+    Syntax {
+        /// The parser's words.
+        what: String,
+    },
+    /// A `--set` argument without `=`.
+    #[error("an assignment is KEY=VALUE, as in gap.amplitude=0.002")]
+    Assignment,
+    /// A table's name used for a value.
+    #[error("{table} is a table, not {found}; set one of its keys, as {example}")]
+    NotTable {
+        /// The table.
+        table: &'static str,
+        /// What was found.
+        found: String,
+        /// A key in it.
+        example: &'static str,
+    },
+    /// A value of another type.
+    #[error("{key} must be {allowed}, not {found}")]
+    Type {
+        /// The key.
+        key: &'static str,
+        /// What was found.
+        found: String,
+        /// The values it takes.
+        allowed: String,
+    },
+    /// A value of the right type that is out of range.
+    #[error("{key} = {value} is out of range: it must be {allowed}")]
+    Range {
+        /// The key.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// The values it takes.
+        allowed: String,
+    },
+    /// A word that is none of the choices.
+    #[error("{key} = \"{value}\" is not known: it must be {allowed}{}", hint(*.meant))]
+    Choice {
+        /// The key.
+        key: &'static str,
+        /// The word.
+        value: String,
+        /// The choices.
+        allowed: String,
+        /// The choice most alike.
+        meant: Option<&'static str>,
+    },
+    /// Text with characters that a screen must not show.
+    #[error("{key} = \"{value}\" holds control or invisible characters")]
+    Unprintable {
+        /// The key.
+        key: &'static str,
+        /// The text.
+        value: String,
+    },
+    /// A file of another format.
+    #[error("format = {found} is not known: this version reads format {FORMAT}")]
+    Format {
+        /// The format the file says.
+        found: i64,
+    },
+    /// A required key that is not there.
+    #[error("{key} is missing: it must be {allowed}")]
+    Missing {
+        /// The key.
+        key: &'static str,
+        /// The values it takes.
+        allowed: String,
+    },
+    /// A required table that is not there.
+    #[error("the table [{table}] is missing: it needs {keys}")]
+    MissingTable {
+        /// The table.
+        table: &'static str,
+        /// Its required keys.
+        keys: String,
+    },
+    /// A key of another gap shape.
+    #[error("{key} belongs to {belongs}, and the gap is a {shape}")]
+    OtherShape {
+        /// The key.
+        key: &'static str,
+        /// The shapes it belongs to.
+        belongs: String,
+        /// The shape of this preset.
+        shape: String,
+    },
+    /// More than one start.
+    #[error("{second} and {first} both say where the path starts: give exactly one")]
+    Starts {
+        /// One start.
+        first: &'static str,
+        /// Another.
+        second: &'static str,
+    },
+    /// A path that would end at or beyond its start.
+    #[error("{key} = {end:?} is not below path.start_contact_radius = {start:?}")]
+    EndBeyondStart {
+        /// `path.end_contact_radius`.
+        key: &'static str,
+        /// The contact radius at the end.
+        end: f64,
+        /// The contact radius at the start.
+        start: f64,
+    },
+    /// A contact radius far beyond the radius of curvature.
+    #[error(
+        "{key} = {value:?} is out of range: it must be at most {RADIUS_OVER_CURVATURE} x the radius of \
+         curvature {radius:?}"
+    )]
+    Wide {
+        /// The key.
+        key: &'static str,
+        /// The contact radius.
+        value: f64,
+        /// The radius of curvature.
+        radius: f64,
+    },
+}
+
+fn hint(key: Option<&str>) -> String {
+    key.map_or_else(String::new, |key| format!("; did you mean {key}?"))
+}
+
+impl Invalid {
+    /// The known key this is about, if there is one.
+    #[must_use]
+    pub fn key(&self) -> Option<&'static str> {
+        match self {
+            Self::Type { key, .. }
+            | Self::Range { key, .. }
+            | Self::Choice { key, .. }
+            | Self::Unprintable { key, .. }
+            | Self::Missing { key, .. }
+            | Self::OtherShape { key, .. }
+            | Self::Starts { second: key, .. }
+            | Self::EndBeyondStart { key, .. }
+            | Self::Wide { key, .. } => Some(key),
+            Self::Format { .. } => Some("format"),
+            Self::UnknownKey { .. }
+            | Self::Syntax { .. }
+            | Self::Assignment
+            | Self::NotTable { .. }
+            | Self::MissingTable { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Presets: one problem, its basis and its path, as a TOML file a person can read and edit.
+//!
+//! Everything that knows the keys (reader, writer, `--set`, the screen's knobs, the manual's key table) reads
+//! the one table in [`schema`].
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`schema`] | the table of parameters: one row per dotted key |
+//! | [`value`] | one parameter's value, checked against its row |
+//! | [`invalid`] | what can be wrong with a value or a key |
+//! | [`model`] | the preset itself, read and changed by dotted key |
+//! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
+//! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
+//! | [`write`](mod@write) | preset → TOML text |
+//! | [`manual`] | the key table as text for the manual |
+//! | [`shipped`] | the presets that come with the program |
+//! | [`name`] | which names a person's preset may have |
+//! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
+//! | [`atomic`] | writing a file whole or not at all |
+//! | [`lock`] | one saver at a time in a folder |
+//! | [`store`] | the folder of a person's presets: resolve, load, list, save |
+//! | [`text`] | foreign text made safe to show |
+//! | [`suggest`] | "did you mean" |
+
+pub mod atomic;
+pub mod build;
+pub mod file;
+pub mod invalid;
+pub mod lock;
+pub mod manual;
+pub mod model;
+pub mod name;
+pub mod read;
+pub mod schema;
+pub mod shipped;
+pub mod store;
+pub mod suggest;
+pub mod text;
+pub mod value;
+pub mod write;
+
+pub use atomic::{Overwrite, WriteError, write_atomically};
+pub use file::Fingerprint;
+pub use invalid::Invalid;
+pub use model::{BasisSpec, Material, PathSpec, Preset};
+pub use read::{Mistake, Origin, ReadError, read, read_with};
+pub use schema::{PARAMETERS, Parameter, parameter};
+pub use shipped::SHIPPED;
+pub use store::{Listed, Listing, Loaded, Source, Store, StoreError};
+pub use value::Value;
+pub use write::write;

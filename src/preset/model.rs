@@ -1,0 +1,391 @@
+//! The preset: a problem, the basis it is solved in, and the path to follow.
+
+use super::build::{Values, build};
+use super::invalid::Invalid;
+use super::schema::{END_OVER_START, FORMAT, PARAMETERS, Parameter, START_KEYS, parameter};
+use super::suggest::closest_key;
+use super::text::quote;
+use super::value::Value;
+use crate::contact::{Control, Problem, Shape, Start};
+
+/// What a preset file says, complete and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preset {
+    /// One line that says what the preset shows.
+    pub title: String,
+    /// The bodies.
+    pub material: Material,
+    /// The gap between the undeformed bodies.
+    pub gap: Shape,
+    /// The functions in which the contact pressure is sought.
+    pub basis: BasisSpec,
+    /// Where to start, what to control, where to end.
+    pub path: PathSpec,
+}
+
+/// The bodies and their adhesion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// E*, a stress.
+    pub effective_modulus: f64,
+    /// γ, the work of adhesion, a stress times a length.
+    pub work_of_adhesion: f64,
+}
+
+/// The basis of the contact pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BasisSpec {
+    /// Ring elements of constant pressure.
+    Rings {
+        /// Their number N, from 4 to 2000.
+        rings: usize,
+    },
+}
+
+/// The path through the equilibrium states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathSpec {
+    /// What the loading device prescribes.
+    pub control: Control,
+    /// The state at which the path starts.
+    pub start: Start,
+    /// The contact radius at which the path ends; `None` leaves it to follow the start
+    /// (see [`Preset::end_contact_radius`]).
+    pub end_contact_radius: Option<f64>,
+}
+
+/// The key that says a start.
+#[must_use]
+pub fn start_key(start: Start) -> &'static str {
+    match start {
+        Start::ContactRadius(_) => START_KEYS[0],
+        Start::Approach(_) => START_KEYS[1],
+        Start::Force(_) => START_KEYS[2],
+    }
+}
+
+impl Preset {
+    /// The contact problem of this preset.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        Problem {
+            effective_modulus: self.material.effective_modulus,
+            work_of_adhesion: self.material.work_of_adhesion,
+            shape: self.gap,
+        }
+    }
+
+    /// The contact radius at which the path ends, given that it starts at `start_contact_radius`:
+    /// the one the preset says, or a fixed fraction of the start.
+    #[must_use]
+    pub fn end_contact_radius(&self, start_contact_radius: f64) -> f64 {
+        self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
+    }
+
+    /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset or is left
+    /// to follow from others.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<Value> {
+        let Self { title, material, gap, basis, path } = self;
+        let BasisSpec::Rings { rings } = *basis;
+        Some(match key {
+            "format" => FORMAT.into(),
+            "title" => title.as_str().into(),
+            "material.effective_modulus" => material.effective_modulus.into(),
+            "material.work_of_adhesion" => material.work_of_adhesion.into(),
+            "gap.shape" => gap.name().into(),
+            "gap.radius_of_curvature" => gap.radius_of_curvature().into(),
+            "gap.amplitude" => gap.wave()?.0.into(),
+            "gap.wavelength" => gap.wave()?.1.into(),
+            "basis.kind" => "rings".into(),
+            "basis.rings" => i64::try_from(rings).ok()?.into(),
+            "path.control" => path.control.into(),
+            "path.control.stiffness" => match path.control {
+                Control::Stiffness(k) => k.into(),
+                Control::Displacement | Control::Force => return None,
+            },
+            "path.end_contact_radius" => path.end_contact_radius?.into(),
+            key if key == start_key(path.start) => path.start.value().into(),
+            _ => return None,
+        })
+    }
+
+    /// The rows that have a value in this preset, in the table's order, with their values.
+    #[must_use]
+    pub fn values(&self) -> Vec<(&'static Parameter, Value)> {
+        PARAMETERS.iter().filter_map(|row| Some((row, self.get(row.key)?))).collect()
+    }
+
+    /// Gives a key another value.
+    ///
+    /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
+    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9.
+    ///
+    /// # Errors
+    /// The key is unknown, or the preset would no longer be valid; it is left as it was.
+    pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
+        let row = parameter(key).ok_or_else(|| unknown_key(key))?;
+        let value = row.check(value)?;
+        let mut values = self.keyed();
+        match row.key {
+            "gap.shape" => {
+                let radius = self.gap.radius_of_curvature();
+                values.retain(|key, _| parameter(key).is_some_and(|row| row.fits(&value.to_string())));
+                for (key, over_radius) in [("gap.amplitude", 0.0025), ("gap.wavelength", 0.05)] {
+                    if parameter(key).is_some_and(|row| row.fits(&value.to_string())) {
+                        values.entry(key).or_insert(Value::Number(over_radius * radius));
+                    }
+                }
+            }
+            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(key)),
+            _ => {}
+        }
+        put(&mut values, row, value);
+        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        Ok(())
+    }
+
+    /// Lets an optional key follow from others again, or takes its default.
+    ///
+    /// # Errors
+    /// The key is unknown or required.
+    pub fn reset(&mut self, key: &str) -> Result<(), Invalid> {
+        let row = parameter(key).ok_or_else(|| unknown_key(key))?;
+        let mut values = self.keyed();
+        let parent = row.table().filter(|_| row.is_part());
+        values.remove(parent.unwrap_or(row.key));
+        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        Ok(())
+    }
+
+    /// Checks every value and every pair of values; for a preset made in code.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    pub fn check(&self) -> Result<(), Vec<Invalid>> {
+        build(&self.keyed()).map(|_| ())
+    }
+
+    fn keyed(&self) -> Values {
+        self.values().into_iter().filter(|(row, _)| !row.is_part()).map(|(row, v)| (row.key, v)).collect()
+    }
+}
+
+/// Stores a checked value; a part of a value becomes the whole.
+pub(super) fn put(values: &mut Values, row: &Parameter, value: Value) {
+    match (row.key, value) {
+        ("path.control.stiffness", Value::Number(k)) => {
+            values.insert("path.control", Control::Stiffness(k).into());
+        }
+        (key, value) => {
+            values.insert(key, value);
+        }
+    }
+}
+
+/// The error for a key without a row.
+pub(super) fn unknown_key(key: &str) -> Invalid {
+    let meant = closest_key(key, PARAMETERS.iter().map(|row| (row.key, row.label)));
+    Invalid::UnknownKey { key: quote(key), meant }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::preset::schema::Fallback;
+    use proptest::prelude::*;
+
+    pub fn wavy() -> Preset {
+        Preset {
+            title: "a wave".to_owned(),
+            material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004 },
+            gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
+            basis: BasisSpec::Rings { rings: 200 },
+            path: PathSpec {
+                control: Control::Displacement,
+                start: Start::ContactRadius(0.5),
+                end_contact_radius: Some(0.002),
+            },
+        }
+    }
+
+    /// Any valid preset.
+    pub fn any_preset() -> impl Strategy<Value = Preset> {
+        let positive = || (-29.0..29.0f64).prop_map(|e| 10f64.powf(e));
+        let finite =
+            || prop_oneof![Just(0.0), (-1e9..1e9f64), (-29.0..29.0f64).prop_map(|e| -(10f64.powf(e)))];
+        let gap = prop_oneof![
+            positive().prop_map(|radius_of_curvature| Shape::Sphere { radius_of_curvature }),
+            (positive(), prop_oneof![Just(0.0), positive()], positive()).prop_map(
+                |(radius_of_curvature, amplitude, wavelength)| Shape::WavySphere {
+                    radius_of_curvature,
+                    amplitude,
+                    wavelength
+                }
+            ),
+        ];
+        let control = prop_oneof![
+            Just(Control::Displacement),
+            Just(Control::Force),
+            positive().prop_map(Control::Stiffness)
+        ];
+        (
+            (
+                "[ -~γλ\u{e9}\"'\\\\]{0,40}",
+                positive(),
+                prop_oneof![Just(0.0), positive()],
+                gap,
+                4usize..=2000,
+            ),
+            (control, 0..3u8, 0.001..10.0f64, finite(), proptest::option::of(0.0001..0.99f64)),
+        )
+            .prop_map(|((title, e, gamma, gap, rings), (control, which, over, x, end))| {
+                let radius = gap.radius_of_curvature().clamp(1e-20, 1e29);
+                let gap = match gap {
+                    Shape::Sphere { .. } => Shape::Sphere { radius_of_curvature: radius },
+                    Shape::WavySphere { amplitude, wavelength, .. } => {
+                        Shape::WavySphere { radius_of_curvature: radius, amplitude, wavelength }
+                    }
+                };
+                let start = match which {
+                    0 => Start::ContactRadius(over * radius),
+                    1 => Start::Approach(x),
+                    _ => Start::Force(x),
+                };
+                Preset {
+                    title,
+                    material: Material { effective_modulus: e, work_of_adhesion: gamma },
+                    gap,
+                    basis: BasisSpec::Rings { rings },
+                    path: PathSpec { control, start, end_contact_radius: end.map(|f| f * over * radius) },
+                }
+            })
+    }
+
+    #[test]
+    fn the_table_is_total() {
+        // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
+        let Preset { title: _, material, gap, basis, path } = wavy();
+        let Material { effective_modulus: _, work_of_adhesion: _ } = material;
+        let BasisSpec::Rings { rings: _ } = basis;
+        let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
+        match gap {
+            Shape::Sphere { radius_of_curvature: _ }
+            | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ } => {}
+        }
+        let fields = [
+            "format",
+            "title",
+            "material.effective_modulus",
+            "material.work_of_adhesion",
+            "gap.shape",
+            "gap.radius_of_curvature",
+            "gap.amplitude",
+            "gap.wavelength",
+            "basis.kind",
+            "basis.rings",
+            "path.control",
+            "path.control.stiffness",
+            "path.start_contact_radius",
+            "path.start_approach",
+            "path.start_force",
+            "path.end_contact_radius",
+        ];
+        assert_eq!(PARAMETERS.iter().map(|row| row.key).collect::<Vec<_>>(), fields);
+
+        // Every row can be read back after it was set.
+        for row in PARAMETERS {
+            let mut preset = wavy();
+            let value = match row.key {
+                "format" => FORMAT.into(),
+                "title" => "t".into(),
+                "gap.shape" => "sphere".into(),
+                "basis.kind" => "rings".into(),
+                "basis.rings" => 77.into(),
+                "path.control" => Control::Force.into(),
+                "path.end_contact_radius" => 0.003.into(),
+                _ => Value::Number(0.75),
+            };
+            preset.set(row.key, value.clone()).unwrap();
+            assert_eq!(preset.get(row.key), Some(value), "{}", row.key);
+            assert_eq!(
+                preset.reset(row.key).is_err(),
+                row.fallback == Fallback::Required && row.fits(preset.gap.name()),
+                "{}",
+                row.key
+            );
+        }
+    }
+
+    #[test]
+    fn the_table_knows_every_shape() {
+        let parameter = parameter("gap.shape").unwrap();
+        for gap in [Shape::Sphere { radius_of_curvature: 1.0 }, wavy().gap] {
+            assert!(parameter.check(gap.name().into()).is_ok(), "{}", gap.name());
+        }
+    }
+
+    #[test]
+    fn a_start_replaces_another() {
+        let mut preset = wavy();
+        preset.set("path.start_force", 0.01.into()).unwrap();
+        assert_eq!(preset.path.start, Start::Force(0.01));
+        assert_eq!(preset.get("path.start_contact_radius"), None);
+        preset.reset("path.start_force").unwrap();
+        assert_eq!(preset.path.start, Start::ContactRadius(0.5));
+    }
+
+    #[test]
+    fn a_stiffness_makes_the_device_a_spring_and_goes_with_it() {
+        let mut preset = wavy();
+        preset.set("path.control.stiffness", 0.15.into()).unwrap();
+        assert_eq!(preset.path.control, Control::Stiffness(0.15));
+        preset.set("path.control", "force".into()).unwrap();
+        assert_eq!(preset.path.control, Control::Force);
+        assert_eq!(preset.get("path.control.stiffness"), None);
+    }
+
+    #[test]
+    fn a_shape_drops_and_brings_its_keys() {
+        let mut preset = wavy();
+        preset.set("gap.shape", "sphere".into()).unwrap();
+        assert_eq!(preset.gap, Shape::Sphere { radius_of_curvature: 1.0 });
+        let wave = preset.set("gap.amplitude", 0.1.into()).unwrap_err();
+        assert_eq!(wave.to_string(), "gap.amplitude belongs to wavy-sphere, and the gap is a sphere");
+        preset.set("gap.shape", "wavy-sphere".into()).unwrap();
+        assert_eq!(preset, wavy());
+    }
+
+    #[test]
+    fn a_refused_value_changes_nothing() {
+        for (key, value, words) in [
+            ("gap.amplitude", Value::Number(f64::NAN), "out of range"),
+            ("path.end_contact_radius", Value::Number(0.5), "not below path.start_contact_radius"),
+            ("path.start_contact_radius", Value::Number(0.001), "not below path.start_contact_radius"),
+            ("path.start_contact_radius", Value::Number(11.0), "at most 10 x the radius of curvature"),
+            ("gap.radius_of_curvature", Value::Number(0.01), "at most 10 x the radius of curvature"),
+            ("gap.lambda", Value::Number(0.1), "did you mean gap.wavelength?"),
+        ] {
+            let mut preset = wavy();
+            let message = preset.set(key, value).unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+            assert_eq!(preset, wavy());
+        }
+    }
+
+    #[test]
+    fn the_end_follows_the_start_unless_said() {
+        let mut preset = wavy();
+        assert!((preset.end_contact_radius(0.5) - 0.002).abs() < 1e-18);
+        preset.reset("path.end_contact_radius").unwrap();
+        assert!((preset.end_contact_radius(0.25) - 0.001).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_preset_made_in_code_is_checked() {
+        let mut preset = wavy();
+        preset.material.effective_modulus = f64::INFINITY;
+        preset.basis = BasisSpec::Rings { rings: 3 };
+        assert_eq!(preset.check().unwrap_err().len(), 2);
+    }
+}

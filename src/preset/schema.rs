@@ -1,0 +1,343 @@
+//! The table of parameters: one row per dotted TOML key.
+//!
+//! A new parameter is a new row here, a field of [`Preset`](super::Preset) and its two lines in
+//! `model` (get) and `build`; a test demands that none of the three is forgotten.
+
+/// The format number of the files this program reads and writes.
+pub const FORMAT: i64 = 1;
+/// The smallest magnitude accepted for a number that is not zero: far below any quantity in SI units.
+pub const SMALLEST: f64 = 1e-30;
+/// The largest magnitude accepted: its powers in reduced units still fit a double.
+pub const LARGEST: f64 = 1e30;
+/// The contact radius at which a path starts when nothing is said, over the radius of curvature.
+pub const START_OVER_CURVATURE: f64 = 0.5;
+/// The contact radius at which a path ends when nothing is said, over the one where it starts.
+pub const END_OVER_START: f64 = 0.004;
+/// The largest contact radius accepted, over the radius of curvature: the paraboloid means nothing so far out.
+pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
+/// The three ways to say where a path starts; a preset has exactly one.
+pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
+
+/// What kind of value a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A number above zero, changed in steps of its logarithm.
+    Positive,
+    /// Zero or a number above it.
+    NonNegative,
+    /// Any finite number.
+    Finite,
+    /// A whole number from `min` to `max`.
+    Integer {
+        /// The smallest accepted.
+        min: i64,
+        /// The largest accepted.
+        max: i64,
+    },
+    /// Printable text.
+    Text {
+        /// The longest accepted.
+        max_chars: usize,
+    },
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// What the loading device prescribes.
+    Control,
+}
+
+/// What a parameter is when a file does not give it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fallback {
+    /// It must be given (where it applies).
+    Required,
+    /// This number.
+    Number(f64),
+    /// This whole number.
+    Integer(i64),
+    /// This text, choice or control.
+    Text(&'static str),
+    /// It follows from other values, in these words.
+    Described(&'static str),
+}
+
+/// Where a parameter means something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Applies {
+    /// In every preset.
+    Always,
+    /// Only for these values of `gap.shape`.
+    Shapes(&'static [&'static str]),
+    /// Only while the device is a spring.
+    Spring,
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// The dotted TOML key.
+    pub key: &'static str,
+    /// A short name for the screen, in ASCII.
+    pub label: &'static str,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// Its dimension in words; empty for text, choices and pure numbers.
+    pub dimension: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// What it is when not given.
+    pub fallback: Fallback,
+    /// Where it means something.
+    pub applies: Applies,
+}
+
+/// The names of the gap shapes that have waves.
+const WAVY: &[&str] = &["wavy-sphere"];
+
+/// The parameters, in the order in which files and screens show them.
+pub static PARAMETERS: &[Parameter] = &[
+    Parameter {
+        key: "format",
+        label: "format",
+        meaning: "version of this file format",
+        dimension: "",
+        kind: Kind::Integer { min: FORMAT, max: FORMAT },
+        fallback: Fallback::Integer(FORMAT),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "title",
+        label: "title",
+        meaning: "one line that says what the preset shows",
+        dimension: "",
+        kind: Kind::Text { max_chars: 100 },
+        fallback: Fallback::Text(""),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "material.effective_modulus",
+        label: "E*",
+        meaning: "effective elastic modulus of the two bodies",
+        dimension: "stress",
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "material.work_of_adhesion",
+        label: "gamma",
+        meaning: "work of adhesion, the energy gained per unit area of contact",
+        dimension: "stress x length",
+        kind: Kind::NonNegative,
+        fallback: Fallback::Required,
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "gap.shape",
+        label: "gap",
+        meaning: "shape of the gap between the undeformed bodies",
+        dimension: "",
+        kind: Kind::Choice(&["sphere", "wavy-sphere"]),
+        fallback: Fallback::Required,
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "gap.radius_of_curvature",
+        label: "R",
+        meaning: "combined radius of curvature",
+        dimension: "length",
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "gap.amplitude",
+        label: "A",
+        meaning: "amplitude of the wave",
+        dimension: "length",
+        kind: Kind::NonNegative,
+        fallback: Fallback::Required,
+        applies: Applies::Shapes(WAVY),
+    },
+    Parameter {
+        key: "gap.wavelength",
+        label: "lambda",
+        meaning: "wavelength",
+        dimension: "length",
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: Applies::Shapes(WAVY),
+    },
+    Parameter {
+        key: "basis.kind",
+        label: "basis",
+        meaning: "functions in which the contact pressure is sought",
+        dimension: "",
+        kind: Kind::Choice(&["rings"]),
+        fallback: Fallback::Text("rings"),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "basis.rings",
+        label: "N",
+        meaning: "number of ring elements",
+        dimension: "",
+        kind: Kind::Integer { min: 4, max: 2000 },
+        fallback: Fallback::Integer(200),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "path.control",
+        label: "control",
+        meaning: "what the loading device prescribes",
+        dimension: "",
+        kind: Kind::Control,
+        fallback: Fallback::Text("displacement"),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "path.control.stiffness",
+        label: "k",
+        meaning: "stiffness of the loading device",
+        dimension: "force / length",
+        kind: Kind::Positive,
+        fallback: Fallback::Described("none: the device is not a spring"),
+        applies: Applies::Spring,
+    },
+    Parameter {
+        key: START_KEYS[0],
+        label: "s start",
+        meaning: "contact radius at which the path starts",
+        dimension: "length",
+        kind: Kind::Positive,
+        fallback: Fallback::Described("0.5 x the radius of curvature, if no start is given"),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: START_KEYS[1],
+        label: "delta start",
+        meaning: "approach at which the path starts",
+        dimension: "length",
+        kind: Kind::Finite,
+        fallback: Fallback::Described("none: another start is used"),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: START_KEYS[2],
+        label: "P start",
+        meaning: "force at which the path starts, a preload",
+        dimension: "force",
+        kind: Kind::Finite,
+        fallback: Fallback::Described("none: another start is used"),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: "path.end_contact_radius",
+        label: "s end",
+        meaning: "contact radius at which the path ends",
+        dimension: "length",
+        kind: Kind::Positive,
+        fallback: Fallback::Described("0.004 x the contact radius at the start"),
+        applies: Applies::Always,
+    },
+];
+
+/// The row of a dotted key.
+#[must_use]
+pub fn parameter(key: &str) -> Option<&'static Parameter> {
+    PARAMETERS.iter().find(|row| row.key == key)
+}
+
+/// The keys that hold other keys: `material`, `gap`, …, and `path.control` when it is a spring.
+pub fn tables() -> impl Iterator<Item = &'static str> {
+    PARAMETERS.iter().enumerate().filter_map(|(i, row)| {
+        let table = row.table()?;
+        let seen = PARAMETERS.iter().take(i).any(|earlier| earlier.table() == Some(table));
+        (!seen).then_some(table)
+    })
+}
+
+impl Parameter {
+    /// The table the key stands in, if any.
+    #[must_use]
+    pub fn table(&self) -> Option<&'static str> {
+        self.key.rsplit_once('.').map(|(table, _)| table)
+    }
+
+    /// The last part of the key.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.key.rsplit_once('.').map_or(self.key, |(_, name)| name)
+    }
+
+    /// Whether the key is a part of another parameter's value, as `path.control.stiffness` is.
+    #[must_use]
+    pub fn is_part(&self) -> bool {
+        self.table().is_some_and(|table| parameter(table).is_some())
+    }
+
+    /// Whether a person changes it by factors rather than by differences.
+    #[must_use]
+    pub fn is_logarithmic(&self) -> bool {
+        matches!(self.kind, Kind::Positive)
+    }
+
+    /// Whether it means something for this `gap.shape`.
+    #[must_use]
+    pub fn fits(&self, shape: &str) -> bool {
+        match self.applies {
+            Applies::Shapes(shapes) => shapes.contains(&shape),
+            Applies::Always | Applies::Spring => true,
+        }
+    }
+
+    /// The values it takes, in words.
+    #[must_use]
+    pub fn allowed(&self) -> String {
+        match self.kind {
+            Kind::Positive => format!("a number from {SMALLEST:?} to {LARGEST:?}"),
+            Kind::NonNegative => format!("0 or a number from {SMALLEST:?} to {LARGEST:?}"),
+            Kind::Finite => format!("a number from -{LARGEST:?} to {LARGEST:?}"),
+            Kind::Integer { min, max } if min == max => format!("the number {min}"),
+            Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
+            Kind::Text { max_chars } => format!("printable text of at most {max_chars} characters"),
+            Kind::Choice(words) => {
+                words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
+            }
+            Kind::Control => "\"displacement\", \"force\" or { stiffness = k } with k > 0".to_owned(),
+        }
+    }
+
+    /// What it is when not given, in words.
+    #[must_use]
+    pub fn fallback_text(&self) -> String {
+        match self.fallback {
+            Fallback::Required => "required".to_owned(),
+            Fallback::Number(x) => format!("{x:?}"),
+            Fallback::Integer(n) => n.to_string(),
+            Fallback::Text(text) => format!("\"{text}\""),
+            Fallback::Described(words) => words.to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn keys_and_labels_are_unique_ascii_and_grouped() {
+        let keys: BTreeSet<_> = PARAMETERS.iter().map(|row| row.key).collect();
+        let labels: BTreeSet<_> = PARAMETERS.iter().map(|row| row.label).collect();
+        assert_eq!((keys.len(), labels.len()), (PARAMETERS.len(), PARAMETERS.len()));
+        for row in PARAMETERS {
+            assert!(row.label.is_ascii() && row.label.len() <= 11, "{}", row.label);
+            assert!(!row.meaning.is_empty() && !row.allowed().is_empty() && !row.fallback_text().is_empty());
+        }
+        assert!(START_KEYS.iter().all(|key| parameter(key).is_some()));
+        let said =
+            |key, number: f64| parameter(key).unwrap().fallback_text().starts_with(&format!("{number} x"));
+        assert!(said(START_KEYS[0], START_OVER_CURVATURE) && said("path.end_contact_radius", END_OVER_START));
+        assert_eq!(tables().collect::<Vec<_>>(), ["material", "gap", "basis", "path", "path.control"]);
+    }
+}

@@ -1,0 +1,103 @@
+//! The presets that come with the program: the paper's cases, embedded from the top-level `presets` folder.
+
+/// A preset that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shipped {
+    /// Its name.
+    pub name: &'static str,
+    /// Its file, comments included.
+    pub text: &'static str,
+}
+
+/// The preset opened when none is named.
+pub const DEFAULT: &str = "wavy-sphere";
+
+/// The presets that come with the program, the default first.
+pub static SHIPPED: &[Shipped] = &[
+    Shipped { name: DEFAULT, text: include_str!("../../presets/wavy-sphere.toml") },
+    Shipped { name: "fig-1-hertz", text: include_str!("../../presets/fig-1-hertz.toml") },
+    Shipped { name: "fig-3-jkr", text: include_str!("../../presets/fig-3-jkr.toml") },
+    Shipped { name: "fig-8", text: include_str!("../../presets/fig-8.toml") },
+    Shipped { name: "fig-9", text: include_str!("../../presets/fig-9.toml") },
+    Shipped { name: "fig-10-force", text: include_str!("../../presets/fig-10-force.toml") },
+];
+
+/// The shipped preset of this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Shipped> {
+    SHIPPED.iter().find(|shipped| shipped.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Start;
+    use crate::contact::{Control, Groups, Shape};
+    use crate::preset::model::{BasisSpec, Preset};
+    use crate::preset::read::read;
+    use crate::preset::schema::PARAMETERS;
+    use std::collections::BTreeSet;
+
+    fn load(name: &str) -> Preset {
+        read(name, find(name).unwrap().text).unwrap()
+    }
+
+    #[test]
+    fn every_file_of_the_folder_is_shipped_and_says_what_to_look_at() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/presets");
+        let files: BTreeSet<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        let names: BTreeSet<_> = SHIPPED.iter().map(|shipped| format!("{}.toml", shipped.name)).collect();
+        assert_eq!(files, names);
+        for shipped in SHIPPED {
+            let preset = load(shipped.name);
+            assert!(shipped.text.starts_with("# ") && !preset.title.is_empty());
+            assert_eq!(preset.basis, BasisSpec::Rings { rings: 200 });
+            assert!(preset.path.end_contact_radius.is_some());
+            // Complete: every key that applies is in the file.
+            for (row, _) in preset.values() {
+                assert!(
+                    shipped.text.contains(&format!("\n{} = ", row.name())),
+                    "{} {}",
+                    shipped.name,
+                    row.key
+                );
+            }
+            assert!(preset.values().len() >= PARAMETERS.len() - 5);
+        }
+    }
+
+    #[test]
+    fn they_are_the_cases_of_the_paper() {
+        let adhesion = |name| Groups::of(&load(name).problem()).adhesion;
+        for (name, expected) in [
+            ("fig-1-hertz", 0.0),
+            ("fig-3-jkr", 0.05),
+            ("fig-8", 0.05),
+            ("fig-9", 0.025),
+            ("fig-10-force", 0.025),
+        ] {
+            assert!((adhesion(name) - expected).abs() < 1e-16, "{name}");
+        }
+        let fig9 = load("fig-9");
+        assert_eq!(
+            fig9.gap,
+            Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 }
+        );
+        assert_eq!(fig9.path.start, Start::ContactRadius(0.5));
+        let mut force = load("fig-10-force");
+        assert_eq!(force.path.control, Control::Force);
+        (force.path.control, force.title) = (Control::Displacement, fig9.title.clone());
+        assert_eq!(force, fig9);
+        let mut default = load(DEFAULT);
+        assert_eq!(default.path.start, Start::ContactRadius(0.41));
+        (default.path.start, default.title) = (fig9.path.start, fig9.title.clone());
+        assert_eq!(default, fig9);
+        assert_eq!(
+            load("fig-8").gap,
+            Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.001, wavelength: 0.1 }
+        );
+    }
+}

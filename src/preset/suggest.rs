@@ -1,0 +1,64 @@
+//! "Did you mean": the known word closest to a mistyped one.
+
+/// How alike two words must be to be offered, from 0 to 1.
+const ALIKE: f64 = 0.6;
+/// The longest word worth comparing, in bytes: the comparison takes time in proportion to it.
+const LONGEST: usize = 80;
+
+/// The most alike of `known`, if one is alike enough.
+pub fn closest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if word.len() > LONGEST {
+        return None;
+    }
+    let word = word.to_lowercase();
+    best(known.into_iter().map(|k| (likeness(&word, k), k)))
+}
+
+/// The dotted key most alike to `key`, as a whole or in its last part; `labels` gives other names of a key.
+pub fn closest_key(
+    key: &str,
+    known: impl IntoIterator<Item = (&'static str, &'static str)>,
+) -> Option<&'static str> {
+    if key.len() > LONGEST {
+        return None;
+    }
+    let lower = key.to_lowercase();
+    best(known.into_iter().map(|(k, label)| {
+        let whole = likeness(&lower, k);
+        let part = likeness(last(&lower), last(k));
+        // A known part in the wrong table, or the symbol, counts a little less than the key itself.
+        let symbol = if last(key) == label { 0.95 } else { 0.0 };
+        (whole.max(0.97 * part).max(symbol), k)
+    }))
+}
+
+fn last(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+fn likeness(a: &str, b: &str) -> f64 {
+    strsim::normalized_damerau_levenshtein(a, b)
+}
+
+fn best<'a>(scored: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
+    scored.filter(|(score, _)| *score >= ALIKE).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, word)| word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::schema::PARAMETERS;
+
+    #[test]
+    fn offers_what_was_meant() {
+        let key = |k| closest_key(k, PARAMETERS.iter().map(|row| (row.key, row.label)));
+        assert_eq!(key("gap.wavelenght"), Some("gap.wavelength"));
+        assert_eq!(key("rings"), Some("basis.rings"));
+        assert_eq!(key("material.amplitude"), Some("gap.amplitude"));
+        assert_eq!(key("material.gamma"), Some("material.work_of_adhesion"));
+        assert_eq!(key("gap.Amplitude"), Some("gap.amplitude"));
+        assert_eq!(key("colour"), None);
+        assert_eq!(key(&"x".repeat(1000)), None);
+        assert_eq!(closest("wavy_sphere", ["sphere", "wavy-sphere"]), Some("wavy-sphere"));
+    }
+}

@@ -1,0 +1,109 @@
+//! Preset → TOML text: every key, every digit, each with what it means.
+
+use super::model::Preset;
+use super::schema::{PARAMETERS, Parameter, parameter};
+
+/// The preset as a file.
+///
+/// Keys that do not apply (the waves of a sphere, the starts not used) are left out. An end that is left to
+/// follow from the start stands as a comment, so that a file read back is the preset written.
+#[must_use]
+pub fn write(preset: &Preset) -> String {
+    let mut text = String::from("# A pulloff preset. Any consistent units.\n");
+    let mut table = None;
+    for row in PARAMETERS.iter().filter(|row| !row.is_part()) {
+        let line = match preset.get(row.key) {
+            Some(value) => format!("{} = {}", row.name(), value.to_toml()),
+            None if row.key == "path.end_contact_radius" => {
+                format!("# {} = {}", row.name(), row.fallback_text())
+            }
+            None => continue,
+        };
+        if row.table() != table {
+            table = row.table();
+            text.push_str(&table.map_or_else(String::new, |name| format!("\n[{name}]\n")));
+        }
+        text.push_str(format!("{line:<40}{}", comment(row)).trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// What a row means, as a comment; format and title speak for themselves.
+fn comment(row: &Parameter) -> String {
+    if row.table().is_none() {
+        return String::new();
+    }
+    // Where a value's part has a dimension, it is the one worth naming.
+    let part = parameter("path.control.stiffness").filter(|part| part.table() == Some(row.key));
+    match (row.dimension, part) {
+        ("", Some(part)) => format!(" # {} ({}: {})", row.meaning, part.name(), part.dimension),
+        ("", None) => format!(" # {}", row.meaning),
+        (dimension, _) => format!(" # {}, {} ({dimension})", row.label, row.meaning),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Start;
+    use crate::contact::{Control, Shape};
+    use crate::preset::model::tests::{any_preset, wavy};
+    use crate::preset::read::read;
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    #[test]
+    fn every_key_is_written() {
+        let mut preset = wavy();
+        preset.path.control = Control::Stiffness(0.15);
+        let text = write(&preset);
+        let lines: Vec<_> = text.lines().map(|line| line.split(" #").next().unwrap().trim()).collect();
+        for expected in [
+            "format = 1",
+            "title = \"a wave\"",
+            "[material]",
+            "work_of_adhesion = 0.004",
+            "[gap]",
+            "shape = \"wavy-sphere\"",
+            "radius_of_curvature = 1.0",
+            "amplitude = 0.0025",
+            "wavelength = 0.05",
+            "kind = \"rings\"",
+            "rings = 200",
+            "control = { stiffness = 0.15 }",
+            "start_contact_radius = 0.5",
+            "end_contact_radius = 0.002",
+        ] {
+            assert!(lines.contains(&expected), "{expected} in\n{text}");
+        }
+        preset.gap = Shape::Sphere { radius_of_curvature: 1.0 };
+        preset.path.start = Start::Force(0.1);
+        preset.path.end_contact_radius = None;
+        let text = write(&preset);
+        assert!(!text.contains("amplitude") && text.contains("\nstart_force = 0.1"), "{text}");
+        assert!(text.contains("\n# end_contact_radius = 0.004 x"), "{text}");
+    }
+
+    #[test]
+    fn a_title_cannot_break_out_of_its_line() {
+        let mut preset = wavy();
+        for title in ["\"\"\"", "'''", "\\", "\"\nrings = 3", "# no comment", "'\"\\"] {
+            preset.title = title.replace('\n', "\\n");
+            assert_eq!(read("t", &write(&preset)).unwrap(), preset);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 256, rng_seed: RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn what_is_written_reads_back(preset in any_preset()) {
+            prop_assert_eq!(preset.check(), Ok(()));
+            let text = write(&preset);
+            prop_assert_eq!(read("p.toml", &text).unwrap(), preset, "{}", text);
+        }
+    }
+}
