@@ -1,7 +1,11 @@
 //! pulloff.
 
+pub mod case;
+pub mod cli;
 pub mod contact;
 pub mod continuation;
+pub mod preset;
 pub mod quasistatic;
+pub mod report;
 pub mod ritz;
 pub mod theory;

@@ -20,5 +20,5 @@ pub mod unload;
 
 pub use curve::{Curve, CurveStop, Limit, Turn};
 pub use equilibrium::{Equilibrium, Scales, Stability, State};
-pub use start::{Start, StartError};
+pub use start::StartError;
 pub use unload::{Event, EventKind, PathStop, Unloading};

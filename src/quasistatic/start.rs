@@ -2,34 +2,21 @@
 
 use super::curve::{SWEEP_STEPS_PER_WAVE, radii};
 use super::equilibrium::{Equilibrium, Scales};
-use crate::contact::{Control, Gap, Reduced};
+use crate::contact::{Control, Gap, Reduced, Start, Units};
 use crate::continuation::Settings;
 use crate::continuation::Work;
 use crate::continuation::locate::control_value;
 use crate::ritz::{Basis, Evaluation};
 use std::sync::Arc;
 
-/// How a path's start is given.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Start {
-    /// A contact radius s.
-    ContactRadius(f64),
-    /// An approach δ: the largest contact in equilibrium with it.
-    Approach(f64),
-    /// A preload P: the largest contact in equilibrium with it.
-    Force(f64),
-}
-
 /// Why a start state was not found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StartError {
     /// The basis has no equilibrium at the radius.
-    #[error("there is no equilibrium at the contact radius {0:.6e} (reduced units)")]
+    #[error("there is no equilibrium at the contact radius {0:.6e}")]
     NoEquilibrium(f64),
     /// No contact carries the value.
-    #[error(
-        "no contact has the {name} {value:.6e}; the smallest on the curve is {smallest:.6e} (reduced units)"
-    )]
+    #[error("no contact has the {name} {value:.6e}; the smallest on the curve is {smallest:.6e}")]
     OutOfReach {
         /// `approach` or `force`.
         name: &'static str,
@@ -39,7 +26,7 @@ pub enum StartError {
         smallest: f64,
     },
     /// The curve was not found to rise above the value.
-    #[error("no contact up to the radius {largest:.6e} reaches the {name} {value:.6e} (reduced units)")]
+    #[error("no contact up to the radius {largest:.6e} reaches the {name} {value:.6e}")]
     NotReached {
         /// `approach` or `force`.
         name: &'static str,
@@ -48,6 +35,23 @@ pub enum StartError {
         /// The largest radius tried.
         largest: f64,
     },
+}
+
+impl StartError {
+    /// The same error with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        let of = |name: &str| if name == "force" { units.force } else { units.length };
+        match self {
+            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
+            Self::OutOfReach { name, value, smallest } => {
+                Self::OutOfReach { name, value: value * of(name), smallest: smallest * of(name) }
+            }
+            Self::NotReached { name, value, largest } => {
+                Self::NotReached { name, value: value * of(name), largest: largest * units.length }
+            }
+        }
+    }
 }
 
 /// The contact radius of the start state.

@@ -4,7 +4,7 @@ use super::curve::{Curve, CurveStop};
 use super::energy;
 use super::equilibrium::{Equilibrium, State};
 use super::jump::{Landing, Nodes, Run};
-use crate::contact::Control;
+use crate::contact::{Control, Units};
 use crate::continuation::Point;
 
 /// What happened at an instability.
@@ -71,7 +71,7 @@ pub struct Unloading {
 pub enum UnloadError {
     /// The start is unstable and nothing outward is stable.
     #[error(
-        "the start state (contact radius {contact_radius:.6e}, reduced) is unstable under {control} control and no stable \
+        "the start state (contact radius {contact_radius:.6e}) is unstable under {control} control and no stable \
          state lies outward up to the contact radius {searched:.6e}"
     )]
     UnstableStart {
@@ -84,6 +84,19 @@ pub enum UnloadError {
     },
 }
 
+impl UnloadError {
+    /// The same error with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        let Self::UnstableStart { contact_radius, control, searched } = self;
+        Self::UnstableStart {
+            contact_radius: contact_radius * units.length,
+            control: control.in_units(1.0 / units.stiffness),
+            searched: searched * units.length,
+        }
+    }
+}
+
 /// How far outward a stable state is looked for, as a multiple of the start radius.
 const OUTWARD_REACH: f64 = 1000.0;
 /// How far inward a landing is looked for, as a share of the radius of the last limit point: the curve
@@ -93,7 +106,7 @@ const INWARD_REACH: f64 = 1e-4;
 impl Unloading {
     /// The sum of the losses that are defined.
     pub fn total_dissipated(&self) -> f64 {
-        self.events.iter().filter_map(|event| event.dissipated).sum()
+        self.events.iter().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss)
     }
 }
 

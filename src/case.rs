@@ -1,0 +1,184 @@
+//! A preset made ready for the engine: its problem reduced, its basis built, its start found.
+//!
+//! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
+//! they all see the same numbers.
+
+use crate::contact::{Control, Gap, Problem, Reduced, Start, Units};
+use crate::preset::{BasisSpec, Preset};
+use crate::quasistatic::start::{StartError, contact_radius};
+use crate::quasistatic::unload::{UnloadError, unload};
+use crate::quasistatic::{Curve, Unloading};
+use crate::ritz::{Basis, Rings, RingsError};
+use crate::theory::jkr::Jkr;
+use std::sync::Arc;
+
+/// Points of an arc-length trace before it stops.
+pub const TRACE_POINTS: usize = 20_000;
+
+/// Fewer rings than this per shortest wave in the largest contact is a warning: losses are then off by percents.
+pub const RINGS_PER_WAVE: f64 = 10.0;
+
+/// A preset made ready for the engine.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The problem in the user's units.
+    pub problem: Problem,
+    /// The problem in reduced units.
+    pub reduced: Reduced,
+    /// The discretization.
+    pub basis: Arc<dyn Basis>,
+    /// What is controlled, in reduced units.
+    pub control: Control,
+    /// The contact radius at the start, reduced.
+    pub start: f64,
+    /// The contact radius at the end, reduced.
+    pub end: f64,
+}
+
+/// Why a preset could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CaseError {
+    /// The basis could not be made.
+    #[error(transparent)]
+    Basis(#[from] RingsError),
+    /// The start state does not exist.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// The end lies outside the start.
+    #[error(
+        "path.end_contact_radius = {end:e} must be smaller than the contact radius at the start, which is {start:e}"
+    )]
+    EndOutsideStart {
+        /// The end, in the user's units.
+        end: f64,
+        /// The start, in the user's units.
+        start: f64,
+    },
+    /// The unloading could not start.
+    #[error(transparent)]
+    Unload(#[from] UnloadError),
+    /// It was no longer wanted.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Case {
+    /// Makes `preset` ready: builds or reuses its basis and finds its start state.
+    ///
+    /// # Errors
+    /// [`CaseError`] when the basis or the start state cannot be had.
+    pub fn new(preset: &Preset) -> Result<Self, CaseError> {
+        let problem = preset.problem();
+        let reduced = problem.reduced();
+        let units = reduced.units;
+        let BasisSpec::Rings { rings } = preset.basis;
+        let basis: Arc<dyn Basis> = Rings::shared(rings)?;
+        let wanted = match preset.path.start {
+            Start::ContactRadius(s) => Start::ContactRadius(s / units.length),
+            Start::Approach(delta) => Start::Approach(delta / units.length),
+            Start::Force(p) => Start::Force(p / units.force),
+        };
+        let start = contact_radius(&reduced, &basis, wanted).map_err(|e| e.in_units(&units))?;
+        let end = preset.end_contact_radius(start * units.length) / units.length;
+        if end >= start {
+            return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
+        }
+        let control = preset.path.control.in_units(units.stiffness);
+        Ok(Self { problem, reduced, basis, control, start, end })
+    }
+
+    /// The factors to the user's units.
+    pub fn units(&self) -> &Units {
+        &self.reduced.units
+    }
+
+    /// A control in the user's units.
+    pub fn shown_control(&self, control: Control) -> Control {
+        control.in_units(1.0 / self.units().stiffness)
+    }
+
+    /// The controls whose limit points are reported: displacement, force, and the device where it is a spring.
+    pub fn controls(&self) -> Vec<Control> {
+        let mut controls = vec![Control::Displacement, Control::Force];
+        if !controls.contains(&self.control) {
+            controls.push(self.control);
+        }
+        controls
+    }
+
+    /// The curve from start to end by arc-length continuation.
+    ///
+    /// # Errors
+    /// [`CaseError::Start`] when there is no equilibrium at the start.
+    pub fn trace(&self) -> Result<Curve, CaseError> {
+        Curve::traced(
+            self.reduced.clone(),
+            Arc::clone(&self.basis),
+            self.start,
+            self.end,
+            TRACE_POINTS,
+            || true,
+        )
+        .ok_or_else(|| self.no_start())
+    }
+
+    /// The curve from start to end through the explicit root; `go_on` is asked between points.
+    ///
+    /// # Errors
+    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn sweep(&self, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+        let mut wanted = true;
+        let curve = Curve::swept(self.reduced.clone(), Arc::clone(&self.basis), self.start, self.end, || {
+            wanted = wanted && go_on();
+            wanted
+        });
+        if !wanted {
+            return Err(CaseError::Cancelled);
+        }
+        curve.ok_or_else(|| self.no_start())
+    }
+
+    /// The quasi-static unloading along `curve`, which is extended where a landing needs it.
+    ///
+    /// # Errors
+    /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
+    pub fn unload(&self, curve: &mut Curve, control: Control) -> Result<Unloading, CaseError> {
+        unload(curve, control).map_err(|e| CaseError::Unload(e.in_units(self.units())))
+    }
+
+    /// The smooth sphere of the same curvature and adhesion.
+    pub fn smooth(&self) -> Jkr {
+        Jkr {
+            effective_modulus: self.problem.effective_modulus,
+            work_of_adhesion: self.problem.work_of_adhesion,
+            radius_of_curvature: self.problem.shape.radius_of_curvature(),
+        }
+    }
+
+    /// What to be careful about, for a largest contact of radius `largest` (reduced).
+    pub fn warnings(&self, largest: f64) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if let Some(wave) = self.reduced.gap.feature_length() {
+            let rings = self.basis.elements_per_wave(largest, wave);
+            if rings < RINGS_PER_WAVE {
+                let wanted = (RINGS_PER_WAVE * largest / wave).ceil();
+                warnings.push(format!(
+                    "only {rings:.1} rings per wave in the largest contact; {RINGS_PER_WAVE} or more are needed: \
+                     set basis.rings to {wanted} or more"
+                ));
+            }
+        }
+        let weak = 1e-6;
+        if self.reduced.work_of_adhesion > 0.0 && self.reduced.work_of_adhesion < weak {
+            warnings.push(format!(
+                "gamma/(E* R) = {:.1e} is below {weak:.0e}: the error of ring elements exceeds so weak an adhesion",
+                self.reduced.work_of_adhesion
+            ));
+        }
+        warnings
+    }
+
+    fn no_start(&self) -> CaseError {
+        StartError::NoEquilibrium(self.start).in_units(self.units()).into()
+    }
+}

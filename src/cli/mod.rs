@@ -1,0 +1,124 @@
+//! The command line: one file per subcommand, exit codes, what goes to which stream.
+//!
+//! | exit status | when |
+//! |---|---|
+//! | 0 | success |
+//! | 1 | the computation, or writing its result, failed |
+//! | 2 | bad usage or bad input |
+//!
+//! Results go to standard output, everything else to standard error. A reader that goes away early
+//! (`| head`) is a quiet end.
+
+mod explore;
+mod failure;
+mod output;
+mod presets;
+mod trace;
+mod unload;
+
+pub use failure::Failure;
+
+use crate::preset::{Loaded, Store};
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
+#[derive(Debug, Parser)]
+#[command(name = "pulloff", version, args_conflicts_with_subcommands = true, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// A preset's name, or a preset file (with a '/' or ending in .toml); the wavy sphere when left out
+    #[arg(value_name = "PRESET|FILE.toml")]
+    preset: Option<OsString>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Trace the equilibrium curve and write its points
+    Trace(trace::Arguments),
+    /// Unload quasi-statically and write every instability
+    Unload(unload::Arguments),
+    /// List and show presets
+    #[command(subcommand)]
+    Presets(presets::Command),
+}
+
+/// Which problem, as every computing command takes it.
+#[derive(Debug, Args)]
+struct Problem {
+    /// A preset's name, or a preset file (with a '/' or ending in .toml)
+    #[arg(value_name = "PRESET|FILE.toml")]
+    preset: Option<OsString>,
+    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+}
+
+impl Problem {
+    fn load(&self) -> Result<Loaded, Failure> {
+        load(self.preset.as_ref(), &self.assignments)
+    }
+}
+
+/// The store of presets; a preset cannot have the name of a subcommand.
+pub fn store() -> Store {
+    let command = Cli::command();
+    let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).chain(["help"]).collect();
+    Store::open(&names)
+}
+
+fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Failure> {
+    let store = store();
+    let source = match preset {
+        Some(argument) => store.resolve(argument)?,
+        None => store.resolve(crate::preset::shipped::DEFAULT)?,
+    };
+    Ok(store.load(&source, assignments)?)
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are no errors; clap knows which stream and status each has.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let result = match &cli.command {
+        None => explore::run(cli.preset.as_ref()),
+        Some(Command::Trace(arguments)) => trace::run(arguments),
+        Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Presets(command)) => presets::run(command),
+    };
+    match result {
+        Ok(code) => code,
+        Err(failure) => {
+            if let Some(text) = failure.text() {
+                let _ = writeln!(std::io::stderr(), "{text}");
+            }
+            failure.exit_code()
+        }
+    }
+}
+
+/// Writes warnings to standard error, one line each.
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        let _ = writeln!(std::io::stderr(), "pulloff: warning: {warning}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

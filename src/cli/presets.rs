@@ -1,0 +1,62 @@
+//! `pulloff presets`: list, show, and where they are kept.
+
+use super::{Failure, output, store};
+use crate::preset::Source;
+use crate::preset::text::{sanitize, show_path};
+use clap::Subcommand;
+use std::ffi::OsString;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+/// The subcommands of `pulloff presets`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the shipped presets and your own
+    List,
+    /// Write a preset's file to standard output
+    Show {
+        /// Its name, or a preset file
+        name: OsString,
+    },
+    /// Say where your own presets are kept
+    Path,
+}
+
+/// Longest title in a list.
+const TITLE: usize = 100;
+
+pub fn run(command: &Command) -> Result<ExitCode, Failure> {
+    let store = store();
+    match command {
+        Command::List => {
+            let listing = store.list();
+            let width = listing.presets.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
+            let mut text = String::new();
+            for entry in &listing.presets {
+                let whose = if matches!(entry.source, Source::Shipped(_)) { "shipped" } else { "yours  " };
+                let title = match &entry.title {
+                    Ok(title) => sanitize(title, TITLE),
+                    Err(error) => format!("cannot be read: {error}"),
+                };
+                // Writing to a String cannot fail.
+                let _ = writeln!(text, "{:<width$}  {whose}  {title}", entry.name);
+            }
+            if let Some(notice) = &listing.notice {
+                let _ = writeln!(std::io::stderr(), "pulloff: {notice}");
+            }
+            output::write(&text, None)?;
+        }
+        Command::Show { name } => {
+            let source = store.resolve(name)?;
+            // Loaded first: a file that is no preset is an error, not text to print.
+            let loaded = store.load(&source, &[] as &[&str])?;
+            output::write(&loaded.text, None)?;
+        }
+        Command::Path => match store.folder() {
+            Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,
+            None => return Err(Failure::Usage("no home folder is known: set XDG_CONFIG_HOME".to_owned())),
+        },
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,46 @@
+//! `pulloff trace`: the equilibrium curve by arc-length continuation.
+
+use super::{Failure, Problem, output, warn};
+use crate::quasistatic::CurveStop;
+use crate::report::{TraceReport, json};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The arguments of `pulloff trace`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// csv has one row per point; json also has the limit points and the problem
+    #[arg(long, value_enum, default_value = "csv")]
+    format: Format,
+    /// Write to this file instead of standard output
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Format {
+    Csv,
+    Json,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let loaded = arguments.problem.load()?;
+    let report = TraceReport::compute(&loaded.preset)?;
+    warn(&report.warnings);
+    let text = match arguments.format {
+        Format::Csv => report.csv()?,
+        Format::Json => json(&report)?,
+    };
+    output::write(&text, arguments.output.as_deref())?;
+    if report.stop == CurveStop::End.to_string() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    Err(Failure::Incomplete(format!(
+        "the trace stopped early, its {} points were written: {}",
+        report.points.len(),
+        report.stop
+    )))
+}

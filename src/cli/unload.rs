@@ -1,0 +1,49 @@
+//! `pulloff unload`: the quasi-static unloading, instability by instability.
+
+use super::{Failure, Problem, output, warn};
+use crate::contact::Control;
+use crate::report::{UnloadReport, json, table};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The arguments of `pulloff unload`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// What the loading device prescribes: displacement, force or stiffness=K (instead of the preset's)
+    #[arg(long, value_name = "CONTROL")]
+    control: Option<Control>,
+    /// table is for reading; csv has one row per instability; json has everything
+    #[arg(long, value_enum, default_value = "table")]
+    format: Format,
+    /// Write to this file instead of standard output
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Format {
+    Table,
+    Csv,
+    Json,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let mut preset = arguments.problem.load()?.preset;
+    if let Some(control) = arguments.control {
+        preset
+            .set("path.control", control.into())
+            .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+    }
+    let report = UnloadReport::compute(&preset)?;
+    warn(&report.warnings);
+    let text = match arguments.format {
+        Format::Table => table::unload(&report),
+        Format::Csv => report.csv()?,
+        Format::Json => json(&report)?,
+    };
+    output::write(&text, arguments.output.as_deref())?;
+    Ok(ExitCode::SUCCESS)
+}

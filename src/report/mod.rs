@@ -1,0 +1,37 @@
+//! What is reported: the one serializable form of a trace and of an unloading.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`number`] | how numbers are written for people |
+//! | [`problem`] | the problem both documents carry |
+//! | [`trace`] | the equilibrium curve as a document |
+//! | [`unload`] | the unloading as a document |
+//! | [`rows`] | nested rows as CSV |
+//! | [`table`] | the unloading as text for a terminal |
+//!
+//! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
+//! read the same documents.
+
+pub mod number;
+pub mod problem;
+pub mod rows;
+pub mod table;
+pub mod trace;
+pub mod unload;
+
+pub use problem::ProblemReport;
+pub use trace::TraceReport;
+pub use unload::UnloadReport;
+
+/// The version of both documents.
+pub const SCHEMA: u32 = 1;
+
+/// A document as indented JSON with a line end.
+///
+/// # Errors
+/// Only if a value cannot be written as JSON, which the documents' types exclude.
+pub fn json(document: &impl serde::Serialize) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(document)?;
+    text.push('\n');
+    Ok(text)
+}

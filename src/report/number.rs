@@ -1,0 +1,61 @@
+//! How numbers are written for people.
+
+/// `x` with `digits` significant digits: plain where that is short, with an exponent otherwise.
+pub fn significant(x: f64, digits: usize) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !x.is_finite() {
+        return "-".to_owned();
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{x:.*e}", digits - 1);
+    // Rounding can carry into the next decade (9.99 → 10.0): the exponent is read off the rounded number.
+    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    let Ok(exponent) = exponent.parse::<i32>() else { return scientific };
+    let last = i32::try_from(digits).unwrap_or(i32::MAX) - 1 - exponent;
+    if (-4..6).contains(&exponent) {
+        // Non-negative unless more digits stand before the point than are significant.
+        return format!("{x:.*}", usize::try_from(last).unwrap_or(0));
+    }
+    format!("{}e{exponent}", trim_zeros(mantissa))
+}
+
+/// `x` with at most `digits` significant digits and no trailing zeros.
+pub fn short(x: f64, digits: usize) -> String {
+    let text = significant(x, digits);
+    if text.contains('e') { text } else { trim_zeros(&text).to_owned() }
+}
+
+/// A loss: three decimals and an exponent, so that losses of very different size align.
+pub fn loss(x: f64) -> String {
+    format!("{x:.3e}")
+}
+
+fn trim_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits_in_every_decade() {
+        for (x, digits, text) in [
+            (0.0, 4, "0"),
+            (1.0, 4, "1.000"),
+            (0.035_718_65, 4, "0.03572"),
+            (-1.479_672_9, 4, "-1.480"),
+            (9.9996, 4, "10.00"),
+            (123_456.7, 4, "123457"),
+            (1.0e-9, 4, "1e-9"),
+            (-2.5e6, 3, "-2.5e6"),
+            (f64::NAN, 3, "-"),
+        ] {
+            assert_eq!(significant(x, digits), text);
+        }
+        assert_eq!(short(0.0025, 6), "0.0025");
+        assert_eq!(short(200.0, 4), "200");
+    }
+}

@@ -1,0 +1,92 @@
+//! The unloading as text for a terminal.
+
+use super::number::{loss, short, significant};
+use super::unload::{EventReport, UnloadReport};
+use std::fmt::Write;
+
+/// Aligns cells in columns, the first left and the others right.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width =
+        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (column, cell) in row.iter().enumerate() {
+            let width = widths[column];
+            // Writing to a String cannot fail.
+            let _ =
+                if column < 2 { write!(line, "{cell:<width$}  ") } else { write!(line, "{cell:>width$}  ") };
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// The unloading as lines of text.
+pub fn unload(report: &UnloadReport) -> String {
+    let critical = report.problem.critical_force;
+    let title = report.problem.preset.get("title").and_then(|t| t.as_str()).unwrap_or("");
+    let mut text = format!("{title}\ncontrol: {}\n", report.control);
+    let start = &report.start;
+    let _ = writeln!(
+        text,
+        "start: delta {}  P {}  s {}",
+        significant(start.approach, 6),
+        significant(start.force, 6),
+        significant(start.contact_radius, 6)
+    );
+    if let Some(note) = &start.note {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text.push('\n');
+    let heads = ["#", "event", "delta", "> delta", "P", "> P", "s", "> s", "crest", "lost", "by area"];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    rows.extend(report.events.iter().enumerate().map(|(i, event)| row(i + 1, event)));
+    text.push_str(&aligned(&rows));
+    let _ = writeln!(
+        text,
+        "\nsmallest force on the path: {}{}",
+        significant(report.min_force, 7),
+        ratio(report.min_force, critical)
+    );
+    let _ = writeln!(text, "smallest approach on the path: {}", significant(report.min_approach, 7));
+    let _ = writeln!(text, "energy lost: {}", loss(report.total_dissipated));
+    let _ = writeln!(text, "end: {}", report.stop);
+    for event in report.events.iter().filter(|event| event.dissipated.is_none()) {
+        let _ = writeln!(text, "{}: {}", event.kind, event.reason);
+    }
+    text
+}
+
+fn ratio(force: f64, critical: f64) -> String {
+    if critical > 0.0 { format!(" = {} P_c", short(force / critical, 6)) } else { String::new() }
+}
+
+fn row(number: usize, event: &EventReport) -> Vec<String> {
+    let (before, after) = (&event.before, event.after.as_ref());
+    let dash = || "-".to_owned();
+    let landed =
+        |of: fn(&super::unload::StateReport) -> f64| after.map_or_else(dash, |a| significant(of(a), 5));
+    let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
+    let agreement = match (event.dissipated, event.dissipated_by_area) {
+        (Some(a), Some(b)) if (a - b).abs() <= 1e-6 * a.abs() => "agrees".to_owned(),
+        (Some(_), Some(b)) => loss(b),
+        _ => dash(),
+    };
+    vec![
+        number.to_string(),
+        event.kind.to_owned(),
+        significant(before.approach, 5),
+        landed(|a| a.approach),
+        significant(before.force, 5),
+        landed(|a| a.force),
+        significant(before.contact_radius, 5),
+        landed(|a| a.contact_radius),
+        format!("{}>{}", crest(before.wave), crest(after.and_then(|a| a.wave))),
+        event.dissipated.map_or_else(dash, loss),
+        agreement,
+    ]
+}

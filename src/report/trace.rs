@@ -1,0 +1,170 @@
+//! The equilibrium curve as a document.
+
+use super::problem::ProblemReport;
+use super::{SCHEMA, rows};
+use crate::case::{Case, CaseError};
+use crate::contact::Control;
+use crate::preset::Preset;
+use crate::quasistatic::Curve;
+use serde::Serialize;
+
+/// The equilibrium curve with its limit points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TraceReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// What was computed.
+    pub problem: ProblemReport,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// Why the trace ended, in words.
+    pub stop: String,
+    /// The smallest force on the curve.
+    pub curve_min_force: Option<f64>,
+    /// The smallest approach on the curve.
+    pub curve_min_approach: Option<f64>,
+    /// The limit points under displacement, force and the device, each from the start inward.
+    pub limit_points: Vec<LimitReport>,
+    /// The points.
+    pub points: Vec<PointReport>,
+}
+
+/// One point of the curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PointReport {
+    /// Its number, from 0.
+    pub step: usize,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// U = −Φ.
+    pub energy: f64,
+    /// Newton rounds spent on it.
+    pub newton_iterations: usize,
+    /// Its stability under each control.
+    pub stable: StableReport,
+}
+
+/// Stability under each control.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct StableReport {
+    /// When the approach is held.
+    pub displacement: bool,
+    /// When the force is held.
+    pub force: bool,
+    /// When the chosen control is held.
+    pub chosen: bool,
+}
+
+/// One limit point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LimitReport {
+    /// The control that turns there.
+    pub control: Control,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The crest of the edge; none for a gap without waves.
+    pub wave: Option<u64>,
+}
+
+/// The columns of the points as CSV; they never change, new ones come behind them.
+pub const COLUMNS: &[&str] = &[
+    "step",
+    "contact_radius",
+    "approach",
+    "force",
+    "energy",
+    "newton_iterations",
+    "stable_displacement",
+    "stable_force",
+    "stable_chosen",
+];
+
+impl TraceReport {
+    /// Traces `preset` by arc length and reports it.
+    ///
+    /// # Errors
+    /// [`CaseError`] when it cannot be computed.
+    pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
+        let case = Case::new(preset)?;
+        let curve = case.trace()?;
+        Ok(Self::new(preset, &case, &curve))
+    }
+
+    /// The document of a curve of `case`.
+    pub fn new(preset: &Preset, case: &Case, curve: &Curve) -> Self {
+        let units = case.units();
+        let equilibrium = &curve.equilibrium;
+        let points: Vec<PointReport> = curve
+            .branch
+            .points
+            .iter()
+            .enumerate()
+            .map(|(step, point)| {
+                let state = equilibrium.state(point).in_units(units);
+                let stability = equilibrium.stability(point);
+                PointReport {
+                    step,
+                    contact_radius: state.contact_radius,
+                    approach: state.approach,
+                    force: state.force,
+                    energy: state.energy,
+                    newton_iterations: point.rounds,
+                    stable: StableReport {
+                        displacement: stability.under(Control::Displacement),
+                        force: stability.under(Control::Force),
+                        chosen: stability.under(case.control),
+                    },
+                }
+            })
+            .collect();
+        let limit_points: Vec<LimitReport> = case
+            .controls()
+            .into_iter()
+            .flat_map(|control| curve.limit_points(control))
+            .map(|limit| {
+                let [delta, force, s] = equilibrium.quantities(&limit.point.y);
+                LimitReport {
+                    control: case.shown_control(limit.control),
+                    contact_radius: s * units.length,
+                    approach: delta * units.length,
+                    force: force * units.force,
+                    wave: equilibrium.wave(s),
+                }
+            })
+            .collect();
+        let smallest = |of: fn((f64, f64)) -> f64| {
+            let points = points.iter().map(|p| (p.approach, p.force));
+            let limits = limit_points.iter().map(|p| (p.approach, p.force));
+            points.chain(limits).map(of).min_by(f64::total_cmp)
+        };
+        Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, case),
+            warnings: case.warnings(curve.outermost()),
+            stop: curve.stop.to_string(),
+            curve_min_force: smallest(|(_, force)| force),
+            curve_min_approach: smallest(|(approach, _)| approach),
+            limit_points,
+            points,
+        }
+    }
+
+    /// The points as CSV.
+    ///
+    /// # Errors
+    /// As [`rows::csv`].
+    pub fn csv(&self) -> Result<String, rows::RowsError> {
+        rows::csv(COLUMNS, &self.points)
+    }
+}

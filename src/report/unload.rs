@@ -1,0 +1,218 @@
+//! The unloading as a document.
+
+use super::problem::ProblemReport;
+use super::{SCHEMA, rows};
+use crate::case::{Case, CaseError};
+use crate::contact::Control;
+use crate::contact::Gap;
+use crate::preset::Preset;
+use crate::quasistatic::equilibrium::wave_index;
+use crate::quasistatic::{Event, EventKind, State, Unloading};
+use serde::Serialize;
+
+/// A quasi-static unloading.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnloadReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// What was computed.
+    pub problem: ProblemReport,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// Why the path ended, in words.
+    pub stop: String,
+    /// What was controlled.
+    pub control: Control,
+    /// The first state on the path.
+    pub start: StartReport,
+    /// The smallest force on the path.
+    pub min_force: f64,
+    /// The smallest approach on the path.
+    pub min_approach: f64,
+    /// The sum of the losses that are defined.
+    pub total_dissipated: f64,
+    /// The instabilities in order.
+    pub events: Vec<EventReport>,
+}
+
+/// A state on the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StateReport {
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The crest of the edge; none for a gap without waves.
+    pub wave: Option<u64>,
+}
+
+/// The first state on the path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StartReport {
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The crest of the edge; none for a gap without waves.
+    pub wave: Option<u64>,
+    /// Said when the state asked for was unstable and the edge first ran outward.
+    pub note: Option<String>,
+}
+
+/// One instability.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EventReport {
+    /// `snap` or `pull-off`.
+    pub kind: &'static str,
+    /// δ, P, or Δ = δ + P/k at which it happens.
+    pub control_value: f64,
+    /// The limit point.
+    pub before: StateReport,
+    /// The landing; null after a pull-off.
+    pub after: Option<StateReport>,
+    /// Energy lost, by the drop of the potential of bodies and device.
+    pub dissipated: Option<f64>,
+    /// The same by the area between the curve and the control line.
+    pub dissipated_by_area: Option<f64>,
+    /// Why it happens, or why no loss is given.
+    pub reason: String,
+}
+
+/// The columns of the events as CSV; they never change, new ones come behind them.
+pub const COLUMNS: &[&str] = &[
+    "kind",
+    "control_value",
+    "before_contact_radius",
+    "before_approach",
+    "before_force",
+    "before_wave",
+    "after_contact_radius",
+    "after_approach",
+    "after_force",
+    "after_wave",
+    "dissipated",
+    "dissipated_by_area",
+    "reason",
+];
+
+impl UnloadReport {
+    /// Unloads `preset` and reports it.
+    ///
+    /// # Errors
+    /// [`CaseError`] when it cannot be computed.
+    pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
+        let case = Case::new(preset)?;
+        let mut curve = case.sweep(|| true)?;
+        let unloading = case.unload(&mut curve, case.control)?;
+        Ok(Self::new(preset, &case, &unloading))
+    }
+
+    /// The document of an unloading of `case`.
+    pub fn new(preset: &Preset, case: &Case, unloading: &Unloading) -> Self {
+        let units = case.units();
+        let start = StateReport::new(case, &unloading.start);
+        let note = unloading.asked.map(|asked| {
+            let asked = asked.in_units(units);
+            format!(
+                "the state asked for (contact radius {}) is unstable under {} control: the edge first ran outward to {}",
+                asked.contact_radius,
+                control_name(unloading.control),
+                start.contact_radius
+            )
+        });
+        let start = StartReport {
+            contact_radius: start.contact_radius,
+            approach: start.approach,
+            force: start.force,
+            wave: start.wave,
+            note,
+        };
+        Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, case),
+            warnings: case.warnings(unloading.start.contact_radius.max(case.start)),
+            stop: unloading.stop.to_string(),
+            control: case.shown_control(unloading.control),
+            start,
+            min_force: unloading.min_force.in_units(units).force,
+            min_approach: unloading.min_approach.in_units(units).approach,
+            total_dissipated: unloading.total_dissipated() * units.energy,
+            events: unloading
+                .events
+                .iter()
+                .map(|event| EventReport::new(case, unloading.control, event))
+                .collect(),
+        }
+    }
+
+    /// The events as CSV.
+    ///
+    /// # Errors
+    /// As [`rows::csv`].
+    pub fn csv(&self) -> Result<String, rows::RowsError> {
+        rows::csv(COLUMNS, &self.events)
+    }
+}
+
+impl StateReport {
+    /// A reduced state of `case` in the user's units.
+    pub fn new(case: &Case, state: &State) -> Self {
+        let wave = wave_index(state.contact_radius, case.reduced.gap.feature_length());
+        let State { contact_radius, approach, force, .. } = state.in_units(case.units());
+        Self { contact_radius, approach, force, wave }
+    }
+}
+
+impl EventReport {
+    /// A reduced event of `case` under `control` in the user's units.
+    pub fn new(case: &Case, control: Control, event: &Event) -> Self {
+        let units = case.units();
+        let of_control = if control == Control::Force { units.force } else { units.length };
+        Self {
+            kind: kind_name(event.kind),
+            control_value: event.control_value * of_control,
+            before: StateReport::new(case, &event.before),
+            after: event.after.as_ref().map(|after| StateReport::new(case, after)),
+            dissipated: event.dissipated.map(|loss| loss * units.energy),
+            dissipated_by_area: event.dissipated_by_area.map(|loss| loss * units.energy),
+            reason: reason(control, event).to_owned(),
+        }
+    }
+}
+
+/// The word for a kind of event.
+pub fn kind_name(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::Snap => "snap",
+        EventKind::PullOff => "pull-off",
+    }
+}
+
+/// The word for a control.
+pub fn control_name(control: Control) -> &'static str {
+    match control {
+        Control::Displacement => "displacement",
+        Control::Force => "force",
+        Control::Stiffness(_) => "stiffness",
+    }
+}
+
+fn reason(control: Control, event: &Event) -> &'static str {
+    match (event.kind, control) {
+        (EventKind::Snap, _) => "limit point of the control: the edge runs inward to the next stable state",
+        (EventKind::PullOff, Control::Force) => {
+            "limit point of the control with no stable state left: under a dead load the bodies fall apart for ever, \
+             so the loss has no bound"
+        }
+        (EventKind::PullOff, _) => {
+            "limit point of the control with no stable state left: the bodies come apart"
+        }
+    }
+}
