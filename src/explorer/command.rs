@@ -1,0 +1,326 @@
+//! The one table of commands.
+//!
+//! Dispatcher, footer, help screen and the manual's key table are read from it; the keymap of the terminal gives
+//! each id its keys.
+
+use super::model::{Model, Panel};
+
+/// A command's identity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Id {
+    /// One step along the curve.
+    Step,
+    /// Run until something happens, or pause.
+    Run,
+    /// Run to the next limit point of the control.
+    NextLimit,
+    /// Run to the previous limit point of the control.
+    PreviousLimit,
+    /// Let the edge run at constant control.
+    Jump,
+    /// Walk the other way.
+    Reverse,
+    /// Halve the step length.
+    Halve,
+    /// Double the step length.
+    Double,
+    /// Back to the node before.
+    Undo,
+    /// Forward again.
+    Redo,
+    /// Back to the start state.
+    Restart,
+    /// Another control.
+    Control,
+    /// The value of the selected parameter, a little less.
+    Less,
+    /// A little more.
+    More,
+    /// Much less.
+    MuchLess,
+    /// Much more.
+    MuchMore,
+    /// Type the value of the selected parameter, or go to the selected event.
+    Edit,
+    /// The parameter, event or line above.
+    Up,
+    /// The one below.
+    Down,
+    /// The panel before.
+    PreviousPanel,
+    /// The next panel.
+    NextPanel,
+    /// The other chart, where only one is shown.
+    SwitchChart,
+    /// Dimensionless or raw axes.
+    Axes,
+    /// Events on the curve, or walked.
+    Events,
+    /// The smooth sphere as a reference.
+    Smooth,
+    /// Open a preset.
+    Open,
+    /// Save the preset.
+    Save,
+    /// Save it under another name.
+    SaveAs,
+    /// Write the curve, the walk or the events to a file.
+    Export,
+    /// The help screen.
+    Help,
+    /// Take back, close, pause.
+    Cancel,
+    /// Leave.
+    Quit,
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    /// The command.
+    pub id: Id,
+    /// Its name in scripts and key bindings.
+    pub name: &'static str,
+    /// The section of the help it stands in.
+    pub section: &'static str,
+    /// One line that says what it does.
+    pub help: &'static str,
+    /// A word or two for the footer.
+    pub short: &'static str,
+    /// What it takes, if anything.
+    pub argument: Option<&'static str>,
+    /// Whether it can be done now.
+    pub enabled: fn(&Model) -> bool,
+}
+
+/// A command with its argument.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// A command without an argument.
+    Plain(Id),
+    /// So many steps.
+    Steps(usize),
+    /// Another value for a key, as typed.
+    Set {
+        /// The dotted key.
+        key: &'static str,
+        /// What was typed.
+        text: String,
+    },
+    /// Open this preset, by name or path.
+    Open(String),
+    /// Save under this name.
+    SaveAs {
+        /// The name.
+        name: String,
+        /// Whether a preset of that name is to be replaced.
+        replace: bool,
+    },
+    /// Save although the file was changed by somebody else meanwhile.
+    SaveAnyway,
+    /// Export to a file, its ending chooses CSV or JSON.
+    Export {
+        /// The document.
+        what: super::files::Document,
+        /// The path.
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
+}
+
+impl From<Id> for Command {
+    fn from(id: Id) -> Self {
+        Self::Plain(id)
+    }
+}
+
+impl Command {
+    /// Its row in the table.
+    pub fn id(&self) -> Id {
+        match self {
+            Self::Plain(id) => *id,
+            Self::Steps(_) => Id::Step,
+            Self::Set { .. } => Id::Edit,
+            Self::Open(_) => Id::Open,
+            Self::SaveAs { .. } => Id::SaveAs,
+            Self::SaveAnyway => Id::Save,
+            Self::Export { .. } => Id::Export,
+        }
+    }
+}
+
+fn always(_: &Model) -> bool {
+    true
+}
+
+fn walking(model: &Model) -> bool {
+    model.history.current().is_some()
+}
+
+fn knob(model: &Model) -> bool {
+    model.panel == Panel::Problem
+}
+
+fn can_undo(model: &Model) -> bool {
+    model.history.parent().is_some()
+}
+
+fn can_redo(model: &Model) -> bool {
+    model.history.redo_target().is_some()
+}
+
+fn can_jump(model: &Model) -> bool {
+    model.can_jump()
+}
+
+const fn row(
+    id: Id,
+    name: &'static str,
+    section: &'static str,
+    short: &'static str,
+    help: &'static str,
+    enabled: fn(&Model) -> bool,
+) -> Row {
+    Row { id, name, section, help, short, argument: None, enabled }
+}
+
+const fn taking(argument: &'static str, mut row: Row) -> Row {
+    row.argument = Some(argument);
+    row
+}
+
+const WALK: &str = "Walk along the curve";
+const VALUES: &str = "Change the problem";
+const VIEW: &str = "Look";
+const FILES: &str = "Presets and files";
+const PROGRAM: &str = "Program";
+
+/// The table, in the order of the help.
+pub static ROWS: &[Row] = &[
+    taking(
+        "number of steps",
+        row(
+            Id::Step,
+            "step",
+            WALK,
+            "step",
+            "one step along the curve; type a number first for that many",
+            walking,
+        ),
+    ),
+    row(
+        Id::NextLimit,
+        "next-limit",
+        WALK,
+        "next limit",
+        "run to the next limit point of the control",
+        walking,
+    ),
+    row(
+        Id::PreviousLimit,
+        "previous-limit",
+        WALK,
+        "previous",
+        "turn round and run to the previous limit point",
+        walking,
+    ),
+    row(
+        Id::Jump,
+        "jump",
+        WALK,
+        "jump",
+        "let the edge run at constant control to the next stable state",
+        can_jump,
+    ),
+    row(Id::Run, "run", WALK, "run", "run and pause", walking),
+    row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", walking),
+    row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
+    row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
+    row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
+    row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
+    row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
+    row(
+        Id::Control,
+        "control",
+        WALK,
+        "control",
+        "control the displacement, the force, or a spring's far end",
+        always,
+    ),
+    row(Id::Less, "less", VALUES, "less", "the selected value, a little less", knob),
+    row(Id::More, "more", VALUES, "more", "the selected value, a little more", knob),
+    row(Id::MuchLess, "much-less", VALUES, "much less", "the selected value, much less", knob),
+    row(Id::MuchMore, "much-more", VALUES, "much more", "the selected value, much more", knob),
+    taking(
+        "value",
+        row(
+            Id::Edit,
+            "edit",
+            VALUES,
+            "type value",
+            "type the selected value; in Events: go to the selected event",
+            always,
+        ),
+    ),
+    row(Id::Up, "up", VIEW, "up", "select the line above", always),
+    row(Id::Down, "down", VIEW, "down", "select the line below", always),
+    row(Id::NextPanel, "next-panel", VIEW, "panel", "next panel", always),
+    row(Id::PreviousPanel, "previous-panel", VIEW, "panel back", "previous panel", always),
+    row(
+        Id::SwitchChart,
+        "switch-chart",
+        VIEW,
+        "other chart",
+        "the other chart, where one is shown at a time",
+        always,
+    ),
+    row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", always),
+    row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", always),
+    row(Id::Smooth, "smooth", VIEW, "JKR", "show or hide the smooth sphere (JKR)", always),
+    taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
+    row(Id::Save, "save", FILES, "save", "save the preset", always),
+    taking(
+        "name",
+        row(Id::SaveAs, "save-as", FILES, "save as", "save the preset under another name", always),
+    ),
+    taking(
+        "file",
+        row(
+            Id::Export,
+            "export",
+            FILES,
+            "export",
+            "write the curve, the walk or the events as CSV or JSON",
+            always,
+        ),
+    ),
+    row(Id::Help, "help", PROGRAM, "help", "this help", always),
+    row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run", always),
+    row(Id::Quit, "quit", PROGRAM, "quit", "quit; asks only if the preset has unsaved changes", always),
+];
+
+/// The row of a command.
+pub fn row_of(id: Id) -> &'static Row {
+    // Totality is tested, so the fallback is never taken.
+    ROWS.iter().find(|row| row.id == id).unwrap_or(&ROWS[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_id_has_one_row_with_a_name_of_its_own() {
+        let ids: HashSet<Id> = ROWS.iter().map(|row| row.id).collect();
+        let names: HashSet<&str> = ROWS.iter().map(|row| row.name).collect();
+        assert_eq!(ids.len(), ROWS.len());
+        assert_eq!(names.len(), ROWS.len());
+        // The last variant's number counts the variants: a new one without a row fails here.
+        assert_eq!(Id::Quit as usize + 1, ROWS.len());
+        for row in ROWS {
+            assert_eq!(row_of(row.id).name, row.name);
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Effects, and the two drivers that run them.
+//!
+//! Inline for tests and scripts: each effect is done before the next command, so nothing depends on timing. On
+//! threads for the screen: the newest curve wins, walks are done in order and stream their states, files have a
+//! lane of their own, and none of them waits for another.
+
+use super::curve::CurveData;
+use super::files::{self, Done, Job};
+use super::walk::{self, Made, Outcome, Request};
+use crate::case::CaseError;
+use crate::preset::{Preset, Store};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// What the model wants done.
+#[derive(Debug, Clone)]
+pub enum Effect {
+    /// Compute the curve of a preset; an older one still waiting is forgotten.
+    Curve {
+        /// Its number.
+        id: u64,
+        /// The preset.
+        preset: Box<Preset>,
+    },
+    /// Walk.
+    Walk(Box<Request>),
+    /// End the walk of this number; its states so far stay.
+    StopWalk(u64),
+    /// Work on files.
+    File(Box<Job>),
+}
+
+/// What came of it.
+#[derive(Debug, Clone)]
+pub enum Reply {
+    /// A curve, or why there is none.
+    Curve {
+        /// Its number.
+        id: u64,
+        /// The curve.
+        result: Result<Arc<CurveData>, String>,
+    },
+    /// States walked.
+    Walked {
+        /// The request.
+        id: u64,
+        /// New states.
+        made: Vec<Made>,
+        /// How it ended; `None` while it goes on.
+        outcome: Option<Outcome>,
+    },
+    /// A job on files ended.
+    File(Box<Done>),
+}
+
+/// Runs every effect at once, on the caller's thread.
+#[derive(Debug)]
+pub struct Inline {
+    store: Store,
+}
+
+impl Inline {
+    /// A driver that saves to `store`.
+    pub fn new(store: Store) -> Self {
+        Self { store }
+    }
+
+    /// Does one effect; the walk is over when it returns, so there is nothing to stop.
+    pub fn run(&self, effect: Effect) -> Option<Reply> {
+        match effect {
+            Effect::Curve { id, preset } => compute(id, &preset, || true),
+            Effect::Walk(request) => {
+                let mut made = Vec::new();
+                let outcome = walk::walk(&request, &mut |state| {
+                    made.push(state);
+                    true
+                });
+                Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
+            }
+            Effect::StopWalk(_) => None,
+            Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
+        }
+    }
+}
+
+fn compute(id: u64, preset: &Preset, go_on: impl FnMut() -> bool) -> Option<Reply> {
+    match CurveData::compute(preset, go_on) {
+        Err(CaseError::Cancelled) => None,
+        result => Some(Reply::Curve { id, result: result.map(Arc::new).map_err(|e| e.to_string()) }),
+    }
+}
+
+/// A curve that has been computed this long is finished although a newer one waits, so that a held key
+/// shows curves and not only the last one.
+const PATIENCE: Duration = Duration::from_millis(50);
+/// States of a run are sent together at most this often: a frame each.
+const CHUNK: Duration = Duration::from_millis(30);
+
+/// Runs effects on threads of their own; replies go to one function.
+#[derive(Debug)]
+pub struct Workers {
+    curve: Arc<Slot>,
+    walks: Sender<Box<Request>>,
+    files: Sender<Box<Job>>,
+    stopped: Arc<AtomicU64>,
+}
+
+/// One place for the newest wish.
+#[derive(Debug, Default)]
+struct Slot {
+    wish: Mutex<Option<(u64, Box<Preset>)>>,
+    filled: Condvar,
+    waiting: AtomicBool,
+}
+
+impl Slot {
+    fn lock(&self) -> MutexGuard<'_, Option<(u64, Box<Preset>)>> {
+        self.wish.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn put(&self, id: u64, preset: Box<Preset>) {
+        *self.lock() = Some((id, preset));
+        self.waiting.store(true, Ordering::Release);
+        self.filled.notify_one();
+    }
+
+    fn take(&self) -> (u64, Box<Preset>) {
+        let mut wish = self.lock();
+        loop {
+            if let Some(taken) = wish.take() {
+                self.waiting.store(false, Ordering::Release);
+                return taken;
+            }
+            wish = self.filled.wait(wish).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl Workers {
+    /// Starts the threads; they end with the process.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start(
+        store: Store,
+        reply: impl Fn(Reply) + Send + Clone + 'static,
+    ) -> Result<Self, std::io::Error> {
+        let curve = Arc::new(Slot::default());
+        let stopped = Arc::new(AtomicU64::new(0));
+        let (walks, requests) = channel();
+        let (files, jobs) = channel();
+        let (slot, send) = (Arc::clone(&curve), reply.clone());
+        thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &send))?;
+        let (stop, send) = (Arc::clone(&stopped), reply.clone());
+        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
+        thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
+        Ok(Self { curve, walks, files, stopped })
+    }
+
+    /// Hands an effect to its lane.
+    pub fn submit(&self, effect: Effect) {
+        // A lane that has ended took the process with it: there is nobody to tell.
+        match effect {
+            Effect::Curve { id, preset } => self.curve.put(id, preset),
+            Effect::Walk(request) => drop(self.walks.send(request)),
+            Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
+            Effect::File(job) => drop(self.files.send(job)),
+        }
+    }
+}
+
+fn curves(slot: &Slot, reply: &dyn Fn(Reply)) {
+    loop {
+        let (id, preset) = slot.take();
+        let begun = Instant::now();
+        let go_on = || !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
+        if let Some(answer) = compute(id, &preset, go_on) {
+            reply(answer);
+        }
+    }
+}
+
+fn walk_lane(requests: &Receiver<Box<Request>>, stopped: &AtomicU64, reply: &dyn Fn(Reply)) {
+    while let Ok(request) = requests.recv() {
+        let id = request.id;
+        let mut made = Vec::new();
+        let mut sent = Instant::now();
+        let outcome = walk::walk(&request, &mut |state| {
+            made.push(state);
+            if sent.elapsed() > CHUNK {
+                reply(Reply::Walked { id, made: std::mem::take(&mut made), outcome: None });
+                sent = Instant::now();
+            }
+            stopped.load(Ordering::Acquire) < id
+        });
+        reply(Reply::Walked { id, made, outcome: Some(outcome) });
+    }
+}
+
+fn file_lane(store: &Store, jobs: &Receiver<Box<Job>>, reply: &dyn Fn(Reply)) {
+    while let Ok(job) = jobs.recv() {
+        reply(Reply::File(Box::new(files::run(store, *job))));
+    }
+}

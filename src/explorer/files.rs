@@ -1,0 +1,317 @@
+//! Opening, saving and exporting: what the driver does for the model.
+
+use super::curve::CurveData;
+use super::history::{Node, NodeKind};
+use crate::contact::Control;
+use crate::preset::{
+    Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
+};
+use crate::report::trace::StableReport;
+use crate::report::unload::{EventReport, StateReport};
+use crate::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What can be exported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Document {
+    /// The points of the background curve.
+    Curve,
+    /// The states walked.
+    Walk,
+    /// The instabilities, of the source shown.
+    Events,
+}
+
+impl Document {
+    /// All, in the order they are offered.
+    pub const ALL: [Self; 3] = [Self::Curve, Self::Walk, Self::Events];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Curve => "curve",
+            Self::Walk => "walk",
+            Self::Events => "events",
+        }
+    }
+}
+
+/// Work on files.
+#[derive(Debug, Clone)]
+pub enum Job {
+    /// List all presets.
+    List,
+    /// Open a preset by name or path.
+    Open(String),
+    /// Save back to the file it came from.
+    Save {
+        /// The file.
+        source: Source,
+        /// The preset.
+        preset: Box<Preset>,
+        /// What may be replaced.
+        overwrite: Overwrite,
+    },
+    /// Save under a name.
+    SaveAs {
+        /// The name.
+        name: String,
+        /// The preset.
+        preset: Box<Preset>,
+        /// Whether a preset of that name may be replaced.
+        replace: bool,
+    },
+    /// Export a document.
+    Export {
+        /// Which.
+        what: Document,
+        /// The curve.
+        curve: Arc<CurveData>,
+        /// The nodes walked, from the root to the walker, with their numbers.
+        walk: Vec<Node>,
+        /// The events shown.
+        events: Vec<EventReport>,
+        /// The path as typed.
+        path: String,
+        /// Whether a file there may be replaced.
+        replace: bool,
+    },
+}
+
+/// How a job on files ended.
+#[derive(Debug, Clone)]
+pub enum Done {
+    /// The presets.
+    Listed(Box<Listing>),
+    /// A preset was opened.
+    Opened(Box<Loaded>),
+    /// The preset was saved.
+    Saved {
+        /// Where.
+        source: Source,
+        /// How the file is now.
+        fingerprint: Fingerprint,
+        /// What was saved.
+        preset: Box<Preset>,
+    },
+    /// The file was changed by somebody else: not saved.
+    Conflict,
+    /// A preset of this name exists: not saved.
+    NameTaken(String),
+    /// An export was written.
+    Exported(String),
+    /// A file of this name exists: not written.
+    FileExists(Document, String),
+    /// It failed, in words; nothing was changed.
+    Failed(String),
+}
+
+/// Does a job.
+pub fn run(store: &Store, job: Job) -> Done {
+    match job {
+        Job::List => Done::Listed(Box::new(store.list())),
+        Job::Open(argument) => {
+            let loaded = store.resolve(&argument).and_then(|source| store.load(&source, &[] as &[&str]));
+            loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
+        }
+        Job::Save { source, preset, overwrite } => {
+            let Some(path) = source.path() else {
+                return Done::Failed("shipped presets are read-only; save it under a name".to_owned());
+            };
+            match crate::preset::store::save_file(path, &preset, overwrite) {
+                Ok(fingerprint) => Done::Saved { source, fingerprint, preset },
+                Err(StoreError::Write(WriteError::Changed { .. })) => Done::Conflict,
+                Err(error) => Done::Failed(format!("not saved: {error}")),
+            }
+        }
+        Job::SaveAs { name, preset, replace } => {
+            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+            match store.save(&name, &preset, overwrite) {
+                Ok((source, fingerprint)) => Done::Saved { source, fingerprint, preset },
+                Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name),
+                Err(error) => Done::Failed(format!("not saved: {error}")),
+            }
+        }
+        Job::Export { what, curve, walk, events, path, replace } => {
+            let text = match text(what, &curve, &walk, &events, path.ends_with(".json")) {
+                Ok(text) => text,
+                Err(error) => return Done::Failed(format!("not exported: {error}")),
+            };
+            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+            match write_atomically(&target(&path), text.as_bytes(), overwrite) {
+                Ok(_) => Done::Exported(path),
+                Err(WriteError::Exists { .. }) => Done::FileExists(what, path),
+                Err(error) => Done::Failed(format!("not exported: {error}")),
+            }
+        }
+    }
+}
+
+/// The path a person typed, `~/` meaning the home folder.
+fn target(path: &str) -> PathBuf {
+    match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
+        (Some(rest), Some(home)) => Path::new(&home).join(rest),
+        _ => PathBuf::from(path),
+    }
+}
+
+/// One state of the walk as a row.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WalkRow {
+    /// Steps since the start.
+    pub step: usize,
+    /// How it came about.
+    pub kind: &'static str,
+    /// What was controlled.
+    pub control: String,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// U.
+    pub energy: f64,
+    /// The crest of the edge.
+    pub wave: Option<u64>,
+    /// Newton rounds spent.
+    pub newton_iterations: usize,
+    /// Stability under each control.
+    pub stable: StableReport,
+    /// The energy lost in the jump that led here.
+    pub dissipated: Option<f64>,
+    /// The same by the area.
+    pub dissipated_by_area: Option<f64>,
+    /// γ when it was solved: parameters may change during a walk.
+    pub work_of_adhesion: f64,
+    /// R when it was solved.
+    pub radius_of_curvature: f64,
+    /// A when it was solved.
+    pub amplitude: Option<f64>,
+    /// λ when it was solved.
+    pub wavelength: Option<f64>,
+}
+
+/// The columns of the walk as CSV.
+pub const WALK_COLUMNS: &[&str] = &[
+    "step",
+    "kind",
+    "control",
+    "contact_radius",
+    "approach",
+    "force",
+    "energy",
+    "wave",
+    "newton_iterations",
+    "stable_displacement",
+    "stable_force",
+    "stable_chosen",
+    "dissipated",
+    "dissipated_by_area",
+    "work_of_adhesion",
+    "radius_of_curvature",
+    "amplitude",
+    "wavelength",
+];
+
+impl WalkRow {
+    fn new(node: &Node) -> Self {
+        let case = &node.setting.case;
+        let state = node.state.in_units(case.units());
+        let stability = node.stability();
+        let event = match &node.kind {
+            NodeKind::Jump(event) => Some(EventReport::new(case, node.control, event)),
+            _ => None,
+        };
+        let wave = case.problem.shape.wave();
+        let apart = node.is_apart();
+        Self {
+            step: node.step,
+            kind: kind_name(&node.kind),
+            control: case.shown_control(node.control).to_string(),
+            contact_radius: if apart { 0.0 } else { state.contact_radius },
+            approach: state.approach,
+            force: if apart { 0.0 } else { state.force },
+            energy: if apart { 0.0 } else { state.energy },
+            wave: if apart { None } else { StateReport::new(case, &node.state).wave },
+            newton_iterations: node.point.rounds,
+            stable: StableReport {
+                displacement: stability.under(Control::Displacement),
+                force: stability.under(Control::Force),
+                chosen: stability.under(node.control),
+            },
+            dissipated: event.as_ref().and_then(|e| e.dissipated),
+            dissipated_by_area: event.as_ref().and_then(|e| e.dissipated_by_area),
+            work_of_adhesion: case.problem.work_of_adhesion,
+            radius_of_curvature: case.problem.shape.radius_of_curvature(),
+            amplitude: wave.map(|(a, _)| a),
+            wavelength: wave.map(|(_, l)| l),
+        }
+    }
+}
+
+/// The word for how a node came about.
+pub fn kind_name(kind: &NodeKind) -> &'static str {
+    match kind {
+        NodeKind::Start => "start",
+        NodeKind::Step => "step",
+        NodeKind::Limit => "limit",
+        NodeKind::Jump(event) => crate::report::unload::kind_name(event.kind),
+        NodeKind::Moved => "moved",
+        NodeKind::Solved => "solved",
+        NodeKind::Stale(_) => "unsolved",
+    }
+}
+
+/// A document of the walk or of its events.
+#[derive(Debug, Serialize)]
+struct Walked<'a, R> {
+    schema: u32,
+    program_version: &'static str,
+    problem: ProblemReport,
+    warnings: &'a [String],
+    #[serde(skip_serializing_if = "<[R]>::is_empty")]
+    points: &'a [R],
+    #[serde(skip_serializing_if = "<[EventReport]>::is_empty")]
+    events: &'a [EventReport],
+}
+
+/// The text of a document.
+fn text(
+    what: Document,
+    curve: &CurveData,
+    walk: &[Node],
+    events: &[EventReport],
+    as_json: bool,
+) -> Result<String, rows::RowsError> {
+    let setting = &curve.setting;
+    let walked = |points: &[WalkRow], events: &[EventReport]| {
+        json(&Walked {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(&setting.preset, &setting.case),
+            warnings: &curve.warnings,
+            points,
+            events,
+        })
+    };
+    Ok(match what {
+        Document::Curve => {
+            let report = TraceReport::new(&setting.preset, &setting.case, &curve.curve);
+            if as_json { json(&report)? } else { report.csv()? }
+        }
+        Document::Walk => {
+            let points: Vec<WalkRow> = walk.iter().map(WalkRow::new).collect();
+            if as_json { walked(&points, &[])? } else { rows::csv(WALK_COLUMNS, &points)? }
+        }
+        Document::Events => {
+            if as_json {
+                walked(&[], events)?
+            } else {
+                rows::csv(crate::report::unload::COLUMNS, events)?
+            }
+        }
+    })
+}

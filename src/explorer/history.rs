@@ -1,0 +1,161 @@
+//! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
+
+use crate::case::Case;
+use crate::contact::Control;
+use crate::continuation::Point;
+use crate::preset::Preset;
+use crate::quasistatic::{Equilibrium, Event, Stability, State};
+use std::sync::Arc;
+
+/// The problem a node was solved in: the parameters may change from node to node.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The preset.
+    pub preset: Preset,
+    /// The preset made ready.
+    pub case: Case,
+    /// The equations with the scales of their curve.
+    pub equilibrium: Equilibrium,
+}
+
+/// How a node came about.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NodeKind {
+    /// The start state.
+    Start,
+    /// A step.
+    Step,
+    /// A limit point of the control, located exactly.
+    Limit,
+    /// The landing of a jump, or `None` inside for a pull-off, with what it cost.
+    Jump(Box<Event>),
+    /// Moved to by hand: an event selected, the start again.
+    Moved,
+    /// Solved again after a parameter or the control had changed.
+    Solved,
+    /// Not solved after a change: the state before, with the reason.
+    Stale(String),
+}
+
+/// One state of the walk.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// The node before.
+    pub parent: Option<usize>,
+    /// How it came about.
+    pub kind: NodeKind,
+    /// The problem it solves.
+    pub setting: Arc<Setting>,
+    /// The control it was reached under (reduced).
+    pub control: Control,
+    /// The point of the curve, in the scales of its setting.
+    pub point: Point,
+    /// The state, reduced.
+    pub state: State,
+    /// Steps since the start.
+    pub step: usize,
+}
+
+impl Node {
+    /// The slopes that tell the stability.
+    pub fn stability(&self) -> Stability {
+        self.setting.equilibrium.stability(&self.point)
+    }
+
+    /// The bodies are apart: the walk ends here.
+    pub fn is_apart(&self) -> bool {
+        matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
+    }
+
+    /// A limit point under `control`.
+    pub fn is_limit(&self, control: Control) -> bool {
+        self.kind == NodeKind::Limit && self.control == control
+    }
+}
+
+/// The tree.
+#[derive(Debug, Clone, Default)]
+pub struct History {
+    nodes: Vec<Node>,
+    cursor: Option<usize>,
+    /// For each node the child last gone to.
+    forward: Vec<Option<usize>>,
+}
+
+impl History {
+    /// The node the walker stands on.
+    pub fn current(&self) -> Option<&Node> {
+        self.nodes.get(self.cursor?)
+    }
+
+    /// Its number.
+    pub fn cursor(&self) -> Option<usize> {
+        self.cursor
+    }
+
+    /// The node before it.
+    pub fn parent(&self) -> Option<usize> {
+        self.current()?.parent
+    }
+
+    /// Where redo would go.
+    pub fn redo_target(&self) -> Option<usize> {
+        *self.forward.get(self.cursor?)?
+    }
+
+    /// All nodes ever made.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Appends a node behind the current one and stands on it.
+    pub fn push(&mut self, mut node: Node) {
+        node.parent = self.cursor;
+        self.append(node);
+    }
+
+    /// Appends a node beside the current one: the same change made further is one undo.
+    pub fn push_beside(&mut self, mut node: Node) {
+        node.parent = self.parent();
+        self.append(node);
+    }
+
+    fn append(&mut self, node: Node) {
+        let at = self.nodes.len();
+        if let Some(parent) = node.parent {
+            self.forward[parent] = Some(at);
+        }
+        self.nodes.push(node);
+        self.forward.push(None);
+        self.cursor = Some(at);
+    }
+
+    /// Stands on the node before; false when there is none.
+    pub fn undo(&mut self) -> bool {
+        let Some(parent) = self.parent() else { return false };
+        self.forward[parent] = self.cursor;
+        self.cursor = Some(parent);
+        true
+    }
+
+    /// Stands on the child last gone to; false when there is none.
+    pub fn redo(&mut self) -> bool {
+        let target = self.redo_target();
+        if target.is_some() {
+            self.cursor = target;
+        }
+        target.is_some()
+    }
+
+    /// The nodes from the root to the current one.
+    pub fn path(&self) -> Vec<&Node> {
+        let mut path = Vec::new();
+        let mut at = self.cursor;
+        while let Some(node) = at.and_then(|i| self.nodes.get(i)) {
+            path.push(node);
+            at = node.parent;
+        }
+        path.reverse();
+        path
+    }
+}

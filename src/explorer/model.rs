@@ -1,0 +1,273 @@
+//! The state of a session, without terminals, keys or colours.
+
+use super::curve::CurveData;
+use super::history::{History, Node, NodeKind};
+use super::walk::Action;
+use crate::contact::Control;
+use crate::preset::{Fingerprint, Listing, Loaded, Parameter, Preset, Source, Value};
+use crate::quasistatic::Event;
+use crate::report::unload::EventReport;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// The panels that can be selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Panel {
+    /// The parameters of the preset.
+    Problem,
+    /// The state of the walker.
+    Walker,
+    /// The charts.
+    Charts,
+    /// The list of instabilities.
+    Events,
+}
+
+impl Panel {
+    /// All, in the order of the Tab key.
+    pub const ALL: [Self; 4] = [Self::Problem, Self::Walker, Self::Charts, Self::Events];
+}
+
+/// The charts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chart {
+    /// P over δ.
+    ForceApproach,
+    /// s over P.
+    RadiusForce,
+}
+
+/// What the axes show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// P/P_c, δ, s/λ.
+    Reduced,
+    /// The preset's own units.
+    Raw,
+}
+
+/// Where the events come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventSource {
+    /// The quasi-static path along the whole curve.
+    Curve,
+    /// The jumps made by hand.
+    Walked,
+}
+
+/// How much a message matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// For information.
+    Info,
+    /// Something could not be done.
+    Error,
+}
+
+/// A session.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The preset as it is now.
+    pub preset: Preset,
+    /// The preset as loaded or last saved: what differs is unsaved.
+    pub saved: Preset,
+    /// Where it came from or went to.
+    pub source: Source,
+    /// How its file was when last seen.
+    pub fingerprint: Option<Fingerprint>,
+    /// The curve on the screen; it can be older than the preset while a new one is computed.
+    pub curve: Option<Arc<CurveData>>,
+    /// Why the preset as it is now has no curve.
+    pub curve_error: Option<String>,
+    /// The number of the newest curve asked for.
+    pub curve_wanted: u64,
+    /// The number of the newest curve that came, or failed.
+    pub curve_shown: u64,
+    /// The walk.
+    pub history: History,
+    /// Whether steps shrink the contact.
+    pub inward: bool,
+    /// The longest step by hand, in the scaled unknowns.
+    pub length: f64,
+    /// The walk request that is running.
+    pub walking: Option<u64>,
+    /// What is to be walked after it.
+    pub queue: VecDeque<Action>,
+    /// The panel selected.
+    pub panel: Panel,
+    /// The parameter selected.
+    pub parameter: usize,
+    /// The event selected.
+    pub event: usize,
+    /// The chart shown where only one fits.
+    pub chart: Chart,
+    /// What the axes show.
+    pub axes: Axes,
+    /// Where the events come from.
+    pub events: EventSource,
+    /// Whether the smooth sphere is drawn.
+    pub smooth: bool,
+    /// What to tell; `None` leaves the line to the hint.
+    pub message: Option<(Level, String)>,
+    /// The list of presets, once asked for.
+    pub listing: Option<Listing>,
+    /// A save that met a file changed by somebody else.
+    pub save_conflict: bool,
+    /// An export that met an existing file.
+    pub export_conflict: Option<(super::files::Document, String)>,
+    /// A save under a name that exists.
+    pub name_conflict: Option<String>,
+    /// Numbers for requests.
+    pub next_request: u64,
+    /// The session is over.
+    pub quit: bool,
+}
+
+/// The first step length: a fiftieth of the range of every quantity.
+pub const FIRST_LENGTH: f64 = 0.02;
+/// The step lengths a person can choose.
+pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
+
+/// The keys without a knob: the version of the format, and the name of the only basis.
+const NO_KNOB: [&str; 2] = ["format", "basis.kind"];
+
+impl Model {
+    /// A session on a loaded preset; nothing is computed yet.
+    pub fn new(loaded: Loaded) -> Self {
+        let mut model = Self {
+            saved: loaded.preset.clone(),
+            preset: loaded.preset,
+            source: loaded.source,
+            fingerprint: loaded.fingerprint,
+            curve: None,
+            curve_error: None,
+            curve_wanted: 0,
+            curve_shown: 0,
+            history: History::default(),
+            inward: true,
+            length: FIRST_LENGTH,
+            walking: None,
+            queue: VecDeque::new(),
+            panel: Panel::Problem,
+            parameter: 0,
+            event: 0,
+            chart: Chart::ForceApproach,
+            axes: Axes::Reduced,
+            events: EventSource::Curve,
+            smooth: true,
+            message: None,
+            listing: None,
+            save_conflict: false,
+            export_conflict: None,
+            name_conflict: None,
+            next_request: 1,
+            quit: false,
+        };
+        // The amplitude, where there is one, is the knob that shows most.
+        model.parameter = model.knobs().iter().position(|(row, _)| row.key == "gap.amplitude").unwrap_or(0);
+        model
+    }
+
+    /// Whether the preset differs from its file.
+    pub fn is_unsaved(&self) -> bool {
+        self.preset != self.saved
+    }
+
+    /// Whether a newer curve is being computed.
+    pub fn is_computing(&self) -> bool {
+        self.curve_shown < self.curve_wanted
+    }
+
+    /// The parameters with a knob, in the table's order, and their values; no value follows from others.
+    pub fn knobs(&self) -> Vec<(&'static Parameter, Option<Value>)> {
+        let shape = self.preset.gap.name();
+        // The title last: the numbers are what is turned.
+        let (texts, numbers): (Vec<&Parameter>, Vec<&Parameter>) =
+            crate::preset::PARAMETERS.iter().partition(|row| row.key == "title");
+        numbers
+            .into_iter()
+            .chain(texts)
+            .filter(|row| row.fits(shape) && !NO_KNOB.contains(&row.key))
+            .map(|row| (row, self.preset.get(row.key)))
+            .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
+            .collect()
+    }
+
+    /// The selected parameter and its value.
+    pub fn selected_knob(&self) -> Option<(&'static Parameter, Option<Value>)> {
+        self.knobs().into_iter().nth(self.parameter)
+    }
+
+    /// The control in reduced units, by the curve's problem.
+    pub fn control(&self) -> Option<Control> {
+        self.curve.as_ref().map(|curve| curve.setting.case.control)
+    }
+
+    /// Whether the current node solves the problem of the curve on the screen.
+    pub fn is_on_curve(&self, node: &Node) -> bool {
+        let Some(curve) = &self.curve else { return false };
+        let (a, b) = (&node.setting, &curve.setting);
+        let same = |x: &Preset, y: &Preset| {
+            (x.material, x.gap, x.basis, x.path.start, x.path.end_contact_radius)
+                == (y.material, y.gap, y.basis, y.path.start, y.path.end_contact_radius)
+        };
+        same(&a.preset, &b.preset) && !matches!(node.kind, NodeKind::Stale(_))
+    }
+
+    /// The walker's node, where it stands on the curve on the screen.
+    pub fn walker(&self) -> Option<&Node> {
+        self.history.current().filter(|node| self.is_on_curve(node))
+    }
+
+    /// The number of the limit point of the control on which the walker stands, among the curve's.
+    pub fn limit_number(&self) -> Option<usize> {
+        let node = self.walker()?;
+        let curve = self.curve.as_ref()?;
+        if !node.is_limit(curve.setting.case.control) {
+            return None;
+        }
+        let s = node.state.contact_radius;
+        curve
+            .limits
+            .iter()
+            .position(|limit| (curve.curve.equilibrium.contact_radius(&limit.point) - s).abs() <= 1e-7 * s)
+    }
+
+    /// Whether the edge can run from here: at a limit point of the control, or in an unstable state.
+    pub fn can_jump(&self) -> bool {
+        let (Some(node), Some(control)) = (self.walker(), self.control()) else { return false };
+        !node.is_apart() && (node.is_limit(control) || !node.stability().under(control))
+    }
+
+    /// The jumps on the way to the walker, with the number of their node.
+    pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
+        let mut at = self.history.cursor();
+        let mut events = Vec::new();
+        while let Some((number, node)) = at.and_then(|i| Some((i, self.history.nodes().get(i)?))) {
+            if let NodeKind::Jump(event) = &node.kind {
+                let event: &Event = event;
+                events.push((number, EventReport::new(&node.setting.case, node.control, event)));
+            }
+            at = node.parent;
+        }
+        events.reverse();
+        events
+    }
+
+    /// The events of the source shown.
+    pub fn shown_events(&self) -> Vec<EventReport> {
+        match self.events {
+            EventSource::Walked => self.walked_events().into_iter().map(|(_, event)| event).collect(),
+            EventSource::Curve => self
+                .curve
+                .as_ref()
+                .and_then(|curve| curve.report.as_ref())
+                .map_or_else(Vec::new, |report| report.events.clone()),
+        }
+    }
+
+    /// The status line: the message, or what the state is and which key is next.
+    pub fn status(&self) -> (Level, String) {
+        self.message.clone().unwrap_or_else(|| (Level::Info, super::update::hint(self)))
+    }
+}

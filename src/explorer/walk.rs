@@ -1,0 +1,313 @@
+//! Steps, runs and jumps along the curve, made by hand.
+//!
+//! A request says where the walker stands and what it is to do; the answer is new states, never a change of old
+//! ones. A step that would pass a limit point of the control stops exactly there.
+
+use super::curve::CurveData;
+use super::history::{NodeKind, Setting};
+use crate::contact::Control;
+use crate::continuation::{Bracket, Point, Stepper, Work, events, locate, step_size};
+use crate::quasistatic::curve::settings;
+use crate::quasistatic::jump::{Landing, Nodes, Run};
+use crate::quasistatic::{Equilibrium, Event, EventKind, State, energy};
+use crate::ritz::{self, NewtonSettings};
+use std::sync::Arc;
+
+/// Most states of one request: a run that meets nothing ends.
+pub const RUN_POINTS: usize = 5000;
+/// A walk leaves the range of the curve by at most this factor in the contact radius.
+const ROOM: f64 = 3.0;
+
+/// What the walker is to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// So many steps, stopping at a limit point of the control.
+    Steps(usize),
+    /// Steps to the next limit point of the control.
+    ToLimit,
+    /// The edge runs at constant control to the next stable state.
+    Jump,
+    /// The state of this contact radius (reduced), on the explicit curve.
+    MoveTo(f64),
+    /// The limit point of this number on the curve.
+    MoveToLimit(usize),
+    /// The state of the problem as it is now, at the control value and near the radius of the old one.
+    Solve {
+        /// The state before the change, in the user's units.
+        state: State,
+    },
+}
+
+/// One request.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// Its number.
+    pub id: u64,
+    /// What to do.
+    pub action: Action,
+    /// The curve of the problem: its setting, and its limit points for jumps.
+    pub curve: Arc<CurveData>,
+    /// Where the walker stands; none only for moves.
+    pub from: Option<Point>,
+    /// Whether it stands on a limit point of the control.
+    pub on_limit: bool,
+    /// What is controlled (reduced).
+    pub control: Control,
+    /// Whether the contact is to shrink.
+    pub inward: bool,
+    /// The longest step.
+    pub length: f64,
+}
+
+/// One new state.
+#[derive(Debug, Clone)]
+pub struct Made {
+    /// How it came about.
+    pub kind: NodeKind,
+    /// The point.
+    pub point: Point,
+    /// The state, reduced.
+    pub state: State,
+}
+
+/// The end of a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// Done as asked.
+    Done,
+    /// A limit point of the control was reached.
+    AtLimit,
+    /// It cannot go on, in words.
+    Stopped(String),
+}
+
+/// Does what `request` asks; each new state goes to `emit`, which says whether to go on.
+pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+    match &request.action {
+        Action::Steps(count) => steps(request, *count, false, emit),
+        Action::ToLimit => steps(request, RUN_POINTS, true, emit),
+        Action::Jump => jump(request, emit),
+        Action::MoveTo(s) => match request.equilibrium().explicit(*s) {
+            Some(point) => {
+                emit(made(request.equilibrium(), NodeKind::Moved, point));
+                Outcome::Done
+            }
+            None => Outcome::Stopped("there is no equilibrium at that contact radius".to_owned()),
+        },
+        Action::MoveToLimit(number) => match request.curve.limits.get(*number) {
+            Some(limit) => {
+                emit(made(request.equilibrium(), NodeKind::Limit, limit.point.clone()));
+                Outcome::AtLimit
+            }
+            None => Outcome::Stopped("the curve has changed meanwhile".to_owned()),
+        },
+        Action::Solve { state } => solve(request, state, emit),
+    }
+}
+
+impl Request {
+    fn equilibrium(&self) -> &Equilibrium {
+        &self.curve.setting.equilibrium
+    }
+
+    /// The problem the new states belong to.
+    pub fn setting(&self) -> &Arc<Setting> {
+        &self.curve.setting
+    }
+}
+
+fn made(equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
+    let state = equilibrium.state(&point);
+    Made { kind, point, state }
+}
+
+fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+    let equilibrium = request.equilibrium();
+    let Some(from) = &request.from else {
+        return Outcome::Stopped("there is no state to walk from".to_owned());
+    };
+    let mut settings = settings(equilibrium);
+    if !run {
+        settings.longest = request.length;
+    }
+    let row = equilibrium.control_row(request.control);
+    let unit = row.normalize();
+    let mut stepper = Stepper::new(settings.clone());
+    stepper.length = request.length;
+    let shrinking = |p: &Point| p.frame.tangent[2] < 0.0;
+    let mut here = from.clone();
+    if shrinking(&here) != request.inward {
+        here = here.reversed();
+    }
+    let case = &request.curve.setting.case;
+    let mut just_left = request.on_limit;
+    for _ in 0..count {
+        if !run {
+            // In steps by hand the length asked for counts, not the one the last step would allow.
+            stepper.length = request.length;
+        }
+        let next = match stepper.step(equilibrium, &here) {
+            Ok(next) => next,
+            Err(failure) => return Outcome::Stopped(failure.to_string()),
+        };
+        let piece = [here.clone(), next.clone()];
+        let mut work = Work::default();
+        let limit = events::brackets(equilibrium, &piece, &unit, &settings, &mut work)
+            .iter()
+            .filter_map(|bracket: &Bracket| {
+                locate::limit_point(equilibrium, bracket, &unit, &settings, &mut work)
+            })
+            // The slope at the limit point just left is zero to rounding, of either sign: not a new one.
+            .find(|found| !just_left || (&found.point.y - &here.y).norm() > 1e-3 * next.length);
+        if let Some(found) = limit {
+            let mut point = found.point;
+            point.length = (&point.y - &here.y).norm();
+            point.turning = step_size::turning(&here, &point);
+            point.rounds = next.rounds;
+            emit(made(equilibrium, NodeKind::Limit, point));
+            return Outcome::AtLimit;
+        }
+        just_left = false;
+        let s = equilibrium.contact_radius(&next);
+        here = next.clone();
+        if !emit(made(equilibrium, NodeKind::Step, next)) {
+            return Outcome::Stopped("paused".to_owned());
+        }
+        if request.inward && s < case.end {
+            return Outcome::Stopped("the end contact radius is reached; b turns round".to_owned());
+        }
+        if !request.inward && s > ROOM * case.start {
+            return Outcome::Stopped("far outside the start; b turns round".to_owned());
+        }
+    }
+    if run { Outcome::Stopped(format!("no limit point within {RUN_POINTS} steps")) } else { Outcome::Done }
+}
+
+fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+    let equilibrium = request.equilibrium();
+    let Some(from) = &request.from else {
+        return Outcome::Stopped("there is no state to jump from".to_owned());
+    };
+    let control = request.control;
+    let row = equilibrium.control_row(control);
+    let value = row.dot(&from.y);
+    let s = equilibrium.contact_radius(from);
+    let run = direction(request, from);
+    // A landing may lie beyond the curve on the screen.
+    let mut curve = request.curve.curve.clone();
+    if s > curve.outermost() {
+        curve.extend(s * 1.01);
+    }
+    let mut landing = None;
+    for share in [1.0, 0.1, 1e-4] {
+        let reach = if run == Run::Inward { s * share } else { s / share.max(1e-3) };
+        let beyond = if run == Run::Inward { reach < curve.innermost() } else { reach > curve.outermost() };
+        if beyond {
+            curve.extend(reach);
+        }
+        let nodes = Nodes::new(&curve, control, &curve.limit_points(control));
+        let tolerance = s * 1e-9;
+        let node = nodes.points().iter().rposition(|p| equilibrium.contact_radius(p) >= s - tolerance);
+        landing = nodes.run(&curve, node.unwrap_or(0), value, run).map(|Landing { point, .. }| point);
+        if landing.is_some() {
+            break;
+        }
+    }
+    if landing.is_none() && run == Run::Outward {
+        return Outcome::Stopped("no stable state lies outward at this control value".to_owned());
+    }
+    let before = equilibrium.state(from);
+    let after = landing.as_ref().map(|point| equilibrium.state(point));
+    let event = Event {
+        kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+        control_value: value,
+        before,
+        after,
+        dissipated: energy::loss(control, value, &before, after.as_ref()),
+        dissipated_by_area: energy::area(
+            equilibrium,
+            control,
+            value,
+            before.contact_radius,
+            after.map(|a| a.contact_radius),
+        ),
+    };
+    let point = landing.unwrap_or_else(|| from.clone());
+    let state = after.unwrap_or(before);
+    emit(Made { kind: NodeKind::Jump(Box::new(event)), point, state });
+    Outcome::Done
+}
+
+/// Which way the edge runs: away from the stable side of a limit point; from an unstable state, as walked.
+fn direction(request: &Request, from: &Point) -> Run {
+    if !request.on_limit {
+        return if request.inward { Run::Inward } else { Run::Outward };
+    }
+    let bend = request.equilibrium().control_row(request.control).dot(&from.frame.curvature);
+    // A minimum of the control along the curve is left inward, a maximum outward.
+    if bend > 0.0 { Run::Inward } else { Run::Outward }
+}
+
+/// The state at the old control value after a change, from the old contact radius.
+fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+    let equilibrium = request.equilibrium();
+    let case = &request.curve.setting.case;
+    let units = case.units();
+    let value = request.control.value(old.approach / units.length, old.force / units.force);
+    let s = old.contact_radius / units.length;
+    let settings = NewtonSettings::default();
+    let problem = &equilibrium.problem;
+    // Newton may find another state far away on a wavy gap: the old radius' own branch is wanted.
+    const NEAR: f64 = 0.5;
+    let near = |found: f64| {
+        let feature = crate::contact::Gap::feature_length(&problem.gap).unwrap_or(s);
+        (found - s).abs() <= NEAR * feature.min(s)
+    };
+    let newton = ritz::solve(equilibrium.basis.as_ref(), problem, request.control, value, s, settings)
+        .ok()
+        .filter(|solved| near(solved.evaluation.contact_radius))
+        .and_then(|solved| {
+            let mut point = equilibrium.point(&solved.evaluation)?;
+            point.rounds = solved.rounds;
+            Some(point)
+        });
+    let point = newton.or_else(|| nearest_crossing(request, value, s));
+    match point {
+        Some(point) => {
+            emit(made(equilibrium, NodeKind::Solved, point));
+            Outcome::Done
+        }
+        None => Outcome::Stopped(format!(
+            "no equilibrium at this {} near the old contact radius; 0 restarts",
+            crate::report::unload::control_name(request.control)
+        )),
+    }
+}
+
+/// The state nearest to the radius `s` at which the curve takes the control value.
+fn nearest_crossing(request: &Request, value: f64, s: f64) -> Option<Point> {
+    let equilibrium = request.equilibrium();
+    let curve = &request.curve.curve;
+    let row = equilibrium.control_row(request.control);
+    let nodes = Nodes::new(curve, request.control, &curve.limit_points(request.control));
+    let settings = settings(equilibrium);
+    nodes
+        .points()
+        .windows(2)
+        .filter(|pair| (row.dot(&pair[0].y) > value) != (row.dot(&pair[1].y) > value))
+        .min_by(|a, b| {
+            let away = |pair: &[Point]| (equilibrium.contact_radius(&pair[0]) - s).abs();
+            away(a).total_cmp(&away(b))
+        })
+        .and_then(|pair| {
+            locate::control_value(
+                equilibrium,
+                &pair[0],
+                &pair[1],
+                &row,
+                value,
+                &settings,
+                &mut Work::default(),
+            )
+        })
+}

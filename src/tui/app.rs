@@ -1,0 +1,290 @@
+//! Keys and pastes → commands; replies → model; what lies over the screen.
+
+use super::keymap;
+use super::overlay::{Action, Choose, Confirm, Item, Overlay, Prompt, Purpose};
+use super::theme::Theme;
+use crate::explorer::files::Document;
+use crate::explorer::model::Level;
+use crate::explorer::{Command, Effect, Id, Model, Panel, Reply, answer, open, update};
+use crate::preset::text::sanitize;
+use crate::preset::{Loaded, Source};
+use crossterm::event::{Event, KeyCode, KeyEvent};
+use tui_input::Input;
+use tui_input::backend::crossterm::EventHandler;
+
+/// Longest count typed before a command.
+const COUNT: usize = 9999;
+/// Longest line typed or pasted.
+const LINE: usize = 1000;
+
+/// The explorer as a person sees it.
+#[derive(Debug)]
+pub struct App {
+    /// The session.
+    pub model: Model,
+    /// What lies over it.
+    pub overlay: Option<Overlay>,
+    /// The number typed before a command.
+    pub count: Option<usize>,
+    /// Its looks.
+    pub theme: Theme,
+}
+
+impl App {
+    /// Opens a preset.
+    pub fn new(loaded: Loaded, theme: Theme) -> (Self, Vec<Effect>) {
+        let (model, effects) = open(loaded);
+        (Self { model, overlay: None, count: None, theme }, effects)
+    }
+
+    /// A key was pressed.
+    pub fn key(&mut self, key: KeyEvent) -> Vec<Effect> {
+        match self.overlay.take() {
+            None => self.command_key(key),
+            Some(Overlay::Prompt(prompt)) => self.prompt_key(prompt, key),
+            Some(Overlay::Choose(choose)) => self.choose_key(choose, key),
+            Some(Overlay::Confirm(confirm)) => self.confirm_key(confirm, key),
+            Some(Overlay::Help(scroll)) => {
+                self.help_key(scroll, key);
+                Vec::new()
+            }
+        }
+    }
+
+    /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
+    pub fn paste(&mut self, text: &str) {
+        if let Some(Overlay::Prompt(prompt)) = &mut self.overlay {
+            for c in sanitize(text.lines().next().unwrap_or(""), LINE).chars() {
+                prompt.input.handle(tui_input::InputRequest::InsertChar(c));
+            }
+        }
+    }
+
+    /// A worker has answered.
+    pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
+        let effects = answer(&mut self.model, reply);
+        self.raise_questions();
+        effects
+    }
+
+    /// Does a command, and notices when it leaves a question.
+    fn run(&mut self, command: Command) -> Vec<Effect> {
+        let effects = update(&mut self.model, command);
+        self.raise_questions();
+        effects
+    }
+
+    /// What the model wants to be asked becomes an overlay.
+    fn raise_questions(&mut self) {
+        let model = &mut self.model;
+        if let Some(listing) = model.listing.take() {
+            let shown = |title: &Result<String, String>| match title {
+                Ok(title) => title.clone(),
+                Err(error) => format!("cannot be read: {error}"),
+            };
+            let mut items: Vec<Item> = listing
+                .presets
+                .iter()
+                .map(|entry| Item {
+                    text: format!("{:<14} {}", entry.name, sanitize(&shown(&entry.title), 90)),
+                    action: Action::Command(Command::Open(entry.name.clone())),
+                })
+                .collect();
+            let prompt = Prompt {
+                title: "Open a file".to_owned(),
+                note: "a path with a / or ending in .toml".to_owned(),
+                input: Input::default(),
+                purpose: Purpose::Path,
+                error: None,
+            };
+            items.push(Item { text: "a file ...".to_owned(), action: Action::Prompt(Box::new(prompt)) });
+            self.overlay =
+                Some(Overlay::Choose(Choose { title: "Open a preset".to_owned(), items, selected: 0 }));
+        } else if let Some(name) = model.name_conflict.take() {
+            let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
+            self.ask(question, Command::SaveAs { name, replace: true });
+        } else if let Some((what, path)) = model.export_conflict.take() {
+            let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+            self.ask(question, Command::Export { what, path, replace: true });
+        } else if std::mem::take(&mut model.save_conflict) {
+            let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
+            self.ask(question.to_owned(), Command::SaveAnyway);
+        }
+    }
+
+    fn ask(&mut self, question: String, yes: Command) {
+        self.overlay = Some(Overlay::Confirm(Confirm { question, yes }));
+    }
+
+    fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
+        if let KeyCode::Char(digit @ '0'..='9') = key.code
+            && key.modifiers.is_empty()
+            && (digit != '0' || self.count.is_some())
+        {
+            let value = usize::try_from(u32::from(digit) - u32::from('0')).unwrap_or(0);
+            self.count = Some((self.count.unwrap_or(0) * 10 + value).min(COUNT));
+            return Vec::new();
+        }
+        let count = self.count.take();
+        let Some(id) = keymap::command(key) else {
+            self.model.message =
+                Some((Level::Info, "that key does nothing here; ? shows all keys".to_owned()));
+            return Vec::new();
+        };
+        match id {
+            Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
+            Id::Help => {
+                self.overlay = Some(Overlay::Help(0));
+                Vec::new()
+            }
+            Id::Quit if self.model.is_unsaved() => {
+                let question = "The preset has unsaved changes. y quits without saving, Esc stays, S saves.";
+                self.ask(question.to_owned(), Id::Quit.into());
+                Vec::new()
+            }
+            Id::Save if matches!(self.model.source, Source::Shipped(_)) => self.ask_name(),
+            Id::SaveAs => self.ask_name(),
+            Id::Export => self.ask_export(),
+            Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
+            id => self.run(id.into()),
+        }
+    }
+
+    fn ask_name(&mut self) -> Vec<Effect> {
+        let suggestion = match &self.model.source {
+            Source::User { name, .. } => name.clone(),
+            Source::Shipped(shipped) => format!("my-{}", shipped.name),
+            Source::File(_) => String::new(),
+        };
+        self.prompt("Save the preset as", "small letters, digits, - and _", suggestion, Purpose::Name)
+    }
+
+    fn ask_export(&mut self) -> Vec<Effect> {
+        let base = match &self.model.source {
+            Source::User { name, .. } => name.clone(),
+            Source::Shipped(shipped) => shipped.name.to_owned(),
+            Source::File(path) => {
+                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+            }
+        };
+        let items = Document::ALL.map(|what| {
+            let prompt = Prompt {
+                title: format!("Export the {} to", what.name()),
+                note: "a file ending in .csv or .json".to_owned(),
+                input: Input::new(format!("{}-{}.csv", sanitize(&base, 60), what.name())),
+                purpose: Purpose::File(what),
+                error: None,
+            };
+            let text = match what {
+                Document::Curve => "curve   every point of the equilibrium curve",
+                Document::Walk => "walk    the states walked by hand",
+                Document::Events => "events  the instabilities listed",
+            };
+            Item { text: text.to_owned(), action: Action::Prompt(Box::new(prompt)) }
+        });
+        let choose = Choose { title: "Export".to_owned(), items: items.to_vec(), selected: 0 };
+        self.overlay = Some(Overlay::Choose(choose));
+        Vec::new()
+    }
+
+    fn ask_value(&mut self) -> Vec<Effect> {
+        let Some((row, value)) = self.model.selected_knob() else { return Vec::new() };
+        let text = value.map_or_else(String::new, |value| value.to_string());
+        self.prompt(&format!("{}: {}", row.label, row.meaning), &row.allowed(), text, Purpose::Value(row.key))
+    }
+
+    fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
+        self.overlay = Some(Overlay::Prompt(Prompt {
+            title: title.to_owned(),
+            note: note.to_owned(),
+            input: Input::new(text),
+            purpose,
+            error: None,
+        }));
+        Vec::new()
+    }
+
+    fn prompt_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
+        match key.code {
+            KeyCode::Esc => return Vec::new(),
+            KeyCode::Enter => {
+                let text = prompt.input.value().to_owned();
+                let effects = self.run(prompt.purpose.command(text));
+                // A value that was refused stays to be mended.
+                if let Some((Level::Error, reason)) =
+                    self.model.message.take_if(|(level, _)| *level == Level::Error)
+                {
+                    prompt.error = Some(reason);
+                    self.overlay = Some(Overlay::Prompt(prompt));
+                }
+                return effects;
+            }
+            _ if keymap::command(key) == Some(Id::Quit) && key.code != KeyCode::Char('q') => {
+                return Vec::new();
+            }
+            _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
+            _ => {
+                prompt.input.handle_event(&Event::Key(key));
+                prompt.error = None;
+            }
+        }
+        self.overlay = Some(Overlay::Prompt(prompt));
+        Vec::new()
+    }
+
+    fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
+        let last = choose.items.len().saturating_sub(1);
+        match keymap::command(key) {
+            Some(Id::Up) => choose.selected = choose.selected.saturating_sub(1),
+            Some(Id::Down) => choose.selected = (choose.selected + 1).min(last),
+            Some(Id::Cancel | Id::Quit) => return Vec::new(),
+            Some(Id::Edit) => {
+                return match choose.items.into_iter().nth(choose.selected).map(|item| item.action) {
+                    Some(Action::Command(command)) => self.open_or_ask(command),
+                    Some(Action::Prompt(prompt)) => {
+                        self.overlay = Some(Overlay::Prompt(*prompt));
+                        Vec::new()
+                    }
+                    None => Vec::new(),
+                };
+            }
+            _ => {}
+        }
+        self.overlay = Some(Overlay::Choose(choose));
+        Vec::new()
+    }
+
+    /// Opening another preset gives up unsaved changes: asked first.
+    fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
+        if self.model.is_unsaved() && matches!(command, Command::Open(_)) {
+            let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";
+            self.ask(question.to_owned(), command);
+            return Vec::new();
+        }
+        self.run(command)
+    }
+
+    fn confirm_key(&mut self, confirm: Confirm, key: KeyEvent) -> Vec<Effect> {
+        match key.code {
+            KeyCode::Char('y') => self.run(confirm.yes),
+            KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
+            KeyCode::Char('S') => self.ask_name(),
+            _ => {
+                self.overlay = Some(Overlay::Confirm(confirm));
+                Vec::new()
+            }
+        }
+    }
+
+    fn help_key(&mut self, scroll: u16, key: KeyEvent) {
+        let scroll = match (keymap::command(key), key.code) {
+            (Some(Id::Up), _) => scroll.saturating_sub(1),
+            (Some(Id::Down), _) => scroll.saturating_add(1),
+            (_, KeyCode::PageUp) => scroll.saturating_sub(10),
+            (Some(Id::Step), _) | (_, KeyCode::PageDown) => scroll.saturating_add(10),
+            (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
+            _ => scroll,
+        };
+        self.overlay = Some(Overlay::Help(scroll.min(super::view::help::lines())));
+    }
+}

@@ -1,0 +1,74 @@
+//! The explorer on a terminal: keys in, pictures out. Nothing here computes.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`terminal`] | taking and giving back the terminal, signals, hang-ups, pacing |
+//! | [`keymap`] | command id → keys |
+//! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
+//! | [`overlay`] | prompts, choices, questions and the help, as data |
+//! | [`layout`] | which region goes where at which size |
+//! | [`theme`] | colours and glyphs, Unicode or ASCII |
+//! | [`chart`] | one chart: axes, ticks, curves, marks |
+//! | [`view`] | one file per screen region |
+
+pub mod app;
+pub mod chart;
+pub mod keymap;
+pub mod layout;
+pub mod overlay;
+pub mod terminal;
+pub mod theme;
+pub mod view;
+
+pub use terminal::refuse_reason;
+
+use crate::explorer::{Reply, Workers};
+use crate::preset::{Loaded, Store};
+use app::App;
+use std::io;
+use std::process::ExitCode;
+use terminal::Incoming;
+use theme::Theme;
+
+/// Runs the explorer until the person quits.
+///
+/// # Errors
+/// When the terminal cannot be taken, or the system gives no thread.
+pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
+    let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
+    let sender = inbox.sender();
+    let workers = Workers::start(store, move |reply| drop(sender.send(reply)))?;
+    let (mut app, effects) = App::new(loaded, Theme::of_environment());
+    effects.into_iter().for_each(|effect| workers.submit(effect));
+    let mut dirty = true;
+    while !app.model.quit {
+        // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
+        let first = inbox.next(dirty.then(|| display.due()));
+        for incoming in first.into_iter().chain(inbox.pending()) {
+            let effects = match incoming {
+                Incoming::Key(key) if keymap::is_suspend(key) => {
+                    terminal::suspend();
+                    Vec::new()
+                }
+                Incoming::Key(key) => app.key(key),
+                Incoming::Paste(text) => {
+                    app.paste(&text);
+                    Vec::new()
+                }
+                Incoming::Resized | Incoming::Resumed => {
+                    display.repaint();
+                    Vec::new()
+                }
+                Incoming::App(reply) => app.reply(reply),
+            };
+            effects.into_iter().for_each(|effect| workers.submit(effect));
+            dirty = true;
+        }
+        if dirty && display.is_due() {
+            display.draw(|frame| view::draw(frame, &app));
+            dirty = false;
+        }
+    }
+    drop(guard);
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,126 @@
+//! Frames, at a pace that the line can carry.
+//!
+//! A frame is written before the next one is begun, so at most one is on its way to the kernel. That alone is not
+//! enough: a network connection takes some hundred kilobytes before it lets anybody wait, which a slow line needs many
+//! seconds to show. So the pace also follows from the size of the frames.
+
+use std::{
+    io,
+    time::{Duration, Instant},
+};
+
+use ratatui::{
+    Frame, Terminal,
+    backend::{Backend, ClearType},
+};
+
+use super::{
+    end::{HUNG_UP, end},
+    line::Line,
+    screen::{Screen, Written},
+};
+
+/// How frames follow each other. The first one after a pause never waits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// Shortest time between frames, above zero: 33 ms, about as fast as keys repeat.
+    pub shortest: Duration,
+    /// Bytes per second that any line is trusted to carry, above zero: 16 000, a poor mobile connection.
+    pub rate: f64,
+    /// Longest wait because of a frame's size: 150 ms, so that a change of the whole screen does not delay the next key.
+    pub longest_for_size: Duration,
+    /// Times that the last write took, from 0: 2, so that the terminal has twice as long as it needed.
+    pub write_factor: u32,
+    /// Longest wait because of a slow write: 500 ms.
+    pub longest_for_write: Duration,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self {
+            shortest: Duration::from_millis(33),
+            rate: 16_000.0,
+            longest_for_size: Duration::from_millis(150),
+            write_factor: 2,
+            longest_for_write: Duration::from_millis(500),
+        }
+    }
+}
+
+impl Pace {
+    /// The wait from the end of a frame to the start of the next.
+    fn gap(&self, written: Written) -> Duration {
+        if written.bytes == 0 {
+            return Duration::ZERO;
+        }
+        let for_size = Duration::try_from_secs_f64(written.bytes as f64 / self.rate).unwrap_or(Duration::MAX);
+        let for_write = written.took.saturating_mul(self.write_factor);
+        self.shortest.max(for_size.min(self.longest_for_size)).max(for_write.min(self.longest_for_write))
+    }
+}
+
+/// The screen to draw on.
+pub struct Display {
+    terminal: Terminal<Screen>,
+    pace: Pace,
+    due: Instant,
+}
+
+impl Display {
+    pub(super) fn new(line: &'static Line) -> io::Result<Self> {
+        Ok(Self { terminal: Terminal::new(Screen::new(line))?, pace: Pace::default(), due: Instant::now() })
+    }
+
+    /// Draws a frame and writes what has changed, in one write; nothing if nothing has.
+    ///
+    /// Inside `render` only the frame's own area counts: the window may have another size by then. Returns once
+    /// the terminal has taken the bytes; if it has gone away, the program ends here.
+    pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) {
+        if self.terminal.draw(render).is_err() {
+            end(HUNG_UP);
+        }
+        self.due = Instant::now() + self.pace.gap(self.terminal.backend().last_written());
+    }
+
+    /// When the next frame may be drawn.
+    #[must_use]
+    pub fn due(&self) -> Instant {
+        self.due
+    }
+
+    /// Whether the next frame may be drawn now.
+    #[must_use]
+    pub fn is_due(&self) -> bool {
+        Instant::now() >= self.due
+    }
+
+    /// Has the next frame draw everything, whatever the terminal shows now.
+    ///
+    /// Needed after a stop and after any resize: a window that shrank and grew back between two frames has its old size
+    /// and has lost what it showed.
+    pub fn repaint(&mut self) {
+        // Not the terminal's own `clear`, which asks for the cursor's position.
+        if self.terminal.backend_mut().clear_region(ClearType::All).is_err() {
+            end(HUNG_UP);
+        }
+        // Blanks the buffer that the next frame is compared with.
+        self.terminal.swap_buffers();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_frames_follow_at_thirty_per_second_and_large_ones_at_the_rate() {
+        let pace = Pace::default();
+        let gap = |bytes, took| pace.gap(Written { bytes, took: Duration::from_millis(took) }).as_millis();
+        assert_eq!(gap(0, 0), 0);
+        assert_eq!(gap(200, 0), 33);
+        assert_eq!(gap(1600, 0), 100);
+        assert_eq!(gap(100_000, 0), 150);
+        assert_eq!(gap(200, 100), 200);
+        assert_eq!(gap(200, 60_000), 500);
+    }
+}

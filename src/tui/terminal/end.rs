@@ -1,0 +1,161 @@
+//! The one way out for everything that ends the program from outside its main loop.
+//!
+//! The first thread to arrive ends the process; the others wait for it. From then on a timer runs that ends the
+//! process whatever the rest of it is stuck in.
+
+use std::{
+    backtrace::{Backtrace, BacktraceStatus},
+    fmt::Write as _,
+    io::{self, IsTerminal, Write as _},
+    panic::{self, PanicHookInfo},
+    process,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
+
+use super::line::Line;
+
+/// The status after a hang-up, the same as after SIGHUP.
+pub(super) const HUNG_UP: i32 = 129;
+
+/// The status after a panic, the usual one.
+const PANICKED: i32 = 101;
+
+/// How long the last words may take.
+const LIMIT: Duration = Duration::from_secs(1);
+
+/// How long a panic message may wait for room on the terminal.
+const MESSAGE_PATIENCE: Duration = Duration::from_millis(200);
+
+/// The thread that speaks the last words; a panic in it ends only the words.
+const LAST_WORDS: &str = "last-words";
+
+type LastWords = Arc<dyn Fn() + Send + Sync>;
+
+static ENDING: AtomicBool = AtomicBool::new(false);
+static WORDS: Mutex<Option<LastWords>> = Mutex::new(None);
+
+/// What to do before the process ends on a signal, a hang-up or a panic: save unsaved work.
+///
+/// It runs on a thread of its own while the other threads still run, or are stuck, or hold their locks: take what it
+/// needs with `try_lock`, and be done within a second, after which the process ends anyway. It is not called
+/// when the main loop ends by itself. The terminal may be anybody's by then: print nothing.
+pub fn set_last_words(words: Box<dyn Fn() + Send + Sync>) {
+    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(words.into());
+}
+
+/// Speaks the last words, gives the terminal back and ends the process with `status`.
+pub(super) fn end(status: i32) -> ! {
+    claim(status);
+    speak();
+    restore();
+    process::exit(status)
+}
+
+/// From now on a panic in any thread gives the terminal back, says what happened and ends the process.
+///
+/// A panicking worker would otherwise leave a screen that waits for it for ever.
+pub(super) fn install_panic_hook() {
+    panic::set_hook(Box::new(|info| {
+        if thread::current().name() == Some(LAST_WORDS) {
+            return;
+        }
+        let text = describe(info);
+        claim(PANICKED);
+        restore();
+        say(&text);
+        speak();
+        process::exit(PANICKED)
+    }));
+}
+
+/// Gives the terminal back, if it was ever taken.
+pub(super) fn restore() {
+    if let Some(line) = Line::get() {
+        line.give_back();
+    }
+}
+
+/// Returns in one thread only, with the timer running.
+fn claim(status: i32) {
+    if ENDING.swap(true, Ordering::SeqCst) {
+        loop {
+            thread::park();
+        }
+    }
+    // Without a timer the end is still near: only the last words could hold it up.
+    let _ = thread::Builder::new().name("end".to_owned()).spawn(move || {
+        thread::sleep(LIMIT);
+        restore();
+        // At once: the usual exit would wait for the one that is stuck.
+        signal_hook::low_level::exit(status)
+    });
+}
+
+/// Runs the last words, if there are any.
+fn speak() {
+    let words = WORDS.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(words) = words
+        && let Ok(speaker) = thread::Builder::new().name(LAST_WORDS.to_owned()).spawn(move || words())
+    {
+        let _ = speaker.join();
+    }
+}
+
+/// A panic as text for the main screen: where, in which thread, what.
+fn describe(info: &PanicHookInfo<'_>) -> String {
+    let what = info
+        .payload()
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| info.payload().downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message");
+    let place = info.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);
+    let thread = thread::current();
+    let mut text = format!(
+        "{name} panicked at {place} (thread {thread}):\n{what}\nThis is a fault of {name} {version}. Please report it.\n",
+        name = env!("CARGO_PKG_NAME"),
+        thread = thread.name().unwrap_or("without a name"),
+        version = env!("CARGO_PKG_VERSION"),
+    );
+    let trace = Backtrace::capture();
+    if trace.status() == BacktraceStatus::Captured {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{trace}");
+    }
+    visible(&text)
+}
+
+/// The text without anything that a terminal would obey: a message may quote a file.
+fn visible(text: &str) -> String {
+    let bidirectional =
+        |c| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    text.chars()
+        .map(|c| if c != '\n' && (c.is_control() || bidirectional(c)) { '\u{fffd}' } else { c })
+        .collect()
+}
+
+/// Standard error, without being held up by a terminal that nobody reads.
+fn say(text: &str) {
+    match Line::get() {
+        Some(line) if io::stderr().is_terminal() => drop(line.send(text.as_bytes(), MESSAGE_PATIENCE)),
+        _ => drop(io::stderr().write_all(text.as_bytes())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::visible;
+
+    #[test]
+    fn a_message_cannot_steer_the_terminal() {
+        assert_eq!(
+            visible("a\n\x1b]0;t\x07\u{9b}31m\u{202e}ä"),
+            "a\n\u{fffd}]0;t\u{fffd}\u{fffd}31m\u{fffd}ä"
+        );
+    }
+}

@@ -1,0 +1,21 @@
+//! Notices that the terminal has gone away, also where no SIGHUP tells (sudo, nohup, some task runners).
+//!
+//! Needed because the event reader does not take end-of-file for an end: it would read it again and again at full
+//! speed, and never return.
+
+use std::{io, thread};
+
+use super::{
+    end::{HUNG_UP, end},
+    line::Line,
+};
+
+/// Starts the watch; it sleeps until there is a hang-up.
+pub(super) fn watch(line: &'static Line) -> io::Result<()> {
+    thread::Builder::new().name("hang-up".to_owned()).spawn(|| {
+        if line.wait_for_hang_up().is_ok() {
+            end(HUNG_UP);
+        }
+    })?;
+    Ok(())
+}

@@ -1,0 +1,250 @@
+//! The terminal itself: the modes switched on, the string that undoes them, and writing that cannot be stuck.
+//!
+//! The terminal is opened a second time, non-blocking. Setting the flag on standard output would set it for the
+//! shell too, since they share one open file. A write then never waits inside the kernel: the drawing thread waits for room with
+//! `poll`, holding no lock, so that any other thread can give the terminal back meanwhile.
+
+use std::{
+    io,
+    os::fd::{AsFd, OwnedFd},
+    sync::{
+        Mutex, MutexGuard, OnceLock, PoisonError, TryLockError,
+        atomic::{AtomicU32, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    fs::{Mode, OFlags, open},
+    io::{Errno, retry_on_intr},
+    process::{getpgrp, getsid},
+    stdio::{stdin, stdout},
+    termios::{
+        OptionalActions, QueueSelector, SpecialCodeIndex, Termios, tcflush, tcgetattr, tcgetpgrp, tcgetsid,
+        tcgetwinsize, tcsetattr, ttyname,
+    },
+};
+
+/// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
+const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
+
+/// Undoes everything that [`TAKE`] and a frame can leave on.
+///
+/// It starts with CAN, since discarded output may have ended within a sequence.
+const GIVE_BACK: &[u8] = b"\x18\x1b[0m\x1b[?2004l\x1b[?1049l\x1b[?25h";
+
+/// How long giving back may wait: first for a writer in the middle of a write, then for room for [`GIVE_BACK`].
+const PATIENCE: Duration = Duration::from_millis(80);
+
+/// How long taking the terminal may wait for room.
+const TAKE_PATIENCE: Duration = Duration::from_secs(1);
+
+/// A size of nothing means that nobody knows it (serial lines); then it is taken to be this, as elsewhere.
+const USUAL_SIZE: (u16, u16) = (80, 24);
+
+static LINE: OnceLock<Line> = OnceLock::new();
+
+/// The terminal of this process.
+pub(super) struct Line {
+    fd: OwnedFd,
+    /// The modes before the terminal was taken.
+    before: Mutex<Termios>,
+    /// How often the terminal changed hands. Odd: ours. A frame begun under another number is not continued.
+    hands: AtomicU32,
+    /// Held for the length of one write.
+    turn: Mutex<()>,
+}
+
+impl Line {
+    /// Opens the terminal once for the whole process; nothing is changed yet.
+    pub(super) fn open() -> io::Result<&'static Self> {
+        let fd = reopen()?;
+        let before = tcgetattr(&fd)?;
+        let line = Self { fd, before: Mutex::new(before), hands: AtomicU32::new(0), turn: Mutex::new(()) };
+        if LINE.set(line).is_err() {
+            return Err(io::Error::new(io::ErrorKind::AlreadyExists, "the terminal is already taken"));
+        }
+        Self::get().ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
+    /// The terminal, once opened.
+    pub(super) fn get() -> Option<&'static Self> {
+        LINE.get()
+    }
+
+    /// Raw mode, alternate screen, no cursor, marked pastes. Taking it again sets all of them anew.
+    pub(super) fn take(&self) -> io::Result<()> {
+        let _turn = self.my_turn();
+        let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
+        let ours = self.is_taken();
+        if !ours {
+            // A shell may have changed them since.
+            *before = retry_on_intr(|| tcgetattr(&self.fd))?;
+        }
+        let mut raw = before.clone();
+        raw.make_raw();
+        raw.special_codes[SpecialCodeIndex::VMIN] = 1;
+        raw.special_codes[SpecialCodeIndex::VTIME] = 0;
+        retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw))?;
+        self.hands.fetch_add(if ours { 2 } else { 1 }, Ordering::SeqCst);
+        self.send(TAKE, TAKE_PATIENCE)
+    }
+
+    /// Gives the terminal back as it was. From any thread, any number of times, in less than 200 ms.
+    ///
+    /// There is nobody to report a failure to: a terminal that cannot be restored is gone.
+    pub(super) fn give_back(&self) {
+        let hands = self.hands.load(Ordering::SeqCst);
+        if !is_ours(hands)
+            || self
+                .hands
+                .compare_exchange(hands, hands.wrapping_add(1), Ordering::SeqCst, Ordering::SeqCst)
+                .is_err()
+        {
+            return;
+        }
+        let _turn = self.my_turn();
+        // What nobody has read would come before the string that undoes the modes, if there were room for it at all.
+        let _ = tcflush(&self.fd, QueueSelector::OFlush);
+        let before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
+        let _ = retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &before));
+        let _ = self.send(GIVE_BACK, PATIENCE);
+    }
+
+    /// Writes a whole frame, waiting for room as long as it takes.
+    ///
+    /// If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
+    pub(super) fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
+        let hands = self.hands.load(Ordering::SeqCst);
+        let mut rest = frame;
+        while !rest.is_empty() {
+            {
+                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
+                    return Ok(());
+                }
+                match rustix::io::write(&self.fd, rest) {
+                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
+                    Err(Errno::AGAIN | Errno::INTR) => {}
+                    Err(error) => return Err(error.into()),
+                }
+            }
+            if !rest.is_empty() {
+                self.wait(PollFlags::OUT, None)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes outside of a frame, for at most `patience`; what does not fit by then is dropped.
+    pub(super) fn send(&self, bytes: &[u8], patience: Duration) -> io::Result<()> {
+        let until = Instant::now() + patience;
+        let mut rest = bytes;
+        loop {
+            match rustix::io::write(&self.fd, rest) {
+                Ok(written) => rest = rest.get(written..).unwrap_or_default(),
+                Err(Errno::AGAIN | Errno::INTR) => {}
+                Err(error) => return Err(error.into()),
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if rest.is_empty() || left.is_zero() {
+                return Ok(());
+            }
+            self.wait(PollFlags::OUT, Some(left))?;
+        }
+    }
+
+    /// Returns once the terminal has gone away.
+    pub(super) fn wait_for_hang_up(&self) -> io::Result<()> {
+        // Hang-up and error are reported without being asked for.
+        while !self.wait(PollFlags::empty(), None)? {}
+        Ok(())
+    }
+
+    /// Has the event reader look at input that it has overlooked, if there is any.
+    ///
+    /// It is told of input only when some arrives, and forgets what it was told when the window is resized at the same
+    /// moment or when it has read one buffer full of many: those keys would wait for the next one. Setting the modes, here
+    /// to what they are, makes the kernel tell it again.
+    pub(super) fn remind_of_input(&self) {
+        let waiting = poll(&mut [PollFd::new(&stdin(), PollFlags::IN)], Some(&Timespec::default()));
+        if !matches!(waiting, Ok(1..)) {
+            return;
+        }
+        let _turn = self.my_turn();
+        // In the background it would stop us.
+        if self.is_taken()
+            && self.in_foreground()
+            && let Ok(modes) = tcgetattr(stdin())
+        {
+            let _ = tcsetattr(stdin(), OptionalActions::Now, &modes);
+        }
+    }
+
+    /// Columns and rows.
+    pub(super) fn size(&self) -> io::Result<(u16, u16)> {
+        let size = tcgetwinsize(&self.fd)?;
+        Ok(if (size.ws_col, size.ws_row) == (0, 0) { USUAL_SIZE } else { (size.ws_col, size.ws_row) })
+    }
+
+    /// Whether the modes are ours at the moment.
+    pub(super) fn is_taken(&self) -> bool {
+        is_ours(self.hands.load(Ordering::SeqCst))
+    }
+
+    /// Whether the terminal listens to our process group. Also true where there is no job control to ask.
+    pub(super) fn in_foreground(&self) -> bool {
+        tcgetpgrp(&self.fd).map_or(true, |foreground| foreground == getpgrp())
+    }
+
+    /// Waits until one of `flags`, or a hang-up, is reported; false if interrupted or out of time.
+    fn wait(&self, flags: PollFlags, patience: Option<Duration>) -> io::Result<bool> {
+        let patience = patience.and_then(|patience| Timespec::try_from(patience).ok());
+        match poll(&mut [PollFd::new(&self.fd, flags)], patience.as_ref()) {
+            Ok(ready) => Ok(ready > 0),
+            Err(Errno::INTR) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The turn to write; after [`PATIENCE`] without it.
+    ///
+    /// Holding it never takes longer than one write that cannot wait, unless the terminal could not be opened again.
+    fn my_turn(&self) -> Option<MutexGuard<'_, ()>> {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            match self.turn.try_lock() {
+                Ok(turn) => return Some(turn),
+                Err(TryLockError::Poisoned(turn)) => return Some(turn.into_inner()),
+                Err(TryLockError::WouldBlock) if Instant::now() < until => {
+                    thread::sleep(Duration::from_millis(1));
+                }
+                Err(TryLockError::WouldBlock) => return None,
+            }
+        }
+    }
+}
+
+/// What a count of [`Line::hands`] means.
+fn is_ours(hands: u32) -> bool {
+    !hands.is_multiple_of(2)
+}
+
+/// Another open file of the terminal on standard output.
+fn reopen() -> io::Result<OwnedFd> {
+    let flags = OFlags::RDWR | OFlags::NONBLOCK | OFlags::NOCTTY | OFlags::CLOEXEC;
+    if let Ok(name) = ttyname(stdout(), Vec::new())
+        && let Ok(fd) = open(name, flags, Mode::empty())
+    {
+        return Ok(fd);
+    }
+    // After `su` the terminal still belongs to somebody else; one's own controlling terminal may always be opened.
+    let controlling = matches!((tcgetsid(stdout()), getsid(None)), (Ok(theirs), Ok(ours)) if theirs == ours);
+    if controlling && let Ok(fd) = open("/dev/tty", flags, Mode::empty()) {
+        return Ok(fd);
+    }
+    // A blocking one: then only the timer of `end` protects against a terminal that nobody reads.
+    stdout().as_fd().try_clone_to_owned()
+}

@@ -1,0 +1,132 @@
+//! The ratatui backend: a frame is one write, an unchanged frame is none, and the terminal is never asked anything.
+//!
+//! Answers arrive as input, late on a slow link, and only the input thread reads; so the cursor's position is
+//! remembered instead. Nothing here fails: a terminal that cannot be written to has gone away, which ends the program
+//! on the spot, before ratatui could panic over it.
+
+use std::{
+    io,
+    time::{Duration, Instant},
+};
+
+use ratatui::{
+    backend::{Backend, ClearType, CrosstermBackend, WindowSize},
+    buffer::Cell,
+    layout::{Position, Size},
+};
+
+use super::{
+    end::{HUNG_UP, end},
+    line::Line,
+};
+
+/// The terminal as ratatui sees it.
+pub struct Screen {
+    line: &'static Line,
+    /// The frame so far.
+    frame: Vec<u8>,
+    /// Whether the cursor is shown, if known.
+    cursor_shown: Option<bool>,
+    /// Where the cursor was put, if nothing was drawn since.
+    cursor_at: Option<Position>,
+    last: Written,
+}
+
+/// What the last frame cost.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Written {
+    pub(super) bytes: usize,
+    pub(super) took: Duration,
+}
+
+impl Screen {
+    pub(super) fn new(line: &'static Line) -> Self {
+        Self { line, frame: Vec::new(), cursor_shown: None, cursor_at: None, last: Written::default() }
+    }
+
+    pub(super) fn last_written(&self) -> Written {
+        self.last
+    }
+
+    /// Collects what the usual backend would write.
+    fn collect(
+        &mut self,
+        write: impl FnOnce(&mut CrosstermBackend<&mut Vec<u8>>) -> io::Result<()>,
+    ) -> io::Result<()> {
+        self.cursor_at = None;
+        write(&mut CrosstermBackend::new(&mut self.frame))
+    }
+
+    fn show(&mut self, shown: bool) {
+        if self.cursor_shown.replace(shown) != Some(shown) {
+            self.frame.extend_from_slice(if shown { b"\x1b[?25h" } else { b"\x1b[?25l" });
+        }
+    }
+}
+
+impl Backend for Screen {
+    type Error = io::Error;
+
+    fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
+    where
+        I: Iterator<Item = (u16, u16, &'a Cell)>,
+    {
+        let mut content = content.peekable();
+        if content.peek().is_none() {
+            return Ok(());
+        }
+        self.collect(|backend| backend.draw(content))
+    }
+
+    fn hide_cursor(&mut self) -> io::Result<()> {
+        self.show(false);
+        Ok(())
+    }
+
+    fn show_cursor(&mut self) -> io::Result<()> {
+        self.show(true);
+        Ok(())
+    }
+
+    fn get_cursor_position(&mut self) -> io::Result<Position> {
+        Ok(self.cursor_at.unwrap_or(Position::ORIGIN))
+    }
+
+    fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
+        let position = position.into();
+        if self.cursor_at != Some(position) {
+            self.collect(|backend| backend.set_cursor_position(position))?;
+            self.cursor_at = Some(position);
+        }
+        Ok(())
+    }
+
+    fn clear(&mut self) -> io::Result<()> {
+        self.clear_region(ClearType::All)
+    }
+
+    fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
+        // After a stop the modes were taken anew, and nothing is known of the cursor.
+        self.cursor_shown = None;
+        self.collect(|backend| backend.clear_region(clear_type))
+    }
+
+    fn size(&self) -> io::Result<Size> {
+        let (columns, rows) = self.line.size().unwrap_or_else(|_| end(HUNG_UP));
+        Ok(Size::new(columns, rows))
+    }
+
+    fn window_size(&mut self) -> io::Result<WindowSize> {
+        Ok(WindowSize { columns_rows: self.size()?, pixels: Size::ZERO })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let start = Instant::now();
+        if self.line.write_frame(&self.frame).is_err() {
+            end(HUNG_UP);
+        }
+        self.last = Written { bytes: self.frame.len(), took: start.elapsed() };
+        self.frame.clear();
+        Ok(())
+    }
+}

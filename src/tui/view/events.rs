@@ -1,0 +1,156 @@
+//! The instabilities, one line each.
+
+use super::{is_selected, panel};
+use crate::explorer::{EventSource, Model, Panel};
+use crate::report::number::{loss, significant};
+use crate::report::unload::EventReport;
+use crate::tui::app::App;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::Style;
+use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+/// Width from which the long columns fit.
+const WIDE: u16 = 112;
+
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, &app.theme);
+    let events = model.shown_events();
+    let selected = is_selected(app, Panel::Events);
+    let block = panel(theme, title(model), selected)
+        .title_top(Line::styled(theme.text(&headline(model)), theme.strong()).right_aligned());
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
+    let wide = inner.width >= WIDE;
+    frame.render_widget(Line::styled(theme.text(heads(wide)), theme.dim()), head);
+    if events.is_empty() {
+        frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
+        return;
+    }
+    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.critical_force);
+    let rows = usize::from(body.height);
+    let first = (model.event + 1).saturating_sub(rows).min(events.len().saturating_sub(rows));
+    let here = here(model, &events);
+    let hidden = events.len().saturating_sub(first + rows);
+    let lines: Vec<Line> = events
+        .iter()
+        .enumerate()
+        .skip(first)
+        .take(rows)
+        .map(|(i, event)| {
+            let mut text = row(i + 1, event, critical, wide);
+            if here == Some(i) {
+                text.push_str(" @");
+            }
+            if hidden > 0 && i + 1 == first + rows {
+                text.push_str(&format!(" +{hidden}"));
+            }
+            let chosen = i == model.event && selected;
+            let mark = if chosen { '>' } else { ' ' };
+            let style = if chosen { theme.selection() } else { Style::new() };
+            Line::styled(format!("{mark}{}", theme.text(&text)), style)
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines), body);
+}
+
+/// The event of the limit point on which the walker stands.
+fn here(model: &Model, events: &[EventReport]) -> Option<usize> {
+    model.limit_number()?;
+    let node = model.walker()?;
+    let s = node.state.in_units(node.setting.case.units()).contact_radius;
+    events.iter().position(|event| (event.before.contact_radius - s).abs() <= 1e-6 * s)
+}
+
+fn title(model: &Model) -> String {
+    let on_curve = model.curve.as_ref().and_then(|c| c.report.as_ref()).map_or(0, |r| r.events.len());
+    let walked = model.walked_events().len();
+    match model.events {
+        EventSource::Curve => format!("Events on the curve {on_curve}, v: walked {walked}"),
+        EventSource::Walked => format!("Events walked {walked}, v: on the curve {on_curve}"),
+    }
+}
+
+/// Pull-off and total loss.
+fn headline(model: &Model) -> String {
+    let Some(curve) = &model.curve else { return String::new() };
+    if model.events == EventSource::Walked {
+        let lost: f64 =
+            model.walked_events().iter().filter_map(|(_, e)| e.dissipated).fold(0.0, |a, b| a + b);
+        return format!("lost {}", loss(lost));
+    }
+    match &curve.report {
+        None => String::new(),
+        Some(report) => {
+            let force = if curve.critical_force > 0.0 {
+                format!("{} Pc", significant(report.min_force / curve.critical_force, 4))
+            } else {
+                significant(report.min_force, 4)
+            };
+            let pull_off = if report.events.iter().any(|e| e.after.is_none()) { "pull-off" } else { "least" };
+            format!(
+                "{pull_off} {force}, δ {}, lost {}",
+                significant(report.min_approach, 4),
+                loss(report.total_dissipated)
+            )
+        }
+    }
+}
+
+fn empty(model: &Model) -> String {
+    match (&model.curve, model.events) {
+        (None, _) => " computing".to_owned(),
+        (Some(_), EventSource::Walked) => " none yet: n runs to a limit point, x takes the jump".to_owned(),
+        (Some(curve), EventSource::Curve) => match &curve.unloading {
+            Err(reason) => format!(" no path: {reason}"),
+            Ok(unloading) => format!(" none: {}", unloading.stop),
+        },
+    }
+}
+
+fn heads(wide: bool) -> &'static str {
+    if wide {
+        "   # event             δ    after           P    after   P/Pc  after         s     after   crest  lost        by area"
+    } else {
+        "   #         δ   P/Pc after        s  after  crest lost     event"
+    }
+}
+
+fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
+    let dash = || "-".to_owned();
+    let after = event.after.as_ref();
+    let force = |p: f64| if critical > 0.0 { format!("{:.3}", p / critical) } else { significant(p, 3) };
+    let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
+    let crests = format!("{}>{}", crest(event.before.wave), crest(after.and_then(|a| a.wave)));
+    let lost = event.dissipated.map_or_else(|| "no bound".to_owned(), loss);
+    let before = &event.before;
+    let landed_force = after.map_or_else(dash, |a| force(a.force));
+    if !wide {
+        return format!(
+            "{number:>3} {:>9} {:>6} {landed_force:>6} {:>7} {:>6} {crests:>6} {lost:<8} {}",
+            significant(before.approach, 4),
+            force(before.force),
+            significant(before.contact_radius, 4),
+            after.map_or_else(dash, |a| significant(a.contact_radius, 4)),
+            event.kind,
+        );
+    }
+    let agreement = match (event.dissipated, event.dissipated_by_area) {
+        (Some(a), Some(b)) if (a - b).abs() <= 1e-6 * a.abs() => "agrees".to_owned(),
+        (Some(_), Some(b)) => loss(b),
+        _ => "dead load".to_owned(),
+    };
+    format!(
+        "{number:>3} {:<9} {:>9} {:>8} {:>11} {:>8} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>7}  {lost:<10}  {agreement}",
+        event.kind,
+        significant(before.approach, 4),
+        after.map_or_else(dash, |a| significant(a.approach, 3)),
+        significant(before.force, 5),
+        after.map_or_else(dash, |a| significant(a.force, 3)),
+        force(before.force),
+        significant(before.contact_radius, 5),
+        after.map_or_else(dash, |a| significant(a.contact_radius, 5)),
+    )
+}

@@ -1,0 +1,61 @@
+//! The help, read from the one table of commands.
+
+use super::panel;
+use crate::explorer::command::ROWS;
+use crate::tui::app::App;
+use crate::tui::keymap;
+use crate::tui::theme::Theme;
+use ratatui::Frame;
+use ratatui::layout::{Margin, Rect};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Clear, Paragraph};
+
+const READING: &[&str] = &[
+    "The curve holds every equilibrium of one contact disc: approach δ, force P (tension is negative) and",
+    "contact radius s. On its unstable parts (dotted) the contact would not stay under the control chosen.",
+    "v marks a limit point of that control: there the edge lets go and runs, at constant control, to the",
+    "next stable part, and the energy between is lost. d and p mark the limit points of displacement and force.",
+    "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
+];
+
+fn text(theme: &Theme) -> Vec<Line<'static>> {
+    let mut lines = Vec::new();
+    let mut section = "";
+    for row in ROWS {
+        if row.section != section {
+            section = row.section;
+            lines.push(Line::default());
+            lines.push(Line::styled(section, theme.strong()));
+        }
+        lines.push(Line::from(vec![
+            Span::styled(format!("  {:<16}", keymap::label(row.id)), theme.key()),
+            Span::raw(row.help),
+        ]));
+    }
+    lines.push(Line::from(vec![
+        Span::styled(format!("  {:<16}", "Ctrl-Z"), theme.key()),
+        Span::raw("back to the shell; fg returns"),
+    ]));
+    lines.push(Line::default());
+    lines.push(Line::styled("How to read it", theme.strong()));
+    lines.extend(READING.iter().map(|line| Line::raw(format!("  {}", theme.text(line)))));
+    lines.remove(0);
+    lines
+}
+
+/// How far the help can be scrolled.
+pub fn lines() -> u16 {
+    u16::try_from(text(&Theme { ascii: true }).len()).unwrap_or(u16::MAX).saturating_sub(1)
+}
+
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
+    let theme = &app.theme;
+    let lines = text(theme);
+    let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
+    let block = panel(theme, "Help: up and down scroll, Esc closes".to_owned(), true);
+    let inner = block.inner(area);
+    let last = u16::try_from(lines.len()).unwrap_or(u16::MAX).saturating_sub(inner.height);
+    frame.render_widget(Clear, area);
+    frame.render_widget(block, area);
+    frame.render_widget(Paragraph::new(lines).scroll((scroll.min(last), 0)), inner);
+}

@@ -1,0 +1,75 @@
+//! One file per screen region; each takes the app by shared reference and draws.
+
+pub mod charts;
+pub mod events;
+pub mod header;
+pub mod help;
+pub mod overlays;
+pub mod problem;
+pub mod status;
+pub mod walker;
+
+use super::app::App;
+use super::layout::{SMALLEST, regions};
+use super::overlay::Overlay;
+use super::theme::Theme;
+use crate::explorer::Panel;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Borders};
+
+/// Draws the whole screen.
+pub fn draw(frame: &mut Frame<'_>, app: &App) {
+    // The frame's own area only: the terminal may have changed its size meanwhile.
+    let area = frame.area();
+    let events = app.model.shown_events().len();
+    let Some(regions) = regions(area, app.model.chart, events) else {
+        let (width, height) = SMALLEST;
+        let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
+        frame.render_widget(Line::raw(text), Rect { height: area.height.min(1), ..area });
+        return;
+    };
+    header::draw(frame, regions.header, app);
+    if let Some(area) = regions.problem {
+        problem::draw(frame, area, app);
+    }
+    if let Some(area) = regions.walker {
+        walker::draw(frame, area, app);
+    }
+    for (chart, area) in &regions.charts {
+        charts::draw(frame, *area, app, *chart, regions.charts.len() == 1);
+    }
+    if let Some(area) = regions.events {
+        events::draw(frame, area, app);
+    }
+    status::draw(frame, regions.status, regions.footer, app);
+    match &app.overlay {
+        None => {}
+        Some(Overlay::Help(scroll)) => help::draw(frame, area, app, *scroll),
+        Some(overlay) => overlays::draw(frame, area, app, overlay),
+    }
+}
+
+/// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
+fn side_panel<'a>(theme: &Theme, title: String, selected: bool) -> Block<'a> {
+    panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
+}
+
+/// A panel's frame with its title.
+fn panel<'a>(theme: &Theme, title: String, selected: bool) -> Block<'a> {
+    Block::bordered()
+        .border_set(theme.border())
+        .border_style(theme.frame(selected))
+        .title(Span::styled(theme.text(&title), theme.strong()))
+}
+
+/// Whether a panel is the selected one, and nothing lies over it.
+fn is_selected(app: &App, panel: Panel) -> bool {
+    app.model.panel == panel && app.overlay.is_none()
+}
+
+/// `key value` with the key dim.
+fn pair(theme: &Theme, key: &str, value: String) -> [Span<'static>; 2] {
+    [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(&value))]
+}

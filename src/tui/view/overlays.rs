@@ -1,0 +1,86 @@
+//! Prompts, choices and questions.
+
+use super::panel;
+use crate::tui::app::App;
+use crate::tui::overlay::{Choose, Confirm, Overlay, Prompt};
+use crate::tui::theme::Theme;
+use ratatui::Frame;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Clear, Paragraph, Wrap};
+
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
+    match overlay {
+        Overlay::Prompt(prompt) => draw_prompt(frame, area, &app.theme, prompt),
+        Overlay::Choose(choose) => draw_choose(frame, area, &app.theme, choose),
+        Overlay::Confirm(confirm) => draw_confirm(frame, area, &app.theme, confirm),
+        Overlay::Help(_) => {}
+    }
+}
+
+/// A box of this size in the middle, as far as it fits.
+fn middle(area: Rect, width: u16, height: u16) -> Rect {
+    let width = width.min(area.width.saturating_sub(2));
+    let height = height.min(area.height.saturating_sub(2));
+    Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
+}
+
+fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: &Theme, prompt: &Prompt) {
+    let area = middle(area, 76, if prompt.error.is_some() { 7 } else { 5 });
+    let block = panel(theme, prompt.title.clone(), true);
+    let inner = block.inner(area);
+    frame.render_widget(Clear, area);
+    frame.render_widget(block, area);
+    let width = usize::from(inner.width.saturating_sub(3)).max(1);
+    let scroll = prompt.input.visual_scroll(width);
+    let shown: String = prompt.input.value().chars().skip(scroll).take(width).collect();
+    let mut lines = vec![
+        Line::raw(format!("> {}", theme.text(&shown))),
+        Line::default(),
+        Line::styled(theme.text(&prompt.note), theme.dim()),
+    ];
+    if let Some(error) = &prompt.error {
+        lines.push(Line::styled(theme.text(error), theme.error()));
+    }
+    frame.render_widget(Paragraph::new(lines).wrap(Wrap { trim: false }), inner);
+    let column = prompt.input.visual_cursor().saturating_sub(scroll).min(width);
+    let column = u16::try_from(column).unwrap_or(0);
+    if inner.height > 0 && inner.width > 2 {
+        frame.set_cursor_position(Position::new(inner.x + 2 + column, inner.y));
+    }
+}
+
+fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: &Theme, choose: &Choose) {
+    let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
+    let area = middle(area, 76, height);
+    let block = panel(theme, format!("{}: Enter takes, Esc closes", choose.title), true);
+    let inner = block.inner(area);
+    frame.render_widget(Clear, area);
+    frame.render_widget(block, area);
+    let rows = usize::from(inner.height);
+    let first = (choose.selected + 1).saturating_sub(rows);
+    let lines: Vec<Line> = choose
+        .items
+        .iter()
+        .enumerate()
+        .skip(first)
+        .take(rows)
+        .map(|(i, item)| {
+            let chosen = i == choose.selected;
+            let mark = if chosen { '>' } else { ' ' };
+            let text = format!("{mark} {}", theme.text(&item.text));
+            if chosen { Line::styled(text, theme.selection()) } else { Line::raw(text) }
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+fn draw_confirm(frame: &mut Frame<'_>, area: Rect, theme: &Theme, confirm: &Confirm) {
+    let area = middle(area, 70, 5);
+    let block = panel(theme, "Sure?".to_owned(), true);
+    let inner = block.inner(area);
+    frame.render_widget(Clear, area);
+    frame.render_widget(block, area);
+    let text = Paragraph::new(theme.text(&confirm.question)).wrap(Wrap { trim: true });
+    frame.render_widget(text, inner);
+}

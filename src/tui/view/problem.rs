@@ -1,0 +1,93 @@
+//! The parameters with their values, and the dimensionless groups that follow from them.
+
+use super::{is_selected, pair, side_panel};
+use crate::contact::Groups;
+use crate::explorer::Panel;
+use crate::preset::{Parameter, Value};
+use crate::report::number::short;
+use crate::tui::app::App;
+use crate::tui::theme::Theme;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::Paragraph;
+
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, &app.theme);
+    let selected = is_selected(app, Panel::Problem);
+    let block = side_panel(theme, "Problem".to_owned(), selected);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let groups = group_lines(theme, &Groups::of(&model.preset.problem()), inner.width);
+    let knobs = model.knobs();
+    // The groups stand below as far as there is room for five parameters above them.
+    let shown_groups = groups.len().min(usize::from(inner.height).saturating_sub(knobs.len().min(5)));
+    let rows = usize::from(inner.height).saturating_sub(shown_groups);
+    // The list scrolls so that the selected line is seen.
+    let first = (model.parameter + 1).saturating_sub(rows).min(knobs.len().saturating_sub(rows));
+    let mut lines: Vec<Line> = knobs
+        .iter()
+        .enumerate()
+        .skip(first)
+        .take(rows)
+        .map(|(i, (row, value))| {
+            knob_line(theme, row, value.as_ref(), i == model.parameter && selected, inner.width)
+        })
+        .collect();
+    while lines.len() < rows {
+        lines.push(Line::default());
+    }
+    lines.extend(groups.into_iter().take(shown_groups));
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// A label as the terminal shows it.
+pub fn label(theme: &Theme, row: &Parameter) -> String {
+    let unicode = row.label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ");
+    if theme.ascii { row.label.to_owned() } else { unicode }
+}
+
+fn knob_line(
+    theme: &Theme,
+    row: &Parameter,
+    value: Option<&Value>,
+    selected: bool,
+    width: u16,
+) -> Line<'static> {
+    let text = match value {
+        None => "auto".to_owned(),
+        Some(Value::Number(x)) => short(*x, 7),
+        Some(value) => theme.text(&value.to_string()),
+    };
+    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
+    let room = usize::from(width).saturating_sub(10 + ends.len());
+    let text: String = text.chars().take(room).collect();
+    let line = format!("{mark}{:<8} {text}{ends}", label(theme, row));
+    let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
+    Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
+}
+
+fn group_lines(theme: &Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> {
+    let mut items: Vec<(&str, f64)> = Vec::new();
+    let mut add = |name, value: Option<f64>| items.extend(value.map(|value| (name, value)));
+    add("A/λ ", groups.amplitude_over_wavelength);
+    add("λ/R ", groups.wavelength_over_radius);
+    add("λ²/AR ", groups.connectivity);
+    add("γ' ", Some(groups.adhesion));
+    add("α ", groups.johnson);
+    let mut lines: Vec<Line> = Vec::new();
+    let mut used = usize::MAX;
+    for (name, value) in items {
+        let spans: Vec<Span<'static>> = pair(theme, name, format!("{}  ", short(value, 4))).to_vec();
+        let length: usize = spans.iter().map(Span::width).sum();
+        if used.saturating_add(length) > usize::from(width) + 2 {
+            lines.push(Line::from(" "));
+            used = 1;
+        }
+        used += length;
+        if let Some(line) = lines.last_mut() {
+            line.spans.extend(spans);
+        }
+    }
+    lines
+}

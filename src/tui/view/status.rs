@@ -1,0 +1,73 @@
+//! What the state is and which key is next; and the keys.
+
+use crate::explorer::Id;
+use crate::explorer::command::row_of;
+use crate::explorer::model::Level;
+use crate::tui::app::App;
+use crate::tui::keymap;
+use crate::tui::overlay::Overlay;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+/// The commands of the footer, the most wanted first; as many as fit are shown.
+const FOOTER: &[Id] = &[
+    Id::Step,
+    Id::NextLimit,
+    Id::Jump,
+    Id::Undo,
+    Id::Help,
+    Id::Quit,
+    Id::More,
+    Id::Control,
+    Id::NextPanel,
+    Id::Edit,
+    Id::Save,
+    Id::Open,
+    Id::Axes,
+    Id::Events,
+    Id::Export,
+    Id::Run,
+    Id::Reverse,
+    Id::Restart,
+];
+
+pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
+    let theme = &app.theme;
+    let (level, text) = app.model.status();
+    let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
+    let count = app.count.map_or_else(String::new, |count| format!("{count} "));
+    let line = Line::from(vec![
+        Span::styled(format!(" {count}"), theme.key()),
+        Span::styled(theme.text(&text), style),
+    ]);
+    frame.render_widget(line, status);
+
+    let mut spans = vec![Span::raw(" ")];
+    let mut used = 1;
+    let ids: Vec<Id> = match &app.overlay {
+        Some(Overlay::Prompt(_)) => vec![Id::Edit, Id::Cancel],
+        Some(Overlay::Choose(_) | Overlay::Help(_)) => vec![Id::Up, Id::Down, Id::Edit, Id::Cancel],
+        Some(Overlay::Confirm(_)) => vec![Id::Cancel],
+        None => FOOTER.to_vec(),
+    };
+    for id in ids {
+        let row = row_of(id);
+        if app.overlay.is_none() && !(row.enabled)(&app.model) {
+            continue;
+        }
+        let key = keymap::keys(id).first().map_or_else(String::new, |key| key.label());
+        let word = match (id, &app.overlay) {
+            (Id::Edit, Some(_)) => "accept",
+            _ => row.short,
+        };
+        let width = key.chars().count() + word.chars().count() + 3;
+        if used + width > usize::from(footer.width) + 2 {
+            break;
+        }
+        used += width;
+        spans.push(Span::styled(key, theme.key()));
+        spans.push(Span::raw(format!(" {word}  ")));
+    }
+    frame.render_widget(Line::from(spans), footer);
+}

@@ -1,0 +1,104 @@
+//! The state of the walker.
+
+use super::{is_selected, pair, side_panel};
+use crate::contact::{Control, Gap};
+use crate::explorer::history::{Node, NodeKind};
+use crate::explorer::{Model, Panel};
+use crate::quasistatic::equilibrium::wave_index;
+use crate::report::number::{short, significant};
+use crate::tui::app::App;
+use crate::tui::theme::Theme;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::Paragraph;
+
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, &app.theme);
+    let node = model.history.current();
+    let title = node.map_or_else(|| "Walker".to_owned(), |node| format!("Walker, step {}", node.step));
+    let block = side_panel(theme, title, is_selected(app, Panel::Walker));
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let Some(node) = node else { return };
+    let stale = matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node);
+    let mut lines = if node.is_apart() { apart(theme, node) } else { state(theme, model, node) };
+    if stale {
+        let style = theme.dim();
+        lines = lines.into_iter().map(|line| Line::styled(line.to_string(), style)).collect();
+        lines.insert(0, Line::styled(" not of these values", theme.error()));
+    }
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+fn apart(theme: &Theme, node: &Node) -> Vec<Line<'static>> {
+    let state = node.state.in_units(node.setting.case.units());
+    vec![
+        Line::styled(" the bodies are apart", theme.strong()),
+        Line::from(pair(theme, " pulled off at δ ", significant(state.approach, 5)).to_vec()),
+        Line::from(pair(theme, "              P ", significant(state.force, 5)).to_vec()),
+        Line::from(pair(theme, "              s ", significant(state.contact_radius, 5)).to_vec()),
+        Line::raw(" u goes back, 0 restarts"),
+    ]
+}
+
+fn state(theme: &Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
+    let case = &node.setting.case;
+    let state = node.state.in_units(case.units());
+    let critical = case.smooth().pull_off_force();
+    let wave = case.reduced.gap.feature_length();
+    let s = node.state.contact_radius;
+    let mut force = pair(theme, " P ", significant(state.force, 4)).to_vec();
+    if critical > 0.0 {
+        force.extend(pair(theme, "  /Pc ", significant(state.force / critical, 4)));
+    }
+    let mut radius = pair(theme, " s ", significant(state.contact_radius, 4)).to_vec();
+    if let Some(wave) = wave {
+        radius.extend(pair(theme, "  s/λ ", significant(s / wave, 4)));
+    }
+    let stability = node.stability();
+    let mut stable = vec![Span::styled(" stable", theme.dim())];
+    for control in case_controls(node) {
+        let name = match control {
+            Control::Displacement => " δ",
+            Control::Force => " P",
+            Control::Stiffness(_) => " k",
+        };
+        let word = if node.is_limit(control) {
+            Span::styled("LIMIT", theme.error())
+        } else if stability.under(control) {
+            Span::raw("yes")
+        } else {
+            Span::styled("no", theme.error())
+        };
+        stable.push(Span::styled(theme.text(&format!("{name} ")), theme.dim()));
+        stable.push(word);
+    }
+    let way = if model.inward {
+        theme.glyph("← inward", "< inward")
+    } else {
+        theme.glyph("→ outward", "> outward")
+    };
+    let mut lines = vec![
+        Line::from(pair(theme, " δ ", significant(state.approach, 5)).to_vec()),
+        Line::from(force),
+        Line::from(radius),
+        Line::from(stable),
+        Line::from(
+            [pair(theme, " step ", short(model.length, 3)), pair(theme, "  ", way.to_owned())].concat(),
+        ),
+    ];
+    let mut last = Vec::new();
+    if let Some(crest) = wave_index(s, wave) {
+        last.extend(pair(theme, " crest ", crest.to_string()));
+    }
+    last.extend(pair(theme, " iter ", node.point.rounds.to_string()));
+    last.extend(pair(theme, " dig. ", format!("{:.1}", case.basis.trusted_digits(&case.reduced, s))));
+    lines.push(Line::from(last));
+    lines
+}
+
+/// Displacement and force, and the spring where there is one.
+fn case_controls(node: &Node) -> Vec<Control> {
+    node.setting.case.controls()
+}
