@@ -7,7 +7,8 @@ use std::process::ExitCode;
 #[cfg(feature = "tui")]
 pub fn run(preset: Option<&OsString>) -> Result<ExitCode, Failure> {
     if let Some(reason) = crate::tui::refuse_reason() {
-        return Err(Failure::Usage(reason));
+        let reason = reason.strip_prefix("pulloff ").unwrap_or(&reason);
+        return Err(Failure::Usage(format!("{reason} (`pulloff trace` and `pulloff unload` need none)")));
     }
     let loaded = super::load(preset, &[])?;
     crate::tui::run(super::store(), loaded).map_err(|error| Failure::Terminal(error.to_string()))

@@ -8,7 +8,7 @@ use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id, Model, Panel, Reply, answer, open, update};
 use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Source};
-use crossterm::event::{Event, KeyCode, KeyEvent};
+use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
@@ -39,6 +39,12 @@ impl App {
 
     /// A key was pressed.
     pub fn key(&mut self, key: KeyEvent) -> Vec<Effect> {
+        if key.modifiers.contains(KeyModifiers::ALT) {
+            // No command has an Alt key; Escape and the next key arriving together look like one.
+            let mut effects = self.key(KeyCode::Esc.into());
+            effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
+            return effects;
+        }
         match self.overlay.take() {
             None => self.command_key(key),
             Some(Overlay::Prompt(prompt)) => self.prompt_key(prompt, key),

@@ -37,7 +37,10 @@ use theme::Theme;
 pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let sender = inbox.sender();
-    let workers = Workers::start(store, move |reply| drop(sender.send(reply)))?;
+    let workers = Workers::start(store, move |reply| {
+        // Refused only when the screen is gone, and the process with it.
+        let _ = sender.send(reply);
+    })?;
     let (mut app, effects) = App::new(loaded, Theme::of_environment());
     effects.into_iter().for_each(|effect| workers.submit(effect));
     let mut dirty = true;

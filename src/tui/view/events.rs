@@ -14,6 +14,7 @@ use ratatui::widgets::Paragraph;
 /// Width from which the long columns fit.
 const WIDE: u16 = 112;
 
+/// Draws the list of instabilities.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, &app.theme);
     let events = model.shown_events();

@@ -48,6 +48,7 @@ pub fn lines() -> u16 {
     u16::try_from(text(&Theme { ascii: true }).len()).unwrap_or(u16::MAX).saturating_sub(1)
 }
 
+/// Draws the help over the screen, scrolled by so many lines.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
     let theme = &app.theme;
     let lines = text(theme);

@@ -9,6 +9,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
+/// Draws what lies over the screen, except the help.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
     match overlay {
         Overlay::Prompt(prompt) => draw_prompt(frame, area, &app.theme, prompt),

@@ -32,6 +32,7 @@ const FOOTER: &[Id] = &[
     Id::Restart,
 ];
 
+/// Draws the status line and the footer.
 pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let theme = &app.theme;
     let (level, text) = app.model.status();

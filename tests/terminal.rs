@@ -1,0 +1,222 @@
+#![cfg(feature = "tui")]
+//! The program in a pseudo-terminal: whatever ends it, the terminal is given back.
+
+mod support;
+
+use std::{
+    fs,
+    path::PathBuf,
+    process::{Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use rustix::process::Signal;
+use support::pty::{self, Pty};
+
+/// How soon the program is gone after its terminal, or after a signal.
+const SOON: Duration = Duration::from_secs(2);
+
+/// The program under test.
+fn program() -> PathBuf {
+    PathBuf::from(env!("CARGO_BIN_EXE_pulloff"))
+}
+
+fn start(cols: u16, rows: u16) -> Pty {
+    let pty = Pty::spawn(&program(), &[], &[], cols, rows);
+    wait_until_up(&pty);
+    pty
+}
+
+fn wait_until_up(pty: &Pty) {
+    pty.wait_for(|screen| screen.contains("stable under displacement control"), "the curve");
+}
+
+/// Whether the knob of this label is the selected one.
+fn selects(screen: &str, label: &str) -> bool {
+    screen.contains(&format!(">{label}"))
+}
+
+/// The exit status, which must come soon.
+fn ends(pty: &mut Pty) -> u32 {
+    let start = Instant::now();
+    let code = pty.exit_code();
+    assert!(start.elapsed() < SOON, "took {:?} to end", start.elapsed());
+    code
+}
+
+#[test]
+fn quitting_gives_the_terminal_back() {
+    let mut pty = start(80, 24);
+    assert_eq!(pty.modes_left(), [25, 1049, 2004]);
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+    pty.assert_restored();
+}
+
+#[test]
+fn signals_end_the_program_and_give_the_terminal_back() {
+    for (signal, code) in [(Signal::TERM, 143), (Signal::HUP, 129), (Signal::INT, 130), (Signal::QUIT, 131)] {
+        let mut pty = start(80, 24);
+        pty.signal(signal);
+        assert_eq!(ends(&mut pty), code);
+        pty.assert_restored();
+    }
+}
+
+#[test]
+fn a_terminal_that_nobody_reads_does_not_hold_up_the_end() {
+    let mut pty = start(300, 100);
+    pty.stop_reading();
+    // Whole frames, until the terminal takes no more and the drawing thread waits for room.
+    let waits_in = format!("/proc/{}/wchan", pty.pid().as_raw_nonzero());
+    let start = Instant::now();
+    while !fs::read_to_string(&waits_in).is_ok_and(|place| place.contains("poll")) {
+        assert!(start.elapsed() < pty::LIMIT, "the program does not wait for the terminal");
+        for cols in [299, 300] {
+            pty.resize(cols, 100);
+        }
+    }
+    pty.signal(Signal::TERM);
+    assert_eq!(ends(&mut pty), 143);
+    pty.go_on_reading();
+    pty.wait_until(|pty| pty.modes_left().is_empty(), "the modes to be undone");
+}
+
+#[test]
+fn keys_and_pastes_arrive_and_a_paste_is_never_a_command() {
+    let mut pty = start(80, 24);
+    pty.keys("j");
+    pty.wait_for(|screen| selects(screen, "λ"), "the next knob");
+    pty.keys("\x1b[A");
+    pty.wait_for(|screen| selects(screen, "A"), "the knob above");
+    // Outside a prompt a paste does nothing; inside it is text up to its first line end.
+    pty.paste("q\rq\x1b[31m");
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("amplitude of the wave"), "the prompt");
+    pty.paste("9\rq");
+    pty.wait_for(|screen| screen.contains("> 0.00259"), "the paste, as text");
+    pty.keys("\x1bq");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn no_key_waits_for_the_next_one() {
+    let mut pty = start(80, 24);
+    // More than the reader takes at once, without the marks of a paste.
+    pty.keys(&"jk".repeat(1500));
+    pty.keys("j");
+    pty.wait_for(|screen| selects(screen, "λ"), "the last key");
+    for round in 2..20 {
+        // Together with a resize, which the reader takes from the same wait.
+        pty.resize(80 + round, 24);
+        let (key, label) = if round % 2 == 0 { ("k", "A") } else { ("j", "λ") };
+        pty.keys(key);
+        pty.wait_for(|screen| selects(screen, label), "the key");
+    }
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn a_lost_terminal_ends_the_program() {
+    for spawn in [Pty::spawn, Pty::spawn_ignoring_hup] {
+        let mut pty = spawn(&program(), &[], &[], 80, 24);
+        wait_until_up(&pty);
+        pty.close_terminal();
+        assert_eq!(ends(&mut pty), 129);
+    }
+}
+
+#[test]
+fn any_size_is_survived_and_the_next_one_drawn() {
+    let mut pty = start(80, 24);
+    for (cols, rows) in [(1, 1), (0, 0), (0, 5), (300, 1), (1, 100), (2, 2)] {
+        pty.resize(cols, rows);
+        pty.keys("t");
+    }
+    pty.resize(30, 8);
+    pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
+    pty.resize(120, 40);
+    let both = |screen: &str| screen.contains("P/Pc over δ") && screen.contains("s/λ over P/Pc");
+    pty.wait_for(both, "both charts at the new size");
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+    pty.assert_restored();
+}
+
+#[test]
+fn ctrl_z_hands_the_terminal_to_the_shell_and_fg_takes_it_again() {
+    let mut pty = Pty::spawn_in_shell(&program(), &[], &[], 80, 24);
+    wait_until_up(&pty);
+    for round in 1..=2 {
+        let ours = pty.line_modes();
+        pty.keys("\x1a");
+        // Counted in the bytes: the shell's screen still shows the last time.
+        let stops = |pty: &Pty| String::from_utf8_lossy(&pty.raw()).matches("[stopped]").count();
+        pty.wait_until(|pty| stops(pty) == usize::from(round), "the shell");
+        pty.assert_restored();
+        pty.resize(90 + round, 24);
+        pty.keys("\r");
+        pty.wait_for(|screen| screen.contains("Walker") && screen.contains("quit"), "all of it");
+        assert_eq!(pty.line_modes(), ours);
+        assert_eq!(pty.modes_left(), [25, 1049, 2004]);
+        let (key, label) = if round == 1 { ("j", "λ") } else { ("k", "A") };
+        pty.keys(key);
+        pty.wait_for(|screen| selects(screen, label), "an answer to a key");
+    }
+    pty.keys("q");
+    pty.wait_for(|screen| screen.contains("[ended 0]"), "the end");
+    pty.assert_restored();
+    pty.keys("\r");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn without_a_shell_ctrl_z_does_nothing() {
+    let mut pty = start(80, 24);
+    pty.keys("\x1aj");
+    pty.wait_for(|screen| selects(screen, "λ"), "an answer to the next key");
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn nothing_is_written_while_nothing_changes() {
+    let mut pty = start(80, 24);
+    pty.keys("jk");
+    pty.wait_for(|screen| selects(screen, "A"), "a round trip");
+    pty.keys("{");
+    pty.wait_for(|screen| screen.contains("unsaved"), "a change");
+    pty.keys("u");
+    pty.wait_for(|screen| !screen.contains("unsaved"), "the change undone");
+    let before = pty.raw().len();
+    // Back where it was: only what differs between two frames is sent.
+    pty.keys("jk");
+    pty.keys("t");
+    pty.wait_for(|screen| screen.contains("s/λ over P/Pc  (t:"), "the other chart");
+    let bytes = pty.raw().len() - before;
+    assert!(bytes < 8000, "{bytes} bytes");
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn without_a_terminal_it_says_so_in_one_line() {
+    let output = Command::new(program()).stdin(Stdio::null()).output().expect("it runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(output.stdout, b"");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.starts_with("pulloff: needs a terminal: standard input is not one"), "{error}");
+    assert_eq!(error.lines().count(), 1);
+}
+
+#[test]
+fn on_a_terminal_that_cannot_draw_it_says_so_in_one_line() {
+    for term in ["", "dumb", "unknown", "nonesuch-9"] {
+        let mut pty = Pty::spawn(&program(), &[], &[("TERM", term)], 160, 24);
+        assert_eq!(pty.exit_code(), 2);
+        assert!(pty.screen().starts_with("pulloff: needs a terminal: TERM is "), "{}", pty.screen());
+        assert!(!pty.raw().contains(&0x1b));
+        pty.assert_restored();
+    }
+}
