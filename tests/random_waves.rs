@@ -3,6 +3,8 @@
 //! The truth is the explicit curve δ(s), P(s) of the same discretization: sign changes of its exact slopes on
 //! a grid of a hundredth of a wave.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
 use pulloff::contact::{Control, Problem, Reduced, Shape};
 use pulloff::continuation::trace::Stop;
 use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Limit};

@@ -6,7 +6,7 @@
 //! [M b; dᵀ 0] (v, ψ) = (0, 1),     [M b; dᵀ 0]ᵀ (w, ψ) = (0, 1)
 //! ```
 //!
-//! ψ vanishes exactly there and ψ_y[z] = −w_gᵀ g_yy[v, z] because c is constant (W. Govaerts, Numerical
+//! ψ vanishes exactly there and `ψ_y[z] = −w_gᵀ g_yy[v, z]` because c is constant (W. Govaerts, Numerical
 //! Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, doi:10.1137/1.9780898719543, ch. 3). Newton on
 //! (g, ψ) converges quadratically; the guard keeps it inside the bracket, which is halved otherwise.
 
@@ -183,7 +183,7 @@ fn newton(
         rhs[size - 1] = -psi;
         let correction = lin.bordered(&gradient).lu().solve(&rhs)?;
         let moved = correction.norm();
-        if !(moved <= length) {
+        if moved.is_nan() || moved > length {
             return None;
         }
         y += correction;

@@ -16,7 +16,7 @@ pub struct Linearization {
     pub scale: Vector,
     /// ∂g/∂y, n × (n+1).
     pub jacobian: Matrix,
-    /// ∂²g_i/∂y², n symmetric matrices (n+1) × (n+1).
+    /// `∂²g_i/∂y²`, n symmetric matrices (n+1) × (n+1).
     pub second: Vec<Matrix>,
 }
 
@@ -34,7 +34,7 @@ impl Linearization {
         worst
     }
 
-    /// The second derivative along two directions, g_yy[a, b], n numbers.
+    /// The second derivative along two directions, `g_yy[a, b]`, n numbers.
     pub fn along(&self, a: &Vector, b: &Vector) -> Vector {
         Vector::from_iterator(self.second.len(), self.second.iter().map(|hessian| a.dot(&(hessian * b))))
     }

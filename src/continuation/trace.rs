@@ -75,7 +75,8 @@ fn land(system: &dyn System, from: &Point, to: &Point, end: End, settings: &Sett
     let mut row = Vector::zeros(system.unknowns());
     row[end.unknown] = 1.0;
     let (a, b) = (from.y[end.unknown], to.y[end.unknown]);
-    let share = if a == b { 1.0 } else { (end.value - a) / (b - a) };
+    // Where the unknown did not move, the quotient is no number and the far end is as good a guess.
+    let share = Some((end.value - a) / (b - a)).filter(|share| share.is_finite()).unwrap_or(1.0);
     let guess = &from.y + (&to.y - &from.y) * share;
     let corrected = correct(system, guess, &Constraint::Plane { row, value: end.value }, settings).ok()?;
     let mut point = Point::corrected(corrected, &from.frame.tangent)?;

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A jump dissipates its drop. Along the curve dU = P dδ, so the drop is also the area between the curve and
-//! the control line, −∫(P − P_line) dδ from before to after, with P_line = 0, P*, k(Δ* − δ). After a pull-off the
+//! the control line, `−∫(P − P_line) dδ` from before to after, with `P_line` = 0, P*, k(Δ* − δ). After a pull-off the
 //! curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is no such
 //! place: the load falls for ever and no loss is reported.
 
@@ -72,12 +72,12 @@ pub fn area(
     for pair in radii.windows(2) {
         // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
         let (a, b) = (pair[0].sqrt(), pair[1].sqrt());
-        area -= rule.integrate(a, b, |x| match equilibrium.basis.equilibrium(&equilibrium.problem, x * x) {
-            Some(e) => (e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x,
-            None => {
+        area -= rule.integrate(a, b, |x| {
+            let Some(e) = equilibrium.basis.equilibrium(&equilibrium.problem, x * x) else {
                 solvable = false;
-                0.0
-            }
+                return 0.0;
+            };
+            (e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x
         });
     }
     if let (None, Control::Stiffness(k)) = (after, control) {

@@ -7,8 +7,8 @@
 //! P − P(s, δ) = 0        the force it goes with
 //! ```
 //!
-//! Stability follows from the curve: with tension at the edge P_s < 0, and the condition
-//! −F_s (P_δ + k) − P_s² > 0 is the same as d(δ + P/k)/ds > 0 along the curve. Under displacement control
+//! Stability follows from the curve: with tension at the edge `P_s < 0`, and the condition
+//! `−F_s (P_δ + k) − P_s² > 0` is the same as d(δ + P/k)/ds > 0 along the curve. Under displacement control
 //! that is dδ/ds > 0, under force control dP/ds > 0.
 
 use crate::contact::{Control, Gap, Reduced, Units};
@@ -216,7 +216,7 @@ impl System for Equilibrium {
 
     fn linearize(&self, y: &Vector) -> Option<Linearization> {
         let [delta, force, s] = self.quantities(y);
-        if !(s > 0.0) {
+        if s.is_nan() || s <= 0.0 {
             return None;
         }
         Some(self.linearization(&self.basis.evaluate(&self.problem, s, delta), force))

@@ -17,7 +17,7 @@ pub struct ProblemReport {
     pub end_contact_radius: f64,
     /// The dimensionless groups.
     pub groups: Groups,
-    /// P_c = (3/2)πγR, the pull-off force of the smooth sphere under a dead load.
+    /// `P_c = (3/2)πγR`, the pull-off force of the smooth sphere under a dead load.
     pub critical_force: f64,
 }
 

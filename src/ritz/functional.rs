@@ -1,7 +1,7 @@
 //! The functional (16) with the pressure eliminated.
 //!
 //! For a fixed disc the pressure is linear in the data, p = −(1/s) B̃⁻¹W̃ (h − δ). With K = W̃ᵀB̃⁻¹W̃,
-//! w_j = h(s r̃_j) − δ and, at the nodes, h1 = r̃h', h2 = r̃²h'', h3 = r̃³h''' (E* = 1):
+//! `w_j = h(s r̃_j) − δ` and, at the nodes, h1 = r̃h', h2 = r̃²h'', h3 = r̃³h''' (E* = 1):
 //!
 //! ```text
 //! Φ   = −½ s wᵀKw + πγs²,          U = −Φ,          P = −∂Φ/∂δ = −s 1ᵀKw

@@ -1,14 +1,14 @@
 //! The paper's ring elements, eqs. (13)-(18).
 //!
-//! N rings with edges r̃_j = j/N on the unit disc, scaled by the contact radius: the pressure is constant
-//! on each ring, the gap piecewise linear between the N + 1 nodes r̃_j. All coefficients are closed forms:
+//! N rings with edges `r̃_j = j/N` on the unit disc, scaled by the contact radius: the pressure is constant
+//! on each ring, the gap piecewise linear between the N + 1 nodes `r̃_j`. All coefficients are closed forms:
 //!
 //! ```text
 //! B̃_ab = second mixed difference of I over the edges of rings a and b         (N × N)
 //! W̃_aj = ∫_ring a ψ_j dS = π d (x_a + d/3), π d (x_a + 2d/3) for j = a, a + 1  (N × (N+1))
 //! ```
 //!
-//! B̃ = LLᵀ is factored once per N. The forms of [`super::functional`] are then dot products of the
+//! `B̃ = LLᵀ` is factored once per N. The forms of [`super::functional`] are then dot products of the
 //! vectors L⁻¹W̃v: one triangular solve per vector, never the N³ product K.
 //!
 //! Accuracy: for γ > 0 the contact radius is good to about 0.16/N and the force to 1.4/N (relative, JKR);
@@ -43,7 +43,7 @@ pub enum RingsError {
 /// Ring elements with their factored matrix; geometry independent, so one serves every problem.
 #[derive(Debug)]
 pub struct Rings {
-    /// r̃_j, N + 1 of them.
+    /// `r̃_j`, N + 1 of them.
     nodes: Vec<f64>,
     factor: Cholesky<f64, Dyn>,
     /// L⁻¹W̃1, and its square 1ᵀK1.
@@ -94,7 +94,7 @@ impl Rings {
         Ok(this)
     }
 
-    /// W̃v for the nodal values v_j = `value`(j).
+    /// W̃v for the nodal values `v_j = value(j)`.
     fn ring_integrals(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut left = value(0);
         self.nodes
@@ -129,8 +129,8 @@ impl Rings {
             .collect();
         let rings = self.size();
         let mut q = DMatrix::zeros(rings, 4);
-        for i in 0..4 {
-            q.column_mut(i).copy_from_slice(&self.ring_integrals(|j| samples[j][i]));
+        for (i, mut column) in q.column_iter_mut().enumerate() {
+            column.copy_from_slice(&self.ring_integrals(|j| samples[j][i]));
         }
         self.forward_solve(&mut q);
         let (h, h1, h2, h3) = (q.column(0), q.column(1), q.column(2), q.column(3));

@@ -36,18 +36,18 @@ impl Jkr {
             - (8.0 * PI * self.work_of_adhesion * e * s.powi(3)).sqrt()
     }
 
-    /// The pull-off force P_c under a dead load, positive.
+    /// The pull-off force `P_c` under a dead load, positive.
     pub fn pull_off_force(&self) -> f64 {
         1.5 * PI * self.work_of_adhesion * self.radius_of_curvature
     }
 
-    /// The contact radius s_c at pull-off under a dead load.
+    /// The contact radius `s_c` at pull-off under a dead load.
     pub fn pull_off_radius(&self) -> f64 {
         (9.0 * PI * self.work_of_adhesion * self.radius_of_curvature.powi(2) / (8.0 * self.effective_modulus))
             .cbrt()
     }
 
-    /// The contact radius s_c/3^{2/3} at pull-off under fixed grips, where P = −5P_c/9.
+    /// The contact radius `s_c/3^{2/3`} at pull-off under fixed grips, where `P = −5P_c/9`.
     pub fn fixed_grips_radius(&self) -> f64 {
         self.pull_off_radius() / 9f64.cbrt()
     }
