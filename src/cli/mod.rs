@@ -52,7 +52,7 @@ struct Problem {
     /// A preset's name, or a preset file (with a '/' or ending in .toml)
     #[arg(value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
-    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable)
+    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,
 }

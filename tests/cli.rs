@@ -1,0 +1,689 @@
+//! The program without a terminal: what goes to which stream, in which form, with which exit status.
+//!
+//! Every run has its own empty home, so that no preset of the machine is seen.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use tempfile::TempDir;
+
+/// A home of its own, in which the program runs.
+struct Home(TempDir);
+
+/// How a run ended.
+struct Ended {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+impl Home {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self) -> std::process::Command {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_pulloff"));
+        command
+            .env_clear()
+            .env("HOME", self.0.path())
+            .env("XDG_CONFIG_HOME", self.path("config"))
+            .current_dir(self.0.path())
+            .stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ended {
+        let output = Command::from_std(self.command()).args(arguments).output().unwrap();
+        Ended {
+            status: output.status.code().unwrap(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// A run that succeeds and says nothing on standard error.
+    fn quiet(&self, arguments: &[&str]) -> String {
+        let ended = self.run(arguments);
+        assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{arguments:?}");
+        ended.out
+    }
+
+    fn json(&self, arguments: &[&str]) -> Value {
+        serde_json::from_str(&self.quiet(&[arguments, &["--format", "json"]].concat())).unwrap()
+    }
+
+    /// A run that is refused: status 2, nothing on standard output, one message that says all of `said`.
+    fn refused(&self, arguments: &[&str], said: &[&str]) {
+        let ended = self.run(arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}: {}", ended.err);
+        for text in said {
+            assert!(ended.err.contains(text), "{arguments:?}: no {text:?} in {}", ended.err);
+        }
+        assert!(!ended.err.contains('\x1b'), "{arguments:?}: {:?}", ended.err);
+    }
+
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+/// `a/b/c` of a document as a number.
+fn number(document: &Value, pointer: &str) -> f64 {
+    document.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {pointer}"))
+}
+
+fn events(document: &Value) -> &Vec<Value> {
+    document["events"].as_array().unwrap()
+}
+
+fn kinds(document: &Value) -> Vec<&str> {
+    events(document).iter().map(|event| event["kind"].as_str().unwrap()).collect()
+}
+
+/// Records of a CSV text without its header.
+fn records(text: &str) -> Vec<Vec<String>> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.records().map(|record| record.unwrap().iter().map(str::to_owned).collect()).collect()
+}
+
+const TRACE_HEADER: &str = "step,contact_radius,approach,force,energy,newton_iterations,\
+                            stable_displacement,stable_force,stable_chosen";
+const UNLOAD_HEADER: &str = "kind,control_value,before_contact_radius,before_approach,before_force,before_wave,\
+                             after_contact_radius,after_approach,after_force,after_wave,dissipated,\
+                             dissipated_by_area,reason";
+/// A short case: rings enough for the few waves it crosses.
+const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.25"];
+
+fn short<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&[command], SHORT, more].concat()
+}
+
+// ---- trace ----
+
+#[test]
+fn trace_writes_one_csv_row_per_point() {
+    let home = Home::new();
+    let text = home.quiet(&short("trace", &[]));
+    assert_eq!(text.lines().next().unwrap(), TRACE_HEADER);
+    let rows = records(&text);
+    assert!(rows.len() > 50, "{}", rows.len());
+    for (step, row) in rows.iter().enumerate() {
+        assert_eq!(row[0], step.to_string());
+        assert!(row[1..5].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
+        assert!(row[5].parse::<u32>().is_ok());
+        assert!(row[6..].iter().all(|cell| cell == "true" || cell == "false"), "{row:?}");
+    }
+    // From the start to exactly the end.
+    assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.25f64.to_bits());
+    assert_eq!(rows.last().unwrap()[1].parse::<f64>().unwrap().to_bits(), 0.002f64.to_bits());
+}
+
+#[test]
+fn trace_json_has_the_fields_of_the_contract() {
+    let home = Home::new();
+    let document = home.json(&short("trace", &["--set", "path.control=stiffness=0.15"]));
+    assert_eq!(
+        keys(&document),
+        [
+            "schema",
+            "program_version",
+            "problem",
+            "warnings",
+            "stop",
+            "curve_min_force",
+            "curve_min_approach",
+            "limit_points",
+            "points"
+        ]
+    );
+    assert_eq!(document["schema"], 1);
+    assert_eq!(document["program_version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(document["warnings"], Value::Array(Vec::new()));
+    assert_eq!(document["stop"], "the end contact radius was reached");
+    let first = &document["points"][0];
+    assert_eq!(
+        keys(first),
+        ["step", "contact_radius", "approach", "force", "energy", "newton_iterations", "stable"]
+    );
+    assert_eq!(keys(&first["stable"]), ["displacement", "force", "chosen"]);
+
+    let limits = document["limit_points"].as_array().unwrap();
+    let of = |control: &Value| limits.iter().filter(|limit| limit["control"] == *control).count();
+    let spring = serde_json::json!({"stiffness": 0.15});
+    for control in [Value::from("displacement"), Value::from("force"), spring.clone()] {
+        assert!(of(&control) > 0, "{control}");
+    }
+    assert_eq!(limits.len(), of(&"displacement".into()) + of(&"force".into()) + of(&spring));
+    assert_eq!(keys(&limits[0]), ["control", "contact_radius", "approach", "force", "wave"]);
+    assert!(limits[0]["wave"].is_u64());
+
+    // The smallest values of the curve are those of its limit points.
+    let smallest = |control: &str, key: &str| {
+        let of = limits.iter().filter(|limit| limit["control"] == control);
+        of.map(|limit| limit[key].as_f64().unwrap()).fold(f64::INFINITY, f64::min)
+    };
+    assert!((number(&document, "/curve_min_force") - smallest("force", "force")).abs() < 1e-15);
+    assert!((number(&document, "/curve_min_approach") - smallest("displacement", "approach")).abs() < 1e-15);
+}
+
+#[test]
+fn both_documents_carry_the_resolved_problem() {
+    let home = Home::new();
+    for command in ["trace", "unload"] {
+        let document = home.json(&short(command, &["--set", "path.control={ stiffness = 0.15 }"]));
+        let problem = &document["problem"];
+        assert_eq!(
+            keys(problem),
+            ["preset", "start_contact_radius", "end_contact_radius", "groups", "critical_force"]
+        );
+        assert_eq!(
+            keys(&problem["groups"]),
+            ["amplitude_over_wavelength", "wavelength_over_radius", "connectivity", "adhesion", "johnson"]
+        );
+        let preset = &problem["preset"];
+        assert_eq!(keys(preset), ["format", "title", "material", "gap", "basis", "path"]);
+        assert_eq!(preset["basis"], serde_json::json!({"kind": "rings", "rings": 60}));
+        assert_eq!(preset["path"]["control"], serde_json::json!({"stiffness": 0.15}));
+        assert!((number(problem, "/critical_force") - 0.01875).abs() < 1e-15);
+        assert!((number(problem, "/groups/adhesion") - 0.025).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn the_csv_of_a_trace_is_its_json() {
+    let home = Home::new();
+    let rows = records(&home.quiet(&short("trace", &[])));
+    let document = home.json(&short("trace", &[]));
+    let points = document["points"].as_array().unwrap();
+    assert_eq!(rows.len(), points.len());
+    for (row, point) in rows.iter().zip(points) {
+        // Full precision in both: the same double comes back.
+        let bits = |cell: &str| cell.parse::<f64>().unwrap().to_bits();
+        for (column, key) in [(1, "contact_radius"), (2, "approach"), (3, "force"), (4, "energy")] {
+            assert_eq!(bits(&row[column]), point[key].as_f64().unwrap().to_bits());
+        }
+        assert_eq!(row[7], point["stable"]["force"].to_string());
+    }
+}
+
+// ---- unload ----
+
+#[test]
+fn unload_writes_a_table_by_default() {
+    let home = Home::new();
+    let text = home.quiet(&["unload", "fig-9"]);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "Wavy sphere, A/λ = 0.05, Fig. 9");
+    assert_eq!(lines[1], "control: displacement");
+    assert!(lines[2].starts_with("start: delta "), "{}", lines[2]);
+    let events: Vec<&&str> =
+        lines.iter().filter(|l| l.contains(" snap ") || l.contains(" pull-off ")).collect();
+    assert_eq!(events.len(), 8);
+    assert!(events.iter().all(|line| line.ends_with("agrees")), "{text}");
+    assert!(events[0].contains("10>9") && events[7].contains("3>-"), "{text}");
+    assert!(text.contains("P_c") && text.contains("end: the bodies came apart (pull-off)"), "{text}");
+}
+
+#[test]
+fn unload_json_has_the_fields_of_the_contract() {
+    let home = Home::new();
+    let document = home.json(&short("unload", &[]));
+    assert_eq!(
+        keys(&document),
+        [
+            "schema",
+            "program_version",
+            "problem",
+            "warnings",
+            "stop",
+            "control",
+            "start",
+            "min_force",
+            "min_approach",
+            "total_dissipated",
+            "events"
+        ]
+    );
+    assert_eq!(document["schema"], 1);
+    assert_eq!(keys(&document["start"]), ["contact_radius", "approach", "force", "wave", "note"]);
+    assert_eq!(document["start"]["note"], Value::Null);
+    let events = events(&document);
+    for event in events {
+        assert_eq!(
+            keys(event),
+            ["kind", "control_value", "before", "after", "dissipated", "dissipated_by_area", "reason"]
+        );
+        assert_eq!(keys(&event["before"]), ["contact_radius", "approach", "force", "wave"]);
+        let (drop, area) = (number(event, "/dissipated"), number(event, "/dissipated_by_area"));
+        assert!((drop - area).abs() <= 1e-6 * drop, "{drop} {area}");
+    }
+    let (last, snaps) = events.split_last().unwrap();
+    assert!(!snaps.is_empty());
+    assert!(snaps.iter().all(|snap| snap["kind"] == "snap" && keys(&snap["after"]) == keys(&snap["before"])));
+    assert_eq!((&last["kind"], &last["after"]), (&Value::from("pull-off"), &Value::Null));
+    let lost: f64 = events.iter().map(|event| number(event, "/dissipated")).sum();
+    assert!((number(&document, "/total_dissipated") / lost - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn unload_csv_leaves_null_empty() {
+    let home = Home::new();
+    let text = home.quiet(&short("unload", &["--format", "csv", "--control", "force"]));
+    assert_eq!(text.lines().next().unwrap(), UNLOAD_HEADER);
+    let rows = records(&text);
+    let last = rows.last().unwrap();
+    assert_eq!(last[0], "pull-off");
+    // No landing and, under a dead load, no loss; but a reason.
+    assert!(last[6..12].iter().all(String::is_empty), "{last:?}");
+    assert!(!last[12].is_empty());
+}
+
+#[test]
+fn the_control_has_one_form_everywhere() {
+    let home = Home::new();
+    for (argument, json) in [
+        ("displacement", Value::from("displacement")),
+        ("force", Value::from("force")),
+        ("stiffness=0.15", serde_json::json!({"stiffness": 0.15})),
+    ] {
+        let by_option = home.json(&short("unload", &["--control", argument]));
+        assert_eq!(by_option["control"], json);
+        assert_eq!(by_option["problem"]["preset"]["path"]["control"], json);
+        let assignment = format!("path.control={argument}");
+        assert_eq!(home.json(&short("unload", &["--set", &assignment])), by_option);
+    }
+    let toml = home.json(&short("unload", &["--set", "path.control={ stiffness = 0.15 }"]));
+    let dotted = home.json(&short("unload", &["--set", "path.control.stiffness=0.15"]));
+    assert_eq!(toml, dotted);
+}
+
+#[test]
+fn the_control_is_the_same_before_and_after_a_snap() {
+    let home = Home::new();
+    for control in ["displacement", "force", "stiffness=0.15"] {
+        let document = home.json(&short("unload", &["--control", control]));
+        for event in events(&document).iter().filter(|event| event["kind"] == "snap") {
+            let value = number(event, "/control_value");
+            for side in ["before", "after"] {
+                let (delta, force) = (number(&event[side], "/approach"), number(&event[side], "/force"));
+                let held = match control {
+                    "displacement" => delta,
+                    "force" => force,
+                    _ => delta + force / 0.15,
+                };
+                assert!((held - value).abs() < 1e-12, "{control} {side}: {held} {value}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_dead_load_pull_off_has_no_loss_and_says_why() {
+    let home = Home::new();
+    let document = home.json(&short("unload", &["--control", "force"]));
+    let last = events(&document).last().unwrap();
+    assert_eq!(last["kind"], "pull-off");
+    assert_eq!((&last["dissipated"], &last["dissipated_by_area"]), (&Value::Null, &Value::Null));
+    assert!(last["reason"].as_str().unwrap().contains("dead load"), "{last}");
+    let table = home.quiet(&short("unload", &["--control", "force"]));
+    assert!(table.contains("dead load"), "{table}");
+}
+
+#[test]
+fn the_paper_cases_have_their_events() {
+    let home = Home::new();
+    let snaps = |n: usize| [vec!["snap"; n], vec!["pull-off"]].concat();
+    assert_eq!(kinds(&home.json(&["unload", "fig-9"])), snaps(7));
+    assert_eq!(kinds(&home.json(&["unload", "fig-9", "--control", "force"])), snaps(4));
+    assert_eq!(kinds(&home.json(&["unload", "fig-10-force"])), snaps(4));
+    assert_eq!(kinds(&home.json(&["unload", "fig-3-jkr"])), snaps(0));
+    assert_eq!(kinds(&home.json(&["unload"])), kinds(&home.json(&["unload", "wavy-sphere"])));
+}
+
+#[test]
+fn an_unstable_start_runs_outward_and_says_so() {
+    let home = Home::new();
+    let arguments = ["unload", "fig-9", "--set", "path.start_contact_radius=0.385"];
+    let document = home.json(&arguments);
+    let note = document["start"]["note"].as_str().unwrap();
+    assert!(note.contains("unstable under displacement control") && note.contains("0.385"), "{note}");
+    assert!(number(&document, "/start/contact_radius") > 0.385);
+    assert!(home.quiet(&arguments).contains(&format!("note: {note}")));
+    // No loss is counted for the run outward: the first event is the next snap inward.
+    assert!(
+        number(&document, "/events/0/before/contact_radius") < number(&document, "/start/contact_radius")
+    );
+}
+
+#[test]
+fn a_start_can_be_an_approach_or_a_preload() {
+    let home = Home::new();
+    for (key, value, pointer) in [
+        ("path.start_approach", 0.05, "/start/approach"),
+        ("path.start_force", 0.01, "/start/force"),
+        ("path.start_force", -0.02, "/start/force"),
+    ] {
+        let assignment = format!("{key}={value}");
+        let document = home.json(&["unload", "fig-9", "--set", &assignment]);
+        assert!((number(&document, pointer) - value).abs() < 1e-12, "{assignment}");
+        let path = &document["problem"]["preset"]["path"];
+        assert_eq!(path[key.strip_prefix("path.").unwrap()], value);
+        assert_eq!(path.get("start_contact_radius"), None);
+        let start = number(&document, "/problem/start_contact_radius");
+        assert!((start - number(&document, "/start/contact_radius")).abs() < 1e-12);
+    }
+    home.refused(&["unload", "fig-9", "--set", "path.start_force=-0.05"], &["no contact has the force"]);
+}
+
+#[test]
+fn without_adhesion_nothing_snaps_on_a_sphere() {
+    let home = Home::new();
+    let document = home.json(&["unload", "fig-1-hertz"]);
+    assert_eq!(events(&document).len(), 0);
+    assert_eq!(number(&document, "/total_dissipated").to_bits(), 0.0f64.to_bits());
+    assert_eq!(number(&document, "/problem/critical_force").to_bits(), 0.0f64.to_bits());
+    let table = home.quiet(&["unload", "fig-1-hertz"]);
+    assert!(!table.contains("P_c") && !table.contains("NaN") && !table.contains("inf"), "{table}");
+    for control in ["force", "stiffness=0.3"] {
+        assert_eq!(events(&home.json(&["unload", "fig-1-hertz", "--control", control])).len(), 0);
+    }
+    let trace = home.json(&["trace", "fig-1-hertz"]);
+    assert_eq!(trace["limit_points"], Value::Array(Vec::new()));
+    for point in trace["points"].as_array().unwrap() {
+        let (s, force) = (number(point, "/contact_radius"), number(point, "/force"));
+        assert!((force / (4.0 / 3.0 * s.powi(3)) - 1.0).abs() < 0.02, "{point}");
+    }
+    let preload = home.json(&["unload", "fig-1-hertz", "--set", "path.start_force=0.1"]);
+    assert!((number(&preload, "/start/force") - 0.1).abs() < 1e-12);
+    // Nor on waves so shallow that the curve rises all the way.
+    let shallow = ["--set", "material.work_of_adhesion=0", "--set", "gap.amplitude=0.0005"];
+    let wavy = home.json(&[["unload", "fig-8"].as_slice(), &shallow].concat());
+    assert_eq!(events(&wavy).len(), 0);
+}
+
+#[test]
+fn any_consistent_units_give_the_same_reduced_answer() {
+    let home = Home::new();
+    // Fig. 9 in SI: E* = 2 MPa, R = 10 µm.
+    let (modulus, length) = (2e6, 1e-5);
+    let si = home.file(
+        "si.toml",
+        &format!(
+            "[material]\neffective_modulus = {modulus:e}\nwork_of_adhesion = {:e}\n[gap]\nshape = \"wavy-sphere\"\n\
+             radius_of_curvature = {length:e}\namplitude = {:e}\nwavelength = {:e}\n[path]\n\
+             start_contact_radius = {:e}\n",
+            0.003_978_873_577_297_384 * modulus * length,
+            0.0025 * length,
+            0.05 * length,
+            0.5 * length
+        ),
+    );
+    let (ours, reduced) = (home.json(&["unload", &si]), home.json(&["unload", "fig-9"]));
+    assert_eq!(kinds(&ours), kinds(&reduced));
+    for (a, b) in events(&ours).iter().zip(events(&reduced)) {
+        let near = |pointer: &str, unit: f64| {
+            let (a, b) = (number(a, pointer) / unit, number(b, pointer));
+            assert!((a - b).abs() <= 1e-7 * b.abs(), "{pointer}: {a} {b}");
+        };
+        near("/before/contact_radius", length);
+        near("/before/force", modulus * length * length);
+        near("/dissipated", modulus * length.powi(3));
+    }
+}
+
+// ---- --set and --control ----
+
+#[test]
+fn set_changes_a_key_and_the_last_of_one_key_holds() {
+    let home = Home::new();
+    let document =
+        home.json(&short("unload", &["--set", "gap.amplitude=0.001", "--set", "gap.amplitude=0.002"]));
+    assert!((number(&document, "/problem/preset/gap/amplitude") - 0.002).abs() < 1e-18);
+}
+
+#[test]
+fn a_bad_assignment_names_the_key_and_what_was_meant() {
+    let home = Home::new();
+    for (assignment, said) in [
+        ("gap.amplitud=3", ["gap.amplitud", "did you mean gap.amplitude?"]),
+        ("amplitude=3", ["unknown key", "gap.amplitude"]),
+        ("gap.amplitude=-3", ["gap.amplitude", "out of range"]),
+        ("gap.amplitude=wide", ["gap.amplitude", "number"]),
+        ("gap.shape=spere", ["gap.shape", "did you mean sphere?"]),
+        ("basis.rings=3", ["basis.rings", "from 4 to 2000"]),
+        ("basis.rings=20.5", ["basis.rings", "whole number"]),
+        ("path.control=load", ["path.control", "displacement"]),
+        ("path.end_contact_radius=0.6", ["path.end_contact_radius", "0.5"]),
+        ("material.work_of_adhesion=nan", ["material.work_of_adhesion", "out of range"]),
+        ("nothing", ["KEY=VALUE", "nothing"]),
+    ] {
+        for command in ["trace", "unload"] {
+            home.refused(&[command, "fig-9", "--set", assignment], &said);
+        }
+    }
+}
+
+#[test]
+fn a_bad_control_is_bad_usage() {
+    let home = Home::new();
+    for control in [
+        "",
+        "load",
+        "Force",
+        "stiffness",
+        "stiffness=",
+        "stiffness=0",
+        "stiffness=-1",
+        "stiffness=inf",
+        "stiffness=nan",
+        "stiffness=1e-40",
+    ] {
+        home.refused(&["unload", "fig-9", "--control", control], &["control"]);
+    }
+}
+
+#[test]
+fn bad_usage_is_refused() {
+    let home = Home::new();
+    home.refused(&["unload", "fig-9", "--format", "xml"], &["xml"]);
+    home.refused(&["trace", "fig-9", "--format", "table"], &["table"]);
+    home.refused(&["trace", "fig-9", "--control", "force"], &["--control"]);
+    home.refused(&["unload", "fig-9", "extra"], &["extra"]);
+    home.refused(&["presets"], &["list"]);
+}
+
+// ---- preset files ----
+
+const FILE: &str = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.01\n[gap]\nshape = \"sphere\"\n\
+                    radius_of_curvature = 1.0\n";
+
+#[test]
+fn a_preset_file_needs_only_its_required_keys() {
+    let home = Home::new();
+    let file = home.file("mine.toml", FILE);
+    let document = home.json(&["unload", &file]);
+    assert_eq!(kinds(&document), ["pull-off"]);
+    assert_eq!(document["problem"]["preset"]["basis"]["rings"], 200);
+    assert!((number(&document, "/problem/end_contact_radius") - 0.002).abs() < 1e-15);
+    // Relative, without a slash: it is a file because it ends in .toml.
+    assert_eq!(home.json(&["unload", "mine.toml"])["events"], document["events"]);
+}
+
+#[test]
+fn a_mistake_in_a_file_is_named_with_file_line_and_key() {
+    let home = Home::new();
+    for (text, said) in [
+        (
+            FILE.replace("radius_of_curvature", "radius_of_curvatur"),
+            vec!["bad.toml:6", "radius_of_curvature"],
+        ),
+        (
+            FILE.replace("[gap]", "work_of_adhesion = 0.02\n[gap]"),
+            vec!["bad.toml:4", "duplicate", "work_of_adhesion"],
+        ),
+        (FILE.replace("0.01", "-0.01"), vec!["bad.toml:3", "material.work_of_adhesion"]),
+        (FILE.replace("[gap]", "[gap"), vec!["bad.toml:4"]),
+        (FILE.replace("effective_modulus = 1.0\n", ""), vec!["bad.toml", "material.effective_modulus"]),
+        (
+            format!("{FILE}[path]\nstart_force = 0.1\nstart_approach = 0.1\n"),
+            vec!["bad.toml", "start_force", "start_approach"],
+        ),
+    ] {
+        let file = home.file("bad.toml", &text);
+        home.refused(&["trace", &file], &said);
+    }
+    home.refused(&["trace", "none.toml"], &["none.toml"]);
+    home.refused(&["trace", "./"], &["regular file"]);
+}
+
+#[test]
+fn an_unknown_preset_is_bad_input() {
+    let home = Home::new();
+    for command in ["trace", "unload"] {
+        home.refused(&[command, "fig-99"], &["fig-99"]);
+    }
+    home.refused(&["presets", "show", "fig-99"], &["fig-99"]);
+}
+
+// ---- warnings ----
+
+#[test]
+fn too_few_rings_per_wave_is_a_warning_on_stderr_and_in_the_document() {
+    let home = Home::new();
+    for command in ["trace", "unload"] {
+        let ended = home.run(&[command, "fig-9", "--set", "basis.rings=99", "--format", "json"]);
+        assert_eq!(ended.status, 0);
+        let document: Value = serde_json::from_str(&ended.out).unwrap();
+        let warnings = document["warnings"].as_array().unwrap();
+        assert_eq!(warnings.len(), 1);
+        let warning = warnings[0].as_str().unwrap();
+        assert!(warning.contains("rings per wave") && warning.contains("basis.rings"), "{warning}");
+        assert_eq!(ended.err, format!("pulloff: warning: {warning}\n"));
+        // Ten are enough.
+        home.quiet(&[command, "fig-9", "--set", "basis.rings=100"]);
+    }
+}
+
+// ---- where it goes ----
+
+#[test]
+fn a_result_goes_to_a_file_whole() {
+    let home = Home::new();
+    let expected = home.quiet(&short("trace", &[]));
+    let file = home.path("curve.csv");
+    fs::write(&file, "old").unwrap();
+    assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv"])), "");
+    assert_eq!(fs::read_to_string(&file).unwrap(), expected);
+    // Nothing temporary stays behind.
+    assert_eq!(names(home.0.path()), ["curve.csv"]);
+    // A failed run leaves the old file alone.
+    home.refused(&short("trace", &["-o", "curve.csv", "--set", "basis.rings=1"]), &["basis.rings"]);
+    assert_eq!(fs::read_to_string(&file).unwrap(), expected);
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+#[test]
+fn a_dash_is_standard_output() {
+    let home = Home::new();
+    assert_eq!(home.quiet(&short("unload", &["-o", "-"])), home.quiet(&short("unload", &[])));
+    assert_eq!(names(home.0.path()), [""; 0]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_a_failure() {
+    let home = Home::new();
+    let ended = home.run(&short("unload", &["-o", "nowhere/events.csv"]));
+    assert_eq!((ended.status, ended.out.as_str()), (1, ""));
+    assert!(ended.err.contains("nowhere"), "{}", ended.err);
+}
+
+#[test]
+fn a_closed_reader_is_a_quiet_end() {
+    let home = Home::new();
+    // Far more than a pipe holds, so the program does meet the closed end.
+    for arguments in
+        [["trace", "fig-9"].as_slice(), &["trace", "fig-9", "--format", "json"], &["presets", "list"]]
+    {
+        let mut command = home.command();
+        let mut child =
+            command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let mut err = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        assert_eq!((child.wait().unwrap().code(), err.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
+// ---- presets ----
+
+#[test]
+fn presets_are_listed_shown_and_located() {
+    let home = Home::new();
+    let list = home.quiet(&["presets", "list"]);
+    let listed: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert_eq!(listed, ["wavy-sphere", "fig-1-hertz", "fig-3-jkr", "fig-8", "fig-9", "fig-10-force"]);
+    assert!(list.lines().all(|line| line.contains("  shipped  ")), "{list}");
+
+    let folder = home.path("config/pulloff/presets");
+    assert_eq!(home.quiet(&["presets", "path"]), format!("{}\n", folder.to_str().unwrap()));
+
+    let shown = home.quiet(&["presets", "show", "fig-9"]);
+    assert!(shown.contains("shape = \"wavy-sphere\""), "{shown}");
+    // What is shown is a preset file that gives the same.
+    let copy = home.file("copy.toml", &shown);
+    assert_eq!(home.quiet(&["unload", &copy]), home.quiet(&["unload", "fig-9"]));
+
+    home.file("config/pulloff/presets/mine.toml", FILE);
+    home.file("config/pulloff/presets/broken.toml", "[material]\n");
+    let list = home.quiet(&["presets", "list"]);
+    let line = |name: &str| list.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
+    assert!(line("mine").contains("yours"), "{list}");
+    assert!(line("broken").contains("cannot be read"), "{list}");
+    assert_eq!(home.quiet(&["presets", "show", "mine"]), FILE);
+    assert_eq!(kinds(&home.json(&["unload", "mine"])), ["pull-off"]);
+}
+
+// ---- the explorer without a terminal ----
+
+#[test]
+fn the_explorer_without_a_terminal_is_one_clear_line() {
+    let home = Home::new();
+    for arguments in [[].as_slice(), &["fig-9"]] {
+        let ended = home.run(arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(ended.err.starts_with("pulloff: "), "{:?}", ended.err);
+        assert_eq!(ended.err.trim_end().lines().count(), 1, "{:?}", ended.err);
+        assert!(!ended.err.contains('\x1b'), "{:?}", ended.err);
+    }
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let home = Home::new();
+    assert_eq!(home.quiet(&["--version"]), format!("pulloff {}\n", env!("CARGO_PKG_VERSION")));
+    for arguments in
+        [["--help"].as_slice(), &["trace", "--help"], &["unload", "--help"], &["presets", "--help"]]
+    {
+        assert!(home.quiet(arguments).contains("Usage"), "{arguments:?}");
+    }
+}
