@@ -19,6 +19,10 @@ use gauss_quad::GaussLegendre;
 /// Steps per wave of the area's Gauss rule, four nodes each: the two losses then agree to about 1e-10.
 const STEPS_PER_WAVE: f64 = 20.0;
 
+/// Steps of the area at least in one jump: a short jump encloses a lens so thin that steps by the wave alone leave
+/// 1e-6 of it.
+const STEPS_PER_JUMP: f64 = 8.0;
+
 /// Below this share of the radius, and one step of a wave, a pull-off's area is one last piece to s = 0.
 const LAST_PIECE: f64 = 0.02;
 
@@ -57,7 +61,10 @@ pub fn area(
     }
     let feature = equilibrium.problem.gap.feature_length();
     let last_piece = feature.map_or(f64::INFINITY, |wave| wave / STEPS_PER_WAVE).min(LAST_PIECE * before);
-    let mut radii = radii(before, after.unwrap_or(last_piece), feature, STEPS_PER_WAVE);
+    let to = after.unwrap_or(last_piece);
+    let by_jump = (before - to) / STEPS_PER_JUMP * STEPS_PER_WAVE;
+    let mut radii =
+        radii(before, to, Some(feature.map_or(by_jump, |wave| wave.min(by_jump))), STEPS_PER_WAVE);
     if after.is_none() {
         radii.push(0.0);
     }
