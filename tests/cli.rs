@@ -581,6 +581,26 @@ fn too_few_rings_per_wave_is_a_warning_on_stderr_and_in_the_document() {
     }
 }
 
+#[test]
+fn a_curve_that_ends_is_no_pull_off() {
+    let home = Home::new();
+    // A ring per wave cannot resolve the gap: beyond some radius the basis has no equilibrium.
+    let file = home.file(
+        "coarse.toml",
+        "[material]\neffective_modulus = 7e10\nwork_of_adhesion = 0.0473\n[gap]\nshape = \"wavy-sphere\"\n\
+         radius_of_curvature = 2e-8\namplitude = 5.8363e-12\nwavelength = 7.2086e-10\n[basis]\nrings = 30\n\
+         [path]\nstart_contact_radius = 1.8156e-8\n",
+    );
+    let ended = home.run(&["unload", &file, "--format", "json"]);
+    assert_eq!(ended.status, 1, "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!(kinds(&document), [""; 0]);
+    let stop = document["stop"].as_str().unwrap();
+    // The radius it ends at, in the units of the preset.
+    assert!(stop.contains("no equilibrium") && stop.contains("e-8"), "{stop}");
+    assert!(ended.err.contains("stopped early") && ended.err.contains(stop), "{}", ended.err);
+}
+
 // ---- where it goes ----
 
 #[test]

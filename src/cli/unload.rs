@@ -2,6 +2,7 @@
 
 use super::{Failure, Problem, output, warn};
 use crate::contact::Control;
+use crate::quasistatic::PathStop;
 use crate::report::{UnloadReport, json, table};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -45,5 +46,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Format::Json => json(&report)?,
     };
     output::write(&text, arguments.output.as_deref())?;
-    Ok(ExitCode::SUCCESS)
+    if [PathStop::PullOff, PathStop::End].iter().any(|end| report.stop == end.to_string()) {
+        return Ok(ExitCode::SUCCESS);
+    }
+    Err(Failure::Incomplete(format!(
+        "the unloading stopped early, its {} events were written: {}",
+        report.events.len(),
+        report.stop
+    )))
 }

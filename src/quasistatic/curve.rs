@@ -1,7 +1,7 @@
 //! The equilibrium curve between two contact radii, by either tracer, and its limit points.
 
 use super::equilibrium::{Equilibrium, Scales, inward, unknown};
-use crate::contact::{Control, Gap, Reduced};
+use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::sweep::sweep;
 use crate::continuation::trace::trace;
 use crate::continuation::{Branch, End, Point, Settings, Stop, Work, events, locate};
@@ -29,6 +29,17 @@ pub enum CurveStop {
     /// The tracer stopped for another reason.
     #[error("{0}")]
     Tracer(Stop),
+}
+
+impl CurveStop {
+    /// The same with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        match self {
+            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
+            other => other,
+        }
+    }
 }
 
 /// Whether the control is smallest or largest at a limit point, along the contact radius.

@@ -47,6 +47,17 @@ pub enum PathStop {
     Curve(CurveStop),
 }
 
+impl PathStop {
+    /// The same with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        match self {
+            Self::Curve(stop) => Self::Curve(stop.in_units(units)),
+            other => other,
+        }
+    }
+}
+
 /// A quasi-static unloading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unloading {
@@ -162,6 +173,10 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
             }
         }
         let before = curve.equilibrium.state(&before_point);
+        if landing.is_none() && curve.innermost() > INWARD_REACH * before.contact_radius * (1.0 + 1e-9) {
+            // The basis has no equilibrium further in: where the edge would land is not known, so this is no pull-off.
+            break PathStop::Curve(CurveStop::NoEquilibrium(curve.innermost()));
+        }
         events.push(event(&curve.equilibrium, control, value, before, landing.as_ref().map(|l| &l.point)));
         match landing {
             None => break PathStop::PullOff,

@@ -152,7 +152,7 @@ impl TraceReport {
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(preset, case),
             warnings: case.warnings(curve.outermost()),
-            stop: curve.stop.to_string(),
+            stop: curve.stop.in_units(units).to_string(),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,

@@ -138,7 +138,7 @@ impl UnloadReport {
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(preset, case),
             warnings: case.warnings(unloading.start.contact_radius.max(case.start)),
-            stop: unloading.stop.to_string(),
+            stop: unloading.stop.in_units(units).to_string(),
             control: case.shown_control(unloading.control),
             start,
             min_force: unloading.min_force.in_units(units).force,
