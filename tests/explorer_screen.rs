@@ -15,11 +15,13 @@ fn program() -> &'static Path {
 /// The line of the screen with this text.
 fn line(pty: &Pty, text: &str) -> String {
     let screen = pty.screen();
-    screen
-        .lines()
-        .find(|line| line.contains(text))
-        .unwrap_or_else(|| panic!("no {text} in\n{screen}"))
-        .to_owned()
+    let found = screen.lines().find(|line| line.contains(text));
+    assert!(
+        found.is_some(),
+        "no {text} in
+{screen}"
+    );
+    found.unwrap_or_default().to_owned()
 }
 
 #[test]

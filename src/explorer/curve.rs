@@ -42,7 +42,7 @@ pub struct CurveData {
     pub smooth: Vec<CurvePoint>,
     /// The dimensionless groups.
     pub groups: Groups,
-    /// P_c; 0 without adhesion.
+    /// `P_c`; 0 without adhesion.
     pub critical_force: f64,
     /// What to be careful about.
     pub warnings: Vec<String>,

@@ -6,9 +6,12 @@
 
 use super::curve::CurveData;
 use super::files::{self, Done, Job};
+use super::model::Model;
+use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
 use crate::preset::{Preset, Store};
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -66,6 +69,16 @@ impl Inline {
     /// A driver that saves to `store`.
     pub fn new(store: Store) -> Self {
         Self { store }
+    }
+
+    /// Does `effects` and all that follows from them, until nothing is left.
+    pub fn settle(&self, model: &mut Model, effects: Vec<Effect>) {
+        let mut left = VecDeque::from(effects);
+        while let Some(effect) = left.pop_front() {
+            if let Some(reply) = self.run(effect) {
+                left.extend(answer(model, reply));
+            }
+        }
     }
 
     /// Does one effect; the walk is over when it returns, so there is nothing to stop.
@@ -158,6 +171,13 @@ impl Workers {
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
         Ok(Self { curve, walks, files, stopped })
+    }
+
+    /// Hands every effect to its lane, in order.
+    pub fn submit_all(&self, effects: Vec<Effect>) {
+        for effect in effects {
+            self.submit(effect);
+        }
     }
 
     /// Hands an effect to its lane.

@@ -135,7 +135,13 @@ pub fn run(store: &Store, job: Job) -> Done {
             }
         }
         Job::Export { what, curve, walk, events, path, replace } => {
-            let text = match text(what, &curve, &walk, &events, path.ends_with(".json")) {
+            let text = match text(
+                what,
+                &curve,
+                &walk,
+                &events,
+                Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")),
+            ) {
                 Ok(text) => text,
                 Err(error) => return Done::Failed(format!("not exported: {error}")),
             };

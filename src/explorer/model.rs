@@ -40,7 +40,7 @@ pub enum Chart {
 /// What the axes show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axes {
-    /// P/P_c, δ, s/λ.
+    /// `P/P_c`, δ, s/λ.
     Reduced,
     /// The preset's own units.
     Raw,
@@ -53,6 +53,17 @@ pub enum EventSource {
     Curve,
     /// The jumps made by hand.
     Walked,
+}
+
+/// A question that a job on files left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Question {
+    /// Save although somebody else changed the file.
+    SaveAnyway,
+    /// Replace the preset of this name.
+    ReplacePreset(String),
+    /// Replace the file of this path by this document.
+    ReplaceFile(super::files::Document, String),
 }
 
 /// How much a message matters.
@@ -111,12 +122,8 @@ pub struct Model {
     pub message: Option<(Level, String)>,
     /// The list of presets, once asked for.
     pub listing: Option<Listing>,
-    /// A save that met a file changed by somebody else.
-    pub save_conflict: bool,
-    /// An export that met an existing file.
-    pub export_conflict: Option<(super::files::Document, String)>,
-    /// A save under a name that exists.
-    pub name_conflict: Option<String>,
+    /// What a job on files wants to be asked before it goes on.
+    pub question: Option<Question>,
     /// Numbers for requests.
     pub next_request: u64,
     /// The session is over.
@@ -157,9 +164,7 @@ impl Model {
             smooth: true,
             message: None,
             listing: None,
-            save_conflict: false,
-            export_conflict: None,
-            name_conflict: None,
+            question: None,
             next_request: 1,
             quit: false,
         };

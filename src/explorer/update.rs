@@ -5,7 +5,7 @@ use super::curve::CurveData;
 use super::driver::{Effect, Reply};
 use super::files::{Document, Done, Job};
 use super::history::{Node, NodeKind};
-use super::model::{Axes, Chart, EventSource, LENGTHS, Level, Model, Panel};
+use super::model::{Axes, Chart, EventSource, LENGTHS, Level, Model, Panel, Question};
 use super::nudge::{Amount, next_control, nudge};
 use super::walk::{Action, Made, Outcome, Request};
 use crate::preset::{Loaded, Overwrite, Preset, Source};
@@ -463,17 +463,17 @@ fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
         }
         Done::Conflict => {
-            model.save_conflict = true;
+            model.question = Some(Question::SaveAnyway);
             tell(model, Level::Error, "the file was changed by somebody else since it was read: not saved");
         }
         Done::NameTaken(name) => {
             tell(model, Level::Error, format!("a preset called {name} exists: not saved"));
-            model.name_conflict = Some(name);
+            model.question = Some(Question::ReplacePreset(name));
         }
         Done::Exported(path) => tell(model, Level::Info, format!("exported to {path}")),
         Done::FileExists(what, path) => {
             tell(model, Level::Error, format!("{path} exists: not exported"));
-            model.export_conflict = Some((what, path));
+            model.question = Some(Question::ReplaceFile(what, path));
         }
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }

@@ -9,7 +9,8 @@ use crate::contact::Control;
 use crate::continuation::{Bracket, Point, Stepper, Work, events, locate, step_size};
 use crate::quasistatic::curve::settings;
 use crate::quasistatic::jump::{Landing, Nodes, Run};
-use crate::quasistatic::{Equilibrium, Event, EventKind, State, energy};
+use crate::quasistatic::unload::INWARD_REACH;
+use crate::quasistatic::{Equilibrium, Event, State};
 use crate::ritz::{self, NewtonSettings};
 use std::sync::Arc;
 
@@ -17,6 +18,9 @@ use std::sync::Arc;
 pub const RUN_POINTS: usize = 5000;
 /// A walk leaves the range of the curve by at most this factor in the contact radius.
 const ROOM: f64 = 3.0;
+
+/// A state solved again lies within this share of a wave, or of its radius, of the old one.
+const NEAR: f64 = 0.5;
 
 /// What the walker is to do.
 #[derive(Debug, Clone, PartialEq)]
@@ -199,7 +203,7 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         curve.extend(s * 1.01);
     }
     let mut landing = None;
-    for share in [1.0, 0.1, 1e-4] {
+    for share in [1.0, 0.1, INWARD_REACH] {
         let reach = if run == Run::Inward { s * share } else { s / share.max(1e-3) };
         let beyond = if run == Run::Inward { reach < curve.innermost() } else { reach > curve.outermost() };
         if beyond {
@@ -216,24 +220,14 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     if landing.is_none() && run == Run::Outward {
         return Outcome::Stopped("no stable state lies outward at this control value".to_owned());
     }
-    let before = equilibrium.state(from);
-    let after = landing.as_ref().map(|point| equilibrium.state(point));
-    let event = Event {
-        kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
-        control_value: value,
-        before,
-        after,
-        dissipated: energy::loss(control, value, &before, after.as_ref()),
-        dissipated_by_area: energy::area(
-            equilibrium,
-            control,
-            value,
-            before.contact_radius,
-            after.map(|a| a.contact_radius),
-        ),
-    };
+    if landing.is_none() && curve.innermost() > s * INWARD_REACH * (1.0 + 1e-9) {
+        return Outcome::Stopped(
+            "the basis has no equilibrium further in: the landing is not known".to_owned(),
+        );
+    }
+    let event = Event::new(equilibrium, control, value, equilibrium.state(from), landing.as_ref());
     let point = landing.unwrap_or_else(|| from.clone());
-    let state = after.unwrap_or(before);
+    let state = event.after.unwrap_or(event.before);
     emit(Made { kind: NodeKind::Jump(Box::new(event)), point, state });
     Outcome::Done
 }
@@ -258,7 +252,6 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
     let settings = NewtonSettings::default();
     let problem = &equilibrium.problem;
     // Newton may find another state far away on a wavy gap: the old radius' own branch is wanted.
-    const NEAR: f64 = 0.5;
     let near = |found: f64| {
         let feature = crate::contact::Gap::feature_length(&problem.gap).unwrap_or(s);
         (found - s).abs() <= NEAR * feature.min(s)

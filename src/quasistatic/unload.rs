@@ -33,6 +33,30 @@ pub struct Event {
     pub dissipated_by_area: Option<f64>,
 }
 
+impl Event {
+    /// The event of a jump at the control value `value` from `before` to `landing`, with its losses; a pull-off
+    /// where there is no landing.
+    #[must_use]
+    pub fn new(
+        equilibrium: &Equilibrium,
+        control: Control,
+        value: f64,
+        before: State,
+        landing: Option<&Point>,
+    ) -> Self {
+        let after = landing.map(|point| equilibrium.state(point));
+        let radii = (before.contact_radius, after.map(|a| a.contact_radius));
+        Self {
+            kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+            control_value: value,
+            before,
+            after,
+            dissipated: energy::loss(control, value, &before, after.as_ref()),
+            dissipated_by_area: energy::area(equilibrium, control, value, radii.0, radii.1),
+        }
+    }
+}
+
 /// Why the path ended.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PathStop {
@@ -112,7 +136,7 @@ impl UnloadError {
 const OUTWARD_REACH: f64 = 1000.0;
 /// How far inward a landing is looked for, as a share of the radius of the last limit point: the curve
 /// is smooth and monotone towards s = 0 long before.
-const INWARD_REACH: f64 = 1e-4;
+pub const INWARD_REACH: f64 = 1e-4;
 
 impl Unloading {
     /// The sum of the losses that are defined.
@@ -177,7 +201,13 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
             // The basis has no equilibrium further in: where the edge would land is not known, so this is no pull-off.
             break PathStop::Curve(CurveStop::NoEquilibrium(curve.innermost()));
         }
-        events.push(event(&curve.equilibrium, control, value, before, landing.as_ref().map(|l| &l.point)));
+        events.push(Event::new(
+            &curve.equilibrium,
+            control,
+            value,
+            before,
+            landing.as_ref().map(|l| &l.point),
+        ));
         match landing {
             None => break PathStop::PullOff,
             Some(landing) if curve.equilibrium.contact_radius(&landing.point) < end_radius => {
@@ -218,31 +248,6 @@ fn is_on(equilibrium: &Equilibrium, path: &[Point], events: &[Event], point: &Po
             let after = event.after.map_or(0.0, |a| a.contact_radius);
             s >= event.before.contact_radius || s <= after
         })
-}
-
-/// An event with its losses.
-fn event(
-    equilibrium: &Equilibrium,
-    control: Control,
-    value: f64,
-    before: State,
-    landing: Option<&Point>,
-) -> Event {
-    let after = landing.map(|point| equilibrium.state(point));
-    Event {
-        kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
-        control_value: value,
-        before,
-        after,
-        dissipated: energy::loss(control, value, &before, after.as_ref()),
-        dissipated_by_area: energy::area(
-            equilibrium,
-            control,
-            value,
-            before.contact_radius,
-            after.map(|a| a.contact_radius),
-        ),
-    }
 }
 
 /// From an unstable start outward, at constant control, to the next stable state, which becomes the first

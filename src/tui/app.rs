@@ -4,7 +4,7 @@ use super::keymap;
 use super::overlay::{Action, Choose, Confirm, Item, Overlay, Prompt, Purpose};
 use super::theme::Theme;
 use crate::explorer::files::Document;
-use crate::explorer::model::Level;
+use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Panel, Reply, answer, open, update};
 use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Source};
@@ -60,6 +60,9 @@ impl App {
     /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
     pub fn paste(&mut self, text: &str) {
         if let Some(Overlay::Prompt(prompt)) = &mut self.overlay {
+            if std::mem::take(&mut prompt.fresh) {
+                prompt.input.reset();
+            }
             for c in sanitize(text.lines().next().unwrap_or(""), LINE).chars() {
                 prompt.input.handle(tui_input::InputRequest::InsertChar(c));
             }
@@ -100,21 +103,29 @@ impl App {
                 title: "Open a file".to_owned(),
                 note: "a path with a / or ending in .toml".to_owned(),
                 input: Input::default(),
+                fresh: false,
                 purpose: Purpose::Path,
                 error: None,
             };
             items.push(Item { text: "a file ...".to_owned(), action: Action::Prompt(Box::new(prompt)) });
             self.overlay =
                 Some(Overlay::Choose(Choose { title: "Open a preset".to_owned(), items, selected: 0 }));
-        } else if let Some(name) = model.name_conflict.take() {
-            let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
-            self.ask(question, Command::SaveAs { name, replace: true });
-        } else if let Some((what, path)) = model.export_conflict.take() {
-            let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
-            self.ask(question, Command::Export { what, path, replace: true });
-        } else if std::mem::take(&mut model.save_conflict) {
-            let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
-            self.ask(question.to_owned(), Command::SaveAnyway);
+            return;
+        }
+        match model.question.take() {
+            None => {}
+            Some(Question::SaveAnyway) => {
+                let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
+                self.ask(question.to_owned(), Command::SaveAnyway);
+            }
+            Some(Question::ReplacePreset(name)) => {
+                let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
+                self.ask(question, Command::SaveAs { name, replace: true });
+            }
+            Some(Question::ReplaceFile(what, path)) => {
+                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+                self.ask(question, Command::Export { what, path, replace: true });
+            }
         }
     }
 
@@ -178,6 +189,7 @@ impl App {
                 title: format!("Export the {} to", what.name()),
                 note: "a file ending in .csv or .json".to_owned(),
                 input: Input::new(format!("{}-{}.csv", sanitize(&base, 60), what.name())),
+                fresh: false,
                 purpose: Purpose::File(what),
                 error: None,
             };
@@ -204,6 +216,7 @@ impl App {
             title: title.to_owned(),
             note: note.to_owned(),
             input: Input::new(text),
+            fresh: matches!(purpose, Purpose::Value(_)),
             purpose,
             error: None,
         }));
@@ -229,7 +242,11 @@ impl App {
                 return Vec::new();
             }
             _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
-            _ => {
+            code => {
+                let plain = key.modifiers.difference(KeyModifiers::SHIFT).is_empty();
+                if std::mem::take(&mut prompt.fresh) && matches!(code, KeyCode::Char(_)) && plain {
+                    prompt.input.reset();
+                }
                 prompt.input.handle_event(&Event::Key(key));
                 prompt.error = None;
             }

@@ -121,7 +121,7 @@ pub fn ticks([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
     let plain = decimals <= 5.0 && lo.abs().max(hi.abs()) < 1e6;
     (0..=most)
         .map(|i| (first + i as f64) * step)
-        .take_while(|tick| *tick <= hi)
+        .take_while(|tick| *tick <= hi + 1e-9 * step)
         .map(|tick| {
             let tick = if tick.abs() < 0.5 * step { 0.0 } else { tick };
             // Between 0 and 5, checked above.
@@ -138,7 +138,7 @@ pub fn ticks([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
 
 impl Chart {
     /// Draws the chart with its frame into `area`.
-    pub fn draw(&self, frame: &mut Frame<'_>, area: Rect, theme: &Theme, selected: bool) {
+    pub fn draw(&self, frame: &mut Frame<'_>, area: Rect, theme: Theme, selected: bool) {
         let mut block = Block::bordered()
             .border_set(theme.border())
             .border_style(theme.frame(selected))
@@ -191,7 +191,7 @@ impl Chart {
     }
 
     /// The curves, each in a canvas of its own so that a later one does not recolour the cells of an earlier.
-    fn draw_curves(&self, frame: &mut Frame<'_>, plot: Rect, theme: &Theme) {
+    fn draw_curves(&self, frame: &mut Frame<'_>, plot: Rect, theme: Theme) {
         for dotted in [true, false] {
             let marker = if dotted { theme.unstable_marker() } else { theme.marker() };
             let series: Vec<&Series> =

@@ -42,7 +42,7 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
         let _ = sender.send(reply);
     })?;
     let (mut app, effects) = App::new(loaded, Theme::of_environment());
-    effects.into_iter().for_each(|effect| workers.submit(effect));
+    workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {
         // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
@@ -64,7 +64,7 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
                 }
                 Incoming::App(reply) => app.reply(reply),
             };
-            effects.into_iter().for_each(|effect| workers.submit(effect));
+            workers.submit_all(effects);
             dirty = true;
         }
         if dirty && display.is_due() {

@@ -26,6 +26,8 @@ pub struct Prompt {
     pub note: String,
     /// What has been typed.
     pub input: Input,
+    /// Whether the text is still the old value: the first character typed replaces it.
+    pub fresh: bool,
     /// What it is for.
     pub purpose: Purpose,
     /// Why the last try was refused.

@@ -29,12 +29,12 @@ impl Theme {
     }
 
     /// `unicode` or `ascii`, whichever the terminal can show.
-    pub fn glyph<'a>(&self, unicode: &'a str, ascii: &'a str) -> &'a str {
+    pub fn glyph<'a>(self, unicode: &'a str, ascii: &'a str) -> &'a str {
         if self.ascii { ascii } else { unicode }
     }
 
     /// Text that may hold Unicode, as the terminal can show it.
-    pub fn text(&self, text: &str) -> String {
+    pub fn text(self, text: &str) -> String {
         if !self.ascii {
             return text.to_owned();
         }
@@ -42,22 +42,22 @@ impl Theme {
     }
 
     /// The dots of a chart.
-    pub fn marker(&self) -> Marker {
+    pub fn marker(self) -> Marker {
         if self.ascii { Marker::Custom('o') } else { Marker::Braille }
     }
 
     /// The dots of an unstable branch; in ASCII one dot a cell needs another character.
-    pub fn unstable_marker(&self) -> Marker {
+    pub fn unstable_marker(self) -> Marker {
         if self.ascii { Marker::Custom('.') } else { Marker::Braille }
     }
 
     /// The frame of a panel.
-    pub fn border(&self) -> border::Set<'static> {
+    pub fn border(self) -> border::Set<'static> {
         if self.ascii { ASCII_BORDER } else { border::PLAIN }
     }
 
     /// A panel's frame, selected or not.
-    pub fn frame(&self, selected: bool) -> Style {
+    pub fn frame(self, selected: bool) -> Style {
         if selected {
             Style::new().fg(Color::Cyan).add_modifier(Modifier::BOLD)
         } else {
@@ -66,27 +66,27 @@ impl Theme {
     }
 
     /// The selected line.
-    pub fn selection(&self) -> Style {
+    pub fn selection(self) -> Style {
         Style::new().add_modifier(Modifier::REVERSED)
     }
 
     /// Secondary text.
-    pub fn dim(&self) -> Style {
+    pub fn dim(self) -> Style {
         Style::new().fg(Color::DarkGray)
     }
 
     /// Headlines.
-    pub fn strong(&self) -> Style {
+    pub fn strong(self) -> Style {
         Style::new().add_modifier(Modifier::BOLD)
     }
 
     /// Errors and warnings.
-    pub fn error(&self) -> Style {
+    pub fn error(self) -> Style {
         Style::new().fg(Color::Red).add_modifier(Modifier::BOLD)
     }
 
     /// Keys in the footer and the help.
-    pub fn key(&self) -> Style {
+    pub fn key(self) -> Style {
         Style::new().fg(Color::Cyan)
     }
 }

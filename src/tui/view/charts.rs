@@ -53,7 +53,7 @@ impl Scale {
 /// Draws one of the charts; `alone` when the other is behind a key.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, which: Which, alone: bool) {
     let chart = match &app.model.curve {
-        Some(curve) => chart(&app.model, curve, which, alone, &app.theme),
+        Some(curve) => chart(&app.model, curve, which, alone, app.theme),
         None => Chart {
             title: "Curve".to_owned(),
             x_title: String::new(),
@@ -63,10 +63,10 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, which: Which, alone: b
             legend: "computing".to_owned(),
         },
     };
-    chart.draw(frame, area, &app.theme, is_selected(app, Panel::Charts));
+    chart.draw(frame, area, app.theme, is_selected(app, Panel::Charts));
 }
 
-fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: &Theme) -> Chart {
+fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: Theme) -> Chart {
     let scale = Scale::new(model, curve);
     let of_point = |p: &CurvePoint| scale.place(which, p.approach, p.force, p.contact_radius);
     let all: Vec<(f64, f64)> = curve.points.iter().map(of_point).collect();

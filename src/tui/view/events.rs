@@ -16,10 +16,10 @@ const WIDE: u16 = 112;
 
 /// Draws the list of instabilities.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
-    let (model, theme) = (&app.model, &app.theme);
+    let (model, theme) = (&app.model, app.theme);
     let events = model.shown_events();
     let selected = is_selected(app, Panel::Events);
-    let block = panel(theme, title(model), selected)
+    let block = panel(theme, &title(model), selected)
         .title_top(Line::styled(theme.text(&headline(model)), theme.strong()).right_aligned());
     let inner = block.inner(area);
     frame.render_widget(block, area);
@@ -46,7 +46,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
                 text.push_str(" @");
             }
             if hidden > 0 && i + 1 == first + rows {
-                text.push_str(&format!(" +{hidden}"));
+                text.push_str(" +");
+                text.push_str(&hidden.to_string());
             }
             let chosen = i == model.event && selected;
             let mark = if chosen { '>' } else { ' ' };

@@ -9,7 +9,7 @@ use ratatui::text::{Line, Span};
 
 /// Draws the first line.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
-    let (model, theme) = (&app.model, &app.theme);
+    let (model, theme) = (&app.model, app.theme);
     let name = match &model.source {
         crate::preset::Source::File(path) => {
             path.file_name().map_or_else(|| model.source.shown(), |name| name.to_string_lossy().into_owned())

@@ -18,7 +18,7 @@ const READING: &[&str] = &[
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
-fn text(theme: &Theme) -> Vec<Line<'static>> {
+fn text(theme: Theme) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     let mut section = "";
     for row in ROWS {
@@ -28,12 +28,12 @@ fn text(theme: &Theme) -> Vec<Line<'static>> {
             lines.push(Line::styled(section, theme.strong()));
         }
         lines.push(Line::from(vec![
-            Span::styled(format!("  {:<16}", keymap::label(row.id)), theme.key()),
+            Span::styled(format!("  {:<18}", keymap::label(row.id)), theme.key()),
             Span::raw(row.help),
         ]));
     }
     lines.push(Line::from(vec![
-        Span::styled(format!("  {:<16}", "Ctrl-Z"), theme.key()),
+        Span::styled(format!("  {:<18}", "Ctrl-Z"), theme.key()),
         Span::raw("back to the shell; fg returns"),
     ]));
     lines.push(Line::default());
@@ -45,15 +45,15 @@ fn text(theme: &Theme) -> Vec<Line<'static>> {
 
 /// How far the help can be scrolled.
 pub fn lines() -> u16 {
-    u16::try_from(text(&Theme { ascii: true }).len()).unwrap_or(u16::MAX).saturating_sub(1)
+    u16::try_from(text(Theme { ascii: true }).len()).unwrap_or(u16::MAX).saturating_sub(1)
 }
 
 /// Draws the help over the screen, scrolled by so many lines.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
-    let theme = &app.theme;
+    let theme = app.theme;
     let lines = text(theme);
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
-    let block = panel(theme, "Help: up and down scroll, Esc closes".to_owned(), true);
+    let block = panel(theme, "Help: up and down scroll, Esc closes", true);
     let inner = block.inner(area);
     let last = u16::try_from(lines.len()).unwrap_or(u16::MAX).saturating_sub(inner.height);
     frame.render_widget(Clear, area);

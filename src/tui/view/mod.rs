@@ -52,16 +52,16 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) {
 }
 
 /// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
-fn side_panel<'a>(theme: &Theme, title: String, selected: bool) -> Block<'a> {
+fn side_panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
     panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
 }
 
 /// A panel's frame with its title.
-fn panel<'a>(theme: &Theme, title: String, selected: bool) -> Block<'a> {
+fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
     Block::bordered()
         .border_set(theme.border())
         .border_style(theme.frame(selected))
-        .title(Span::styled(theme.text(&title), theme.strong()))
+        .title(Span::styled(theme.text(title), theme.strong()))
 }
 
 /// Whether a panel is the selected one, and nothing lies over it.
@@ -70,6 +70,9 @@ fn is_selected(app: &App, panel: Panel) -> bool {
 }
 
 /// `key value` with the key dim.
-fn pair(theme: &Theme, key: &str, value: String) -> [Span<'static>; 2] {
-    [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(&value))]
+fn pair(theme: Theme, key: &str, value: &str) -> [Span<'static>; 2] {
+    [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(value))]
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,9 +12,9 @@ use ratatui::widgets::{Clear, Paragraph, Wrap};
 /// Draws what lies over the screen, except the help.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
     match overlay {
-        Overlay::Prompt(prompt) => draw_prompt(frame, area, &app.theme, prompt),
-        Overlay::Choose(choose) => draw_choose(frame, area, &app.theme, choose),
-        Overlay::Confirm(confirm) => draw_confirm(frame, area, &app.theme, confirm),
+        Overlay::Prompt(prompt) => draw_prompt(frame, area, app.theme, prompt),
+        Overlay::Choose(choose) => draw_choose(frame, area, app.theme, choose),
+        Overlay::Confirm(confirm) => draw_confirm(frame, area, app.theme, confirm),
         Overlay::Help(_) => {}
     }
 }
@@ -26,9 +26,9 @@ fn middle(area: Rect, width: u16, height: u16) -> Rect {
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
 }
 
-fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: &Theme, prompt: &Prompt) {
+fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
     let area = middle(area, 76, if prompt.error.is_some() { 7 } else { 5 });
-    let block = panel(theme, prompt.title.clone(), true);
+    let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
@@ -51,10 +51,10 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: &Theme, prompt: &Prompt
     }
 }
 
-fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: &Theme, choose: &Choose) {
+fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
     let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
     let area = middle(area, 76, height);
-    let block = panel(theme, format!("{}: Enter takes, Esc closes", choose.title), true);
+    let block = panel(theme, &format!("{}: Enter takes, Esc closes", choose.title), true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
@@ -76,9 +76,9 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: &Theme, choose: &Choose
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-fn draw_confirm(frame: &mut Frame<'_>, area: Rect, theme: &Theme, confirm: &Confirm) {
+fn draw_confirm(frame: &mut Frame<'_>, area: Rect, theme: Theme, confirm: &Confirm) {
     let area = middle(area, 70, 5);
-    let block = panel(theme, "Sure?".to_owned(), true);
+    let block = panel(theme, "Sure?", true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);

@@ -14,9 +14,9 @@ use ratatui::widgets::Paragraph;
 
 /// Draws the parameters and the groups.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
-    let (model, theme) = (&app.model, &app.theme);
+    let (model, theme) = (&app.model, app.theme);
     let selected = is_selected(app, Panel::Problem);
-    let block = side_panel(theme, "Problem".to_owned(), selected);
+    let block = side_panel(theme, "Problem", selected);
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let groups = group_lines(theme, &Groups::of(&model.preset.problem()), inner.width);
@@ -43,13 +43,13 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 }
 
 /// A label as the terminal shows it.
-pub fn label(theme: &Theme, row: &Parameter) -> String {
+pub fn label(theme: Theme, row: &Parameter) -> String {
     let unicode = row.label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ");
     if theme.ascii { row.label.to_owned() } else { unicode }
 }
 
 fn knob_line(
-    theme: &Theme,
+    theme: Theme,
     row: &Parameter,
     value: Option<&Value>,
     selected: bool,
@@ -68,7 +68,7 @@ fn knob_line(
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }
 
-fn group_lines(theme: &Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> {
+fn group_lines(theme: Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> {
     let mut items: Vec<(&str, f64)> = Vec::new();
     let mut add = |name, value: Option<f64>| items.extend(value.map(|value| (name, value)));
     add("A/λ ", groups.amplitude_over_wavelength);
@@ -79,7 +79,7 @@ fn group_lines(theme: &Theme, groups: &Groups, width: u16) -> Vec<Line<'static>>
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
     for (name, value) in items {
-        let spans: Vec<Span<'static>> = pair(theme, name, format!("{}  ", short(value, 4))).to_vec();
+        let spans: Vec<Span<'static>> = pair(theme, name, &format!("{}  ", short(value, 4))).to_vec();
         let length: usize = spans.iter().map(Span::width).sum();
         if used.saturating_add(length) > usize::from(width) + 2 {
             lines.push(Line::from(" "));

@@ -34,7 +34,7 @@ const FOOTER: &[Id] = &[
 
 /// Draws the status line and the footer.
 pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
-    let theme = &app.theme;
+    let theme = app.theme;
     let (level, text) = app.model.status();
     let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
     let count = app.count.map_or_else(String::new, |count| format!("{count} "));

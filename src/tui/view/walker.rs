@@ -15,10 +15,10 @@ use ratatui::widgets::Paragraph;
 
 /// Draws the state of the walker.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
-    let (model, theme) = (&app.model, &app.theme);
+    let (model, theme) = (&app.model, app.theme);
     let node = model.history.current();
     let title = node.map_or_else(|| "Walker".to_owned(), |node| format!("Walker, step {}", node.step));
-    let block = side_panel(theme, title, is_selected(app, Panel::Walker));
+    let block = side_panel(theme, &title, is_selected(app, Panel::Walker));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let Some(node) = node else { return };
@@ -32,30 +32,30 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-fn apart(theme: &Theme, node: &Node) -> Vec<Line<'static>> {
+fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
     let state = node.state.in_units(node.setting.case.units());
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
-        Line::from(pair(theme, " pulled off at δ ", significant(state.approach, 5)).to_vec()),
-        Line::from(pair(theme, "              P ", significant(state.force, 5)).to_vec()),
-        Line::from(pair(theme, "              s ", significant(state.contact_radius, 5)).to_vec()),
+        Line::from(pair(theme, " pulled off at δ ", &significant(state.approach, 5)).to_vec()),
+        Line::from(pair(theme, "              P ", &significant(state.force, 5)).to_vec()),
+        Line::from(pair(theme, "              s ", &significant(state.contact_radius, 5)).to_vec()),
         Line::raw(" u goes back, 0 restarts"),
     ]
 }
 
-fn state(theme: &Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
+fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     let case = &node.setting.case;
     let state = node.state.in_units(case.units());
     let critical = case.smooth().pull_off_force();
     let wave = case.reduced.gap.feature_length();
     let s = node.state.contact_radius;
-    let mut force = pair(theme, " P ", significant(state.force, 4)).to_vec();
+    let mut force = pair(theme, " P ", &significant(state.force, 4)).to_vec();
     if critical > 0.0 {
-        force.extend(pair(theme, "  /Pc ", significant(state.force / critical, 4)));
+        force.extend(pair(theme, "  /Pc ", &significant(state.force / critical, 4)));
     }
-    let mut radius = pair(theme, " s ", significant(state.contact_radius, 4)).to_vec();
+    let mut radius = pair(theme, " s ", &significant(state.contact_radius, 4)).to_vec();
     if let Some(wave) = wave {
-        radius.extend(pair(theme, "  s/λ ", significant(s / wave, 4)));
+        radius.extend(pair(theme, "  s/λ ", &significant(s / wave, 4)));
     }
     let stability = node.stability();
     let mut stable = vec![Span::styled(" stable", theme.dim())];
@@ -81,20 +81,18 @@ fn state(theme: &Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         theme.glyph("→ outward", "> outward")
     };
     let mut lines = vec![
-        Line::from(pair(theme, " δ ", significant(state.approach, 5)).to_vec()),
+        Line::from(pair(theme, " δ ", &significant(state.approach, 5)).to_vec()),
         Line::from(force),
         Line::from(radius),
         Line::from(stable),
-        Line::from(
-            [pair(theme, " step ", short(model.length, 3)), pair(theme, "  ", way.to_owned())].concat(),
-        ),
+        Line::from([pair(theme, " step ", &short(model.length, 3)), pair(theme, "  ", way)].concat()),
     ];
     let mut last = Vec::new();
     if let Some(crest) = wave_index(s, wave) {
-        last.extend(pair(theme, " crest ", crest.to_string()));
+        last.extend(pair(theme, " crest ", &crest.to_string()));
     }
-    last.extend(pair(theme, " iter ", node.point.rounds.to_string()));
-    last.extend(pair(theme, " dig. ", format!("{:.1}", case.basis.trusted_digits(&case.reduced, s))));
+    last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
+    last.extend(pair(theme, " dig. ", &format!("{:.1}", case.basis.trusted_digits(&case.reduced, s))));
     lines.push(Line::from(last));
     lines
 }

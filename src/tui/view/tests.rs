@@ -1,0 +1,222 @@
+//! Whole screens: at every size, as text, and the styles that carry meaning.
+
+use crate::explorer::{Command, Id, Inline, Panel};
+use crate::preset::Store;
+use crate::tui::app::App;
+use crate::tui::theme::Theme;
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Buffer;
+use ratatui::style::{Color, Modifier};
+
+/// The explorer with its effects done inline.
+struct Screen {
+    app: App,
+    driver: Inline,
+    _folder: tempfile::TempDir,
+}
+
+impl Screen {
+    fn empty(preset: &str) -> (Self, Vec<crate::explorer::Effect>) {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path(), &[]);
+        let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
+        let (app, effects) = App::new(loaded, Theme { ascii: false });
+        (Self { app, driver: Inline::new(store), _folder: folder }, effects)
+    }
+
+    fn new(preset: &str) -> Self {
+        let (mut screen, effects) = Self::empty(preset);
+        screen.settle(effects);
+        screen
+    }
+
+    fn settle(&mut self, mut effects: Vec<crate::explorer::Effect>) {
+        while !effects.is_empty() {
+            let replies: Vec<_> = effects.into_iter().filter_map(|e| self.driver.run(e)).collect();
+            effects = replies.into_iter().flat_map(|reply| self.app.reply(reply)).collect();
+        }
+    }
+
+    fn press(&mut self, code: KeyCode) {
+        let effects = self.app.key(KeyEvent::from(code));
+        self.settle(effects);
+    }
+
+    /// Types a string of plain keys; `\r` is Enter, `\t` Tab, `\x1b` Escape.
+    fn keys(&mut self, keys: &str) -> &mut Self {
+        for c in keys.chars() {
+            self.press(match c {
+                '\r' => KeyCode::Enter,
+                '\t' => KeyCode::Tab,
+                '\x1b' => KeyCode::Esc,
+                c => KeyCode::Char(c),
+            });
+        }
+        self
+    }
+
+    fn draw(&self, width: u16, height: u16) -> Buffer {
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+        terminal.draw(|frame| super::draw(frame, &self.app)).unwrap();
+        terminal.backend().buffer().clone()
+    }
+
+    fn text(&self, width: u16, height: u16) -> String {
+        let buffer = self.draw(width, height);
+        let row = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+        (0..height).map(|y| row(y).trim_end().to_owned() + "\n").collect()
+    }
+}
+
+/// The first cell of `text` on the screen.
+fn find<'a>(buffer: &'a Buffer, text: &str) -> &'a ratatui::buffer::Cell {
+    let area = buffer.area;
+    for y in 0..area.height {
+        let cells: Vec<&str> = (0..area.width).map(|x| buffer[(x, y)].symbol()).collect();
+        for x in 0..cells.len() {
+            if cells[x..].concat().starts_with(text) {
+                return &buffer[(u16::try_from(x).unwrap(), y)];
+            }
+        }
+    }
+    unreachable!("{text} is not on the screen: {buffer:?}")
+}
+
+#[test]
+fn every_state_is_drawn_at_every_size() {
+    let (waiting, _) = Screen::empty("wavy-sphere");
+    let mut screens = vec![waiting];
+    for (preset, keys) in [
+        ("wavy-sphere", ""),
+        ("wavy-sphere", "n"),
+        ("wavy-sphere", "nx nv"),
+        ("wavy-sphere", "nxnxnxnxnxnx"),
+        ("wavy-sphere", "cca?"),
+        ("wavy-sphere", "\r-1\r"),
+        ("wavy-sphere", "o"),
+        ("wavy-sphere", "e\r"),
+        ("wavy-sphere", "}q"),
+        ("wavy-sphere", "nxnxnxkkk\r\u{8}\u{8}0\r"),
+        ("fig-1-hertz", "5 a"),
+        ("fig-3-jkr", "J \t\t\tn"),
+    ] {
+        let mut screen = Screen::new(preset);
+        screen.keys(keys);
+        screens.push(screen);
+    }
+    for screen in &screens {
+        for (width, height) in
+            [(0, 0), (1, 1), (2, 2), (40, 10), (41, 11), (60, 18), (80, 24), (100, 30), (200, 60)]
+        {
+            screen.draw(width, height);
+        }
+    }
+    for width in 0..130 {
+        for height in [0, 1, 3, 9, 10, 12, 17, 18, 25, 31] {
+            screens[2].draw(width, height);
+        }
+    }
+}
+
+#[test]
+fn whole_screens_as_text() {
+    let mut screen = Screen::new("wavy-sphere");
+    insta::assert_snapshot!("start_80x24", screen.text(80, 24));
+    screen.keys("n");
+    insta::assert_snapshot!("limit_point_80x24", screen.text(80, 24));
+    screen.keys("x");
+    insta::assert_snapshot!("landing_120x40", screen.text(120, 40));
+    screen.keys("?");
+    insta::assert_snapshot!("help_100x45", screen.text(100, 45));
+    screen.keys("\x1btav\r-1\r");
+    insta::assert_snapshot!("refused_value_80x24", screen.text(80, 24));
+}
+
+#[test]
+fn an_ascii_terminal_gets_nothing_else() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.theme = Theme { ascii: true };
+    for keys in ["", "n", "x", "t", "?", "\x1bo", "\x1b\r"] {
+        screen.keys(keys);
+        for (width, height) in [(80, 24), (120, 40)] {
+            let text = screen.text(width, height);
+            assert!(text.is_ascii(), "{keys}: {text}");
+        }
+    }
+}
+
+#[test]
+fn selection_instability_and_errors_have_their_styles() {
+    let mut screen = Screen::new("wavy-sphere");
+    let buffer = screen.draw(80, 24);
+    assert!(find(&buffer, ">A ").modifier.contains(Modifier::REVERSED));
+    screen.keys("n");
+    let buffer = screen.draw(80, 24);
+    assert_eq!(find(&buffer, "LIMIT").fg, Color::Red);
+    assert!(find(&buffer, "@").modifier.contains(Modifier::REVERSED));
+    screen.app.model.panel = Panel::Events;
+    let buffer = screen.draw(80, 24);
+    assert!(find(&buffer, ">  1").modifier.contains(Modifier::REVERSED));
+    screen.keys("\t{");
+    screen.app.model.panel = Panel::Walker;
+    screen.keys("{");
+    let buffer = screen.draw(80, 24);
+    assert_eq!(find(&buffer, "select a parameter first").fg, Color::Red);
+    assert!(find(&buffer, "* unsaved").modifier.contains(Modifier::BOLD));
+}
+
+#[test]
+fn too_few_rings_are_a_warning_on_the_screen() {
+    let mut screen = Screen::new("wavy-sphere");
+    let set = Command::Set { key: "basis.rings", text: "40".to_owned() };
+    let effects = crate::explorer::update(&mut screen.app.model, set);
+    screen.settle(effects);
+    let buffer = screen.draw(120, 40);
+    assert_eq!(find(&buffer, "! only 4.9 rings per wave").fg, Color::Red);
+}
+
+#[test]
+fn a_number_typed_first_is_a_count_and_zero_alone_restarts() {
+    let mut screen = Screen::new("fig-3-jkr");
+    screen.keys("12 ");
+    assert_eq!(screen.app.model.history.current().unwrap().step, 12);
+    screen.keys("10");
+    assert!(screen.text(80, 24).contains(" 10 "));
+    screen.keys("\x1b0");
+    assert!(screen.text(80, 24).contains("step 13"));
+    let start = &screen.app.model.history.nodes()[0];
+    assert_eq!(screen.app.model.history.current().unwrap().state, start.state);
+}
+
+#[test]
+fn pasted_text_is_never_a_command() {
+    let mut screen = Screen::new("fig-3-jkr");
+    screen.app.paste("q\n   ");
+    assert!(!screen.app.model.quit);
+    screen.keys("\r");
+    screen.app.paste("1\u{1b}[31m\nq");
+    let text = screen.text(80, 24);
+    assert!(text.contains("1\u{fffd}[31m") && !text.contains('\u{1b}'), "{text}");
+}
+
+#[test]
+fn escape_and_the_next_key_arriving_together_are_both_heard() {
+    let mut screen = Screen::new("fig-3-jkr");
+    screen.keys("?");
+    let alt = KeyEvent::new(KeyCode::Char(' '), crossterm::event::KeyModifiers::ALT);
+    let effects = screen.app.key(alt);
+    screen.settle(effects);
+    assert!(screen.app.overlay.is_none());
+    assert_eq!(screen.app.model.history.current().unwrap().step, 1);
+}
+
+#[test]
+fn the_footer_shows_only_what_can_be_done() {
+    let mut screen = Screen::new("wavy-sphere");
+    assert!(!screen.text(120, 40).contains("x jump"));
+    screen.keys("n");
+    assert!(screen.text(120, 40).contains("x jump"));
+    assert!(crate::explorer::command::row_of(Id::Undo).short.len() < 10);
+}

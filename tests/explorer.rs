@@ -1,0 +1,342 @@
+//! The explorer without a terminal: commands in, model out, every effect done inline.
+
+use pulloff::explorer::files::Document;
+use pulloff::explorer::model::Level;
+use pulloff::explorer::{Axes, Command, EventSource, Id, Inline, Model, NodeKind, Panel, open, update};
+use pulloff::preset::{Source, Store};
+use pulloff::quasistatic::EventKind;
+
+struct Session {
+    model: Model,
+    driver: Inline,
+    folder: tempfile::TempDir,
+}
+
+impl Session {
+    fn new(preset: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path().join("presets"), &["trace"]);
+        let source = store.resolve(preset).unwrap();
+        let (mut model, effects) = open(store.load(&source, &[] as &[&str]).unwrap());
+        let driver = Inline::new(store);
+        driver.settle(&mut model, effects);
+        Self { model, driver, folder }
+    }
+
+    fn does(&mut self, command: impl Into<Command>) -> &mut Self {
+        let effects = update(&mut self.model, command.into());
+        self.driver.settle(&mut self.model, effects);
+        self
+    }
+
+    fn all(&mut self, commands: &[Id]) -> &mut Self {
+        for command in commands {
+            self.does(*command);
+        }
+        self
+    }
+
+    fn set(&mut self, key: &'static str, text: &str) -> &mut Self {
+        self.does(Command::Set { key, text: text.to_owned() })
+    }
+
+    fn status(&self) -> String {
+        self.model.status().1
+    }
+
+    fn kind(&self) -> NodeKind {
+        self.model.history.current().unwrap().kind.clone()
+    }
+
+    fn radius(&self) -> f64 {
+        self.model.history.current().unwrap().state.contact_radius
+    }
+}
+
+#[test]
+fn the_walk_meets_the_events_of_the_curve() {
+    let mut session = Session::new("wavy-sphere");
+    let curve = session.model.curve.clone().unwrap();
+    let events = curve.unloading.as_ref().unwrap().events.clone();
+    assert_eq!(events.len(), 6);
+    for expected in &events {
+        session.does(Id::NextLimit);
+        assert!((session.radius() / expected.before.contact_radius - 1.0).abs() < 1e-9);
+        assert!(session.model.can_jump());
+        session.does(Id::Jump);
+        let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
+        assert_eq!(event.kind, expected.kind);
+        assert!((event.dissipated.unwrap() / expected.dissipated.unwrap() - 1.0).abs() < 1e-8);
+        if let (Some(ours), Some(theirs)) = (event.after, expected.after) {
+            assert!((ours.contact_radius / theirs.contact_radius - 1.0).abs() < 1e-9);
+        }
+    }
+    assert_eq!(session.model.walked_events().len(), 6);
+    assert_eq!(session.model.walked_events()[5].1.kind, "pull-off");
+    // Apart: nothing to walk, but nothing is lost either.
+    session.does(Id::Step);
+    assert!(session.status().contains("apart"));
+    session.does(Id::Undo).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+}
+
+#[test]
+fn outward_the_edge_jumps_on_loading() {
+    let mut session = Session::new("wavy-sphere");
+    // Down to the third stable piece, then back up: the maximum there is left outward.
+    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::Reverse, Id::NextLimit]);
+    let before = session.radius();
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert_eq!(event.kind, EventKind::Snap);
+    assert!(session.radius() > before);
+    assert!(event.dissipated.unwrap() > 0.0);
+    let node = session.model.history.current().unwrap();
+    assert!(node.stability().under(session.model.control().unwrap()));
+}
+
+#[test]
+fn steps_stop_at_a_limit_point_and_go_on_along_the_unstable_branch() {
+    let mut session = Session::new("wavy-sphere");
+    for _ in 0..200 {
+        session.does(Id::Step);
+        if session.kind() == NodeKind::Limit {
+            break;
+        }
+    }
+    let control = session.model.control().unwrap();
+    assert_eq!(session.kind(), NodeKind::Limit);
+    session.does(Id::Step).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+    assert!(!session.model.history.current().unwrap().stability().under(control));
+    assert!(session.status().starts_with("Unstable"));
+    // From an unstable state the edge runs as well, the way it is walked.
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert!(event.dissipated.unwrap() > 0.0);
+}
+
+#[test]
+fn a_count_is_so_many_steps_and_the_length_is_the_longest_step() {
+    let mut session = Session::new("fig-3-jkr");
+    session.does(Id::Halve).does(Id::Halve);
+    let length = session.model.length;
+    session.does(Command::Steps(5));
+    let path = session.model.history.path();
+    assert_eq!(path.len(), 6);
+    for node in &path[1..] {
+        assert!(node.point.length <= length * (1.0 + 1e-9), "{} {length}", node.point.length);
+    }
+}
+
+#[test]
+fn undo_moves_a_cursor_a_step_after_it_makes_a_branch_and_nothing_is_erased() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(3));
+    let first = session.radius();
+    session.all(&[Id::Undo, Id::Undo]).does(Id::Reverse).does(Id::Step);
+    assert!(session.radius() > first);
+    assert_eq!(session.model.history.nodes().len(), 5);
+    session.all(&[Id::Undo, Id::Redo]);
+    assert_eq!(session.model.history.cursor(), Some(4));
+    session.all(&[Id::Undo, Id::Undo, Id::Undo, Id::Undo]);
+    assert!(session.status().contains("nothing to undo"));
+}
+
+#[test]
+fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextLimit).does(Id::Jump);
+    let before = session.model.history.current().unwrap().state;
+    let events = session.model.shown_events();
+    session.does(Id::MuchMore);
+    assert!(session.model.is_unsaved());
+    assert_eq!(session.kind(), NodeKind::Solved);
+    let after = session.model.history.current().unwrap().state;
+    // Solved again at its control value: the same approach, another force.
+    assert!((after.approach - before.approach).abs() < 1e-9);
+    assert!((after.force / before.force - 1.0).abs() > 1e-3);
+    assert_ne!(session.model.shown_events()[0].before, events[0].before);
+    // Turned further it is one change for undo.
+    session.does(Id::More).does(Id::Undo);
+    assert!(!session.model.is_unsaved());
+    assert_eq!(session.model.history.current().unwrap().state, before);
+    assert_eq!(session.model.shown_events()[0], events[0]);
+}
+
+#[test]
+fn a_state_that_cannot_be_solved_stays_with_the_reason() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    let before = session.radius();
+    // Without adhesion no contact exists at this negative approach.
+    session.set("material.work_of_adhesion", "0");
+    assert!(matches!(session.kind(), NodeKind::Stale(_)), "{:?}", session.kind());
+    assert!((session.radius() / before - 1.0).abs() < 1e-15);
+    session.does(Id::Step);
+    assert!(session.status().contains("0 restarts"), "{}", session.status());
+    session.does(Id::Restart).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_the_reason() {
+    let mut session = Session::new("wavy-sphere");
+    let preset = session.model.preset.clone();
+    for (key, text) in [
+        ("gap.amplitude", "-1"),
+        ("gap.amplitude", "many"),
+        ("basis.rings", "3"),
+        ("gap.wavelength", "0"),
+        ("material.effective_modulus", "nan"),
+        ("path.control", "load"),
+        ("path.end_contact_radius", "0.5"),
+    ] {
+        session.set(key, text);
+        let (level, reason) = session.model.status();
+        assert_eq!(level, Level::Error, "{key}={text}");
+        assert!(reason.contains(key) || reason.contains("path."), "{reason}");
+        assert_eq!(session.model.preset, preset);
+    }
+}
+
+#[test]
+fn the_control_can_change_in_mid_walk() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(4));
+    let nodes = session.model.history.nodes().len();
+    session.does(Id::Control);
+    // The state stays the same state; only its stability is judged anew.
+    assert_eq!(session.model.history.nodes().len(), nodes);
+    assert_eq!(session.model.shown_events().last().unwrap().dissipated, None);
+    session.does(Id::NextLimit);
+    assert!(session.status().starts_with("Limit point 1/"), "{}", session.status());
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert!((event.before.force - event.after.unwrap().force).abs() < 1e-12);
+    session.does(Id::Control).does(Id::Control);
+    assert!(!session.model.is_unsaved());
+}
+
+#[test]
+fn selecting_an_event_moves_the_walker_to_its_limit_point() {
+    let mut session = Session::new("wavy-sphere");
+    session.model.panel = Panel::Events;
+    session.all(&[Id::Down, Id::Down, Id::Edit]);
+    let event = &session.model.shown_events()[2];
+    assert!((session.radius() / event.before.contact_radius - 1.0).abs() < 1e-9);
+    assert!(session.status().contains("jumps to crest 5"), "{}", session.status());
+    assert!(!session.model.is_unsaved());
+    // In the walked list it goes back to before the jump.
+    session.all(&[Id::Jump, Id::NextLimit, Id::Events]);
+    assert_eq!(session.model.events, EventSource::Walked);
+    session.does(Id::Edit);
+    assert_eq!(session.kind(), NodeKind::Limit);
+    assert!(
+        (session.radius()
+            / session.model.curve.as_ref().unwrap().report.as_ref().unwrap().events[2].before.contact_radius
+            - 1.0)
+            .abs()
+            < 1e-9
+    );
+}
+
+#[test]
+fn presets_are_saved_opened_and_never_replaced_unasked() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("gap.amplitude", "0.003");
+    session.does(Id::Save);
+    assert!(session.status().contains("read-only"));
+    for bad in ["", "Trace", "trace", "fig-9", "a/b", "x.toml"] {
+        session.does(Command::SaveAs { name: bad.to_owned(), replace: false });
+        assert_eq!(session.model.status().0, Level::Error, "{bad}");
+        assert!(session.model.is_unsaved());
+    }
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false });
+    assert!(!session.model.is_unsaved());
+    assert!(matches!(&session.model.source, Source::User { name, .. } if name == "lab-3"));
+    session.set("gap.amplitude", "0.004").does(Id::Save);
+    assert!(!session.model.is_unsaved(), "{}", session.status());
+    session.does(Command::Open("wavy-sphere".to_owned()));
+    assert_eq!(session.model.history.nodes().len(), 1);
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false });
+    assert!(session.model.question.take().is_some());
+    session.does(Command::Open("lab-3".to_owned()));
+    assert_eq!(session.model.preset.gap.wave(), Some((0.004, 0.05)));
+    // Changed behind our back: asked before it is replaced.
+    let path = session.folder.path().join("presets/lab-3.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("0.004", "0.0045");
+    std::fs::write(&path, &text).unwrap();
+    session.set("gap.amplitude", "0.005").does(Id::Save);
+    assert!(session.model.is_unsaved());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    session.does(Command::SaveAnyway);
+    assert!(!session.model.is_unsaved());
+}
+
+#[test]
+fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
+    let mut session = Session::new("fig-8");
+    session.all(&[Id::NextLimit, Id::Jump]);
+    for what in Document::ALL {
+        for ending in ["csv", "json"] {
+            let path = session.folder.path().join(format!("{}.{ending}", what.name()));
+            let shown = path.to_str().unwrap().to_owned();
+            session.does(Command::Export { what, path: shown.clone(), replace: false });
+            assert!(session.status().contains("exported"), "{}", session.status());
+            let text = std::fs::read_to_string(&path).unwrap();
+            if ending == "json" {
+                let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+                assert_eq!(document["schema"], 1);
+                assert!(document["problem"]["critical_force"].as_f64().unwrap() > 0.0);
+            } else {
+                let rows = csv::Reader::from_reader(text.as_bytes()).into_records().count();
+                let expected = match what {
+                    Document::Curve => session.model.curve.as_ref().unwrap().points.len(),
+                    Document::Walk => session.model.history.path().len(),
+                    Document::Events => 2,
+                };
+                assert_eq!(rows, expected, "{what:?}");
+            }
+            session.does(Command::Export { what, path: shown, replace: false });
+            assert!(session.model.question.take().is_some());
+        }
+    }
+}
+
+#[test]
+fn walking_selecting_and_views_are_not_unsaved_changes() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[
+        Id::Step,
+        Id::NextLimit,
+        Id::Jump,
+        Id::Undo,
+        Id::Redo,
+        Id::Restart,
+        Id::Reverse,
+        Id::Halve,
+        Id::Double,
+        Id::Axes,
+        Id::Events,
+        Id::Smooth,
+        Id::SwitchChart,
+        Id::NextPanel,
+        Id::Down,
+        Id::Up,
+        Id::PreviousPanel,
+    ]);
+    assert!(!session.model.is_unsaved());
+    assert_eq!(session.model.axes, Axes::Raw);
+}
+
+#[test]
+fn a_problem_without_adhesion_or_waves_can_be_walked() {
+    let mut session = Session::new("fig-1-hertz");
+    session.does(Command::Steps(10));
+    assert_eq!(session.kind(), NodeKind::Step);
+    session.does(Id::NextLimit);
+    assert!(session.status().contains("end contact radius"), "{}", session.status());
+    session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
+    assert!(session.model.curve_error.is_none());
+}
