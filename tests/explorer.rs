@@ -14,10 +14,10 @@ struct Session {
 
 impl Session {
     fn new(preset: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a session");
         let store = Store::at(folder.path().join("presets"), &["trace"]);
-        let source = store.resolve(preset).unwrap();
-        let (mut model, effects) = open(store.load(&source, &[] as &[&str]).unwrap());
+        let source = store.resolve(preset).expect("a session");
+        let (mut model, effects) = open(store.load(&source, &[] as &[&str]).expect("a session"));
         let driver = Inline::new(store);
         driver.settle(&mut model, effects);
         Self { model, driver, folder }
@@ -45,11 +45,11 @@ impl Session {
     }
 
     fn kind(&self) -> NodeKind {
-        self.model.history.current().unwrap().kind.clone()
+        self.model.history.current().expect("a session").kind.clone()
     }
 
     fn radius(&self) -> f64 {
-        self.model.history.current().unwrap().state.contact_radius
+        self.model.history.current().expect("a session").state.contact_radius
     }
 }
 

@@ -63,7 +63,7 @@ impl App {
             if std::mem::take(&mut prompt.fresh) {
                 prompt.input.reset();
             }
-            for c in sanitize(text.lines().next().unwrap_or(""), LINE).chars() {
+            for c in sanitize(text.split(['\n', '\r']).next().unwrap_or(""), LINE).chars() {
                 prompt.input.handle(tui_input::InputRequest::InsertChar(c));
             }
         }
