@@ -1,0 +1,80 @@
+//! What the engine costs, over a fixed table of ring numbers.
+//!
+//! `cargo bench --no-default-features`; the numbers are for comparing two versions on one machine.
+
+#![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
+
+use divan::{Bencher, black_box};
+use pulloff::case::Case;
+use pulloff::contact::Control;
+use pulloff::preset::{BasisSpec, Store};
+use pulloff::ritz::Rings;
+
+/// The ring numbers.
+const SIZES: [usize; 3] = [50, 200, 800];
+/// The arc-length trace at the largest takes too long to repeat.
+const TRACED: [usize; 2] = [50, 200];
+
+fn main() {
+    divan::main();
+}
+
+/// Fig. 9 with this number of rings.
+fn fig_9(rings: usize) -> Case {
+    // A folder that need not exist: the preset is a shipped one.
+    let store = Store::at("presets", &[]);
+    let mut preset = store.load(&store.resolve("fig-9").unwrap(), &[] as &[&str]).unwrap().preset;
+    preset.basis = BasisSpec::Rings { rings };
+    Case::new(&preset).unwrap()
+}
+
+/// B̃, W̃ and the factorization.
+#[divan::bench(args = SIZES, max_time = 5)]
+fn assembly_and_factorization(rings: usize) -> Rings {
+    Rings::uniform(black_box(rings)).unwrap()
+}
+
+/// Residual, force, energy and their derivatives at one (s, δ).
+#[divan::bench(args = SIZES)]
+fn evaluation(bencher: Bencher, rings: usize) {
+    let case = fig_9(rings);
+    bencher.bench_local(|| case.basis.evaluate(&case.reduced, black_box(0.3), black_box(-0.01)));
+}
+
+/// The curve through the explicit root, 500 points.
+#[divan::bench(args = SIZES, max_time = 5)]
+fn sweep(bencher: Bencher, rings: usize) {
+    let case = fig_9(rings);
+    bencher.bench_local(|| case.sweep(|| true).unwrap());
+}
+
+/// The curve by arc-length continuation.
+#[divan::bench(args = TRACED, max_time = 5)]
+fn trace(bencher: Bencher, rings: usize) {
+    let case = fig_9(rings);
+    bencher.bench_local(|| case.trace().unwrap());
+}
+
+/// Every jump of the swept curve with its two losses.
+fn unload(bencher: Bencher, rings: usize, control: Control) {
+    let case = fig_9(rings);
+    let curve = case.sweep(|| true).unwrap();
+    bencher
+        .with_inputs(|| curve.clone())
+        .bench_local_values(|mut curve| case.unload(&mut curve, control).unwrap());
+}
+
+#[divan::bench(args = SIZES, max_time = 5)]
+fn unload_by_displacement(bencher: Bencher, rings: usize) {
+    unload(bencher, rings, Control::Displacement);
+}
+
+#[divan::bench(args = SIZES, max_time = 5)]
+fn unload_by_force(bencher: Bencher, rings: usize) {
+    unload(bencher, rings, Control::Force);
+}
+
+#[divan::bench(args = SIZES, max_time = 5)]
+fn unload_by_spring(bencher: Bencher, rings: usize) {
+    unload(bencher, rings, Control::Stiffness(0.15));
+}
