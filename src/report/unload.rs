@@ -1,5 +1,6 @@
 //! The unloading as a document.
 
+use super::number::significant;
 use super::problem::ProblemReport;
 use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
@@ -121,9 +122,9 @@ impl UnloadReport {
             let asked = asked.in_units(units);
             format!(
                 "the state asked for (contact radius {}) is unstable under {} control: the edge first ran outward to {}",
-                asked.contact_radius,
+                significant(asked.contact_radius, 6),
                 control_name(unloading.control),
-                start.contact_radius
+                significant(start.contact_radius, 6)
             )
         });
         let start = StartReport {
