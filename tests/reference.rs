@@ -107,6 +107,9 @@ fn unloading_agrees_with_the_exact_solution() {
             let fine_loss = if name == "fig8" { 5e-3 } else { 1e-3 };
             for (rings, state_bound, loss_bound) in [(200, 1e-3, 1e-2), (800, 3e-4, fine_loss)] {
                 let (state, loss) = errors(&case, control, rings);
+                println!(
+                    "{name} {control} {rings} rings: states {state:.1e} of the range, losses {loss:.1e}"
+                );
                 assert!(
                     state < state_bound,
                     "{name} {control} {rings} rings: states off by {state:.2e} of the range"
