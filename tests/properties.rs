@@ -293,6 +293,32 @@ fn unloading_agrees_with_a_walk_on_the_explicit_curve() {
     run(20_260_612, 60, false);
 }
 
+/// A wavy sphere with E* = R = 1 and 100 rings.
+fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f64) -> Preset {
+    Preset {
+        title: String::new(),
+        material: Material { effective_modulus: 1.0, work_of_adhesion: gamma },
+        gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
+        basis: BasisSpec::Rings { rings: 100 },
+        path: PathSpec { control, start: Start::ContactRadius(start), end_contact_radius: None },
+    }
+}
+
+#[test]
+fn problems_that_once_went_wrong() {
+    for (preset, events) in [
+        // Limit points were lost: the interpolation between points missed so weak an adhesion altogether.
+        (wavy(1.097e-6, 0.1256, 0.3004, Control::Stiffness(0.0679), 0.7622), 2),
+        (wavy(2.6e-8, 0.00548, 0.07136, Control::Stiffness(1.628), 0.252), 4),
+        // The area of the first jump, a very thin lens, was off by 1.4e-6.
+        (wavy(1.132e-5, 0.012_698, 0.312_325, Control::Stiffness(24.06), 0.86657), 3),
+    ] {
+        let (found, faults) = faults(&preset);
+        assert!(faults.is_empty(), "{preset:?}: {faults:#?}");
+        assert_eq!(found, events, "{preset:?}");
+    }
+}
+
 #[test]
 #[ignore = "minutes; by hand"]
 fn unloading_agrees_with_a_walk_on_the_explicit_curve_at_length() {

@@ -48,7 +48,7 @@ pub fn limit_point(
             let bend = row.dot(&point.frame.curvature);
             return Some(LimitPoint { index: bracket.index, point, correction, bend });
         }
-        let middle = between(system, &from, &to, x.clamp(0.1, 0.9), settings, work)?;
+        let middle = near(system, &from, &to, x.clamp(0.1, 0.9), settings, work)?;
         if (middle.slope(row) > 0.0) == (from.slope(row) > 0.0) {
             from = middle;
         } else {
@@ -91,7 +91,7 @@ pub fn control_value(
                 return Point::corrected(polish(system, corrected, &plane), &chord);
             }
         }
-        let middle = between(system, &from, &to, x, settings, work)?;
+        let middle = near(system, &from, &to, x, settings, work)?;
         if (miss(&middle) > 0.0) == (a > 0.0) {
             from = middle;
         } else {
@@ -116,6 +116,24 @@ pub fn between(
     let corrected = correct(system, guess, &plane, settings).ok()?;
     work.evaluations += corrected.rounds + 1;
     Point::corrected(corrected, &chord)
+}
+
+/// A point of the curve inside the piece, at share `x` if it can be had, nearer to an end otherwise.
+///
+/// The interpolation is best near the ends. Under weak adhesion its error in the middle of a long piece can exceed
+/// the whole adhesion term, and the equations are not defined there.
+fn near(
+    system: &dyn System,
+    from: &Point,
+    to: &Point,
+    x: f64,
+    settings: &Settings,
+    work: &mut Work,
+) -> Option<Point> {
+    [1.0, 0.5, 0.2, 0.05, 0.01]
+        .into_iter()
+        .flat_map(|share| [x * share, 1.0 - (1.0 - x) * share])
+        .find_map(|x| between(system, from, to, x, settings, work))
 }
 
 /// Where the cubic of the slope of `row` between two points vanishes, as a share of the piece.
