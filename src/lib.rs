@@ -1,4 +1,53 @@
-//! pulloff.
+//! pulloff: a terminal explorer for adhesive contact, and the engine behind it.
+//!
+//! Two elastic bodies stick. The force P, the approach δ and the radius s of the contact disc follow an equilibrium
+//! curve with folds; on a wavy surface the contact edge jumps from wave to wave, and each jump dissipates energy.
+//! The curve is computed by a variational boundary-element method (Kalker's principle with a term for adhesion),
+//! after *A numerical method for axisymmetric adhesive contact based on Kalker's variational principle*.
+//!
+//! # The floors
+//!
+//! Each imports only floors below it.
+//!
+//! | floor | module | what lives there |
+//! |---|---|---|
+//! | 6 | [`cli`] | the door: command line, one file per subcommand, exit codes |
+//! | 5 | `tui` | the terminal: guard, keys, layout, charts, one file per screen region (feature `tui`) |
+//! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers |
+//! | 4 | [`report`] | the one serializable form of a trace and an unloading: JSON, CSV, table |
+//! | 3 | [`case`] | a preset made ready for the engine |
+//! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
+//! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, landings, losses, the unloading |
+//! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
+//! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, Newton-Raphson |
+//! | 2 | [`theory`] | closed forms: Hertz, JKR |
+//! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
+//!
+//! # Where the equations are
+//!
+//! | equation of the paper | module |
+//! |---|---|
+//! | (1), (2) functional, (16) its discretization, (19) stationarity | [`ritz::functional`], [`ritz::newton`] |
+//! | (10), (17) coefficients B | [`ritz::kernel`], [`ritz::rings`] |
+//! | (11), (18) coefficients W, (13)-(15) the scaled mesh | [`ritz::rings`] |
+//! | (20), (23) gaps | [`contact::shape`] |
+//! | (21) Hertz, (22) JKR | [`theory::hertz`], [`theory::jkr`] |
+//! | spherical arc length | [`continuation::corrector`], [`continuation::step`] |
+//! | Fig. 10, jumps and dissipation | [`quasistatic::jump`], [`quasistatic::energy`] |
+//!
+//! # The engine from code
+//!
+//! ```
+//! use pulloff::case::Case;
+//! use pulloff::preset::{read, shipped};
+//!
+//! let preset = read("wavy-sphere", shipped::find("wavy-sphere").expect("shipped").text)?;
+//! let case = Case::new(&preset)?;
+//! let mut curve = case.sweep(|| true)?;
+//! let unloading = case.unload(&mut curve, case.control)?;
+//! assert_eq!(unloading.events.len(), 6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod case;
 pub mod cli;

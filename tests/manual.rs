@@ -31,6 +31,33 @@ fn replaced(text: &str, name: &str, end: &str, part: &str) -> String {
     format!("{}{part}{}", &text[..start], &text[start + length..])
 }
 
+/// The explorer at its second limit point, as text.
+#[cfg(feature = "tui")]
+fn screen() -> String {
+    use pulloff::explorer::{Id, Inline, update};
+    use pulloff::tui::{app::App, theme::Theme, view};
+    use ratatui::{Terminal, backend::TestBackend};
+
+    let folder = tempfile::tempdir().unwrap();
+    let store = pulloff::preset::Store::at(folder.path(), &[]);
+    let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
+    let (mut app, effects) = App::new(loaded, Theme { ascii: false });
+    let driver = Inline::new(store);
+    driver.settle(&mut app.model, effects);
+    for id in [Id::NextLimit, Id::Jump, Id::NextLimit] {
+        let effects = update(&mut app.model, id.into());
+        driver.settle(&mut app.model, effects);
+    }
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
+    terminal.draw(|frame| view::draw(frame, &app)).unwrap();
+    let buffer = terminal.backend().buffer();
+    (0..24).fold(String::new(), |mut text, y| {
+        let row: String = (0..80).map(|x| buffer[(x, y)].symbol()).collect();
+        writeln!(text, "{}", row.trim_end()).unwrap();
+        text
+    })
+}
+
 #[test]
 fn the_generated_parts_of_the_readme_are_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
@@ -39,6 +66,11 @@ fn the_generated_parts_of_the_readme_are_current() {
     for command in ["unload wavy-sphere", "presets list"] {
         let text = fenced(&output(&command.split(' ').collect::<Vec<_>>()));
         current = replaced(&current, &format!("output: {command}"), "output", &text);
+    }
+    #[cfg(feature = "tui")]
+    {
+        current = replaced(&current, "keys", "keys", &pulloff::tui::keymap::markdown());
+        current = replaced(&current, "screen", "screen", &fenced(&screen()));
     }
     // Of a trace only the columns are compared: the last digits of its points differ between machines.
     let head = output(&["trace", "wavy-sphere"]).lines().take(3).fold(String::new(), |mut text, line| {
