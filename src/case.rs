@@ -8,6 +8,7 @@ use crate::preset::{BasisSpec, Preset};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload};
 use crate::quasistatic::{Curve, Unloading};
+use crate::ritz::rings::RING_RANGE;
 use crate::ritz::{Basis, Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use std::sync::Arc;
@@ -116,7 +117,7 @@ impl Case {
             Arc::clone(&self.basis),
             self.start,
             self.end,
-            TRACE_POINTS,
+            |settings| settings.points = TRACE_POINTS,
             || true,
         )
         .ok_or_else(|| self.no_start())
@@ -162,9 +163,14 @@ impl Case {
             let rings = self.basis.elements_per_wave(largest, wave);
             if rings < RINGS_PER_WAVE {
                 let wanted = (RINGS_PER_WAVE * largest / wave).ceil();
+                let most = RING_RANGE.end();
+                let advice = if wanted <= *most as f64 {
+                    format!("set basis.rings to {wanted} or more")
+                } else {
+                    format!("even {most} rings are too few, start from a smaller contact")
+                };
                 warnings.push(format!(
-                    "only {rings:.1} rings per wave in the largest contact; {RINGS_PER_WAVE} or more are needed: \
-                     set basis.rings to {wanted} or more"
+                    "only {rings:.1} rings per wave in the largest contact; {RINGS_PER_WAVE} or more are needed: {advice}"
                 ));
             }
         }

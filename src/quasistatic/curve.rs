@@ -141,14 +141,14 @@ impl Curve {
 
     /// The curve from `from` down to `to` by spherical arc-length continuation, landing exactly on `to`.
     ///
-    /// The scales of the arc length are the ranges of δ, P and s over a coarse explicit curve.
+    /// `adjust` may change the settings of the tracer. The scales of the arc length are the ranges of δ, P and s over a coarse explicit curve.
     /// `None` when there is no equilibrium at `from`.
     pub fn traced(
         problem: Reduced,
         basis: Arc<dyn Basis>,
         from: f64,
         to: f64,
-        points: usize,
+        adjust: impl FnOnce(&mut Settings),
         mut go_on: impl FnMut() -> bool,
     ) -> Option<Self> {
         /// Coarse sampling for the ranges only.
@@ -159,7 +159,7 @@ impl Curve {
         let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
         let start = equilibrium.explicit(from)?;
         let mut settings = settings(&equilibrium);
-        settings.points = points;
+        adjust(&mut settings);
         let value = to / equilibrium.scales.contact_radius;
         let end = End { unknown: unknown::CONTACT_RADIUS, value };
         let (branch, stop) = trace(&equilibrium, start, end, &settings, |_| go_on());
@@ -201,7 +201,13 @@ impl Curve {
 
     /// The limit points of `control` on the curve, located to rounding, from the start inward.
     pub fn limit_points(&self, control: Control) -> Vec<Limit> {
-        let settings = settings(&self.equilibrium);
+        self.limits_with(control, &|_| {})
+    }
+
+    /// The limit points of `control` as [`Curve::limit_points`], with changed settings: for measuring them.
+    pub fn limits_with(&self, control: Control, adjust: &dyn Fn(&mut Settings)) -> Vec<Limit> {
+        let mut settings = settings(&self.equilibrium);
+        adjust(&mut settings);
         let row = self.equilibrium.control_row(control);
         let mut work = Work::default();
         events::brackets(&self.equilibrium, &self.branch.points, &row, &settings, &mut work)
@@ -209,13 +215,17 @@ impl Curve {
             .filter_map(|bracket| {
                 // Rows differ by many orders between units: the location wants a unit row.
                 let unit = row.normalize();
-                locate::limit_point(&self.equilibrium, &bracket, &unit, &settings, &mut work)
-            })
-            .map(|found| Limit {
-                control,
-                turn: if found.bend > 0.0 { Turn::Minimum } else { Turn::Maximum },
-                index: found.index,
-                point: found.point,
+                let located = locate::limit_point(&self.equilibrium, &bracket, &unit, &settings, &mut work);
+                let (point, bend) = if let Some(found) = located {
+                    (found.point, found.bend)
+                } else {
+                    let (from, to) = (&bracket.from, &bracket.to);
+                    let point = self.equilibrium.bisect(from, to, |p| p.slope(&unit))?;
+                    // The slope grows through a minimum.
+                    (point, to.slope(&unit) - from.slope(&unit))
+                };
+                let turn = if bend > 0.0 { Turn::Minimum } else { Turn::Maximum };
+                Some(Limit { control, turn, index: bracket.index, point })
             })
             .collect()
     }

@@ -174,6 +174,26 @@ impl Equilibrium {
         wave_index(s, self.problem.gap.feature_length())
     }
 
+    /// Where `miss` changes its sign between two points of the curve, by halving in s through the explicit root.
+    ///
+    /// Slow and certain: for where a located Newton fails. `None` only where the basis has no equilibrium.
+    pub fn bisect(&self, from: &Point, to: &Point, miss: impl Fn(&Point) -> f64) -> Option<Point> {
+        let side = miss(from) > 0.0;
+        let (mut a, mut b) = (self.contact_radius(from), self.contact_radius(to));
+        loop {
+            let middle = 0.5 * (a + b);
+            let point = self.explicit(middle)?;
+            if middle <= a.min(b) || middle >= a.max(b) {
+                return Some(point);
+            }
+            if (miss(&point) > 0.0) == side {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+    }
+
     /// The point of an evaluated equilibrium, its tangent running inward; `None` where the curve is singular.
     pub fn point(&self, evaluation: &Evaluation) -> Option<Point> {
         let y = self.unknowns_of(evaluation);

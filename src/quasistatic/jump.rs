@@ -65,6 +65,21 @@ impl Nodes {
         &self.points
     }
 
+    /// The outermost state at which the control takes `value` while it grows with s; `None` when there is none.
+    pub fn outermost(&self, curve: &Curve, value: f64) -> Option<Point> {
+        // The outermost node that is not above the value ends the search; a limit point may be that node alone.
+        let inside = (1..self.points.len()).find(|&k| self.value(k) <= value && self.value(k - 1) > value)?;
+        self.land(curve, inside - 1, inside, value, &mut Work::default())
+    }
+
+    /// The state between two nodes at which the control takes `value`.
+    fn land(&self, curve: &Curve, from: usize, to: usize, value: f64, work: &mut Work) -> Option<Point> {
+        let settings = super::curve::settings(&curve.equilibrium);
+        let (a, b) = (&self.points[from], &self.points[to]);
+        control_value(&curve.equilibrium, a, b, &self.row, value, &settings, work)
+            .or_else(|| curve.equilibrium.bisect(a, b, |p| self.row.dot(&p.y) - value))
+    }
+
     /// The first limit point at or after node `node` at which the control is smallest.
     pub fn next_minimum(&self, node: usize) -> Option<usize> {
         self.limits.iter().copied().find(|&at| {
@@ -79,21 +94,16 @@ impl Nodes {
     ///
     /// `None` when the curve has none in that direction.
     pub fn run(&self, curve: &Curve, node: usize, value: f64, run: Run) -> Option<Landing> {
-        let settings = super::curve::settings(&curve.equilibrium);
         let mut work = Work::default();
         let miss = |at: usize| self.value(at) - value;
-        let land = |from: usize, to: usize, work: &mut Work| {
-            let (a, b) = (&self.points[from], &self.points[to]);
-            control_value(&curve.equilibrium, a, b, &self.row, value, &settings, work)
-        };
         match run {
             Run::Inward => {
                 let at = (node + 1..self.points.len()).find(|&k| miss(k) <= 0.0 && miss(k - 1) > 0.0)?;
-                Some(Landing { point: land(at - 1, at, &mut work)?, node: at - 1 })
+                Some(Landing { point: self.land(curve, at - 1, at, value, &mut work)?, node: at - 1 })
             }
             Run::Outward => {
                 let at = (0..node).rev().find(|&k| miss(k) >= 0.0 && miss(k + 1) < 0.0)?;
-                Some(Landing { point: land(at, at + 1, &mut work)?, node: at })
+                Some(Landing { point: self.land(curve, at, at + 1, value, &mut work)?, node: at })
             }
         }
     }

@@ -1,12 +1,9 @@
 //! The state a path starts from.
 
-use super::curve::{SWEEP_STEPS_PER_WAVE, radii};
-use super::equilibrium::{Equilibrium, Scales};
+use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
+use super::jump::Nodes;
 use crate::contact::{Control, Gap, Reduced, Start, Units};
-use crate::continuation::Settings;
-use crate::continuation::Work;
-use crate::continuation::locate::control_value;
-use crate::ritz::{Basis, Evaluation};
+use crate::ritz::Basis;
 use std::sync::Arc;
 
 /// Why a start state was not found.
@@ -56,7 +53,7 @@ impl StartError {
 
 /// The contact radius of the start state.
 ///
-/// For an approach or a preload the explicit curve is sampled outward until it stays above the value over a
+/// For an approach or a preload the curve is swept further and further out until it stays above the value over a
 /// factor of two in radius; the outermost crossing, where the control grows with s, is the start.
 ///
 /// # Errors
@@ -69,41 +66,55 @@ pub fn contact_radius(problem: &Reduced, basis: &Arc<dyn Basis>, start: Start) -
         Start::Approach(value) => (Control::Displacement, value, "approach"),
         Start::Force(value) => (Control::Force, value, "force"),
     };
-    let below = |e: &Evaluation| control.value(e.approach, e.force) <= value;
     // The radii at which a paraboloid of R = 1 takes the value, with and without adhesion.
     let elastic = if control == Control::Force { value.abs().cbrt() } else { value.abs().sqrt() };
     let adhesive = problem.work_of_adhesion.cbrt();
     let unit = elastic.max(adhesive).max(f64::MIN_POSITIVE);
     let largest = 1e3 * unit;
-
-    let mut samples: Vec<Evaluation> = Vec::new();
+    let from = 1e-3 * unit;
     let mut reach = 2.0 * unit;
-    let mut from = 1e-3 * unit;
     loop {
-        let steps = radii(from, reach, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        samples.extend(steps.into_iter().filter_map(|s| basis.equilibrium(problem, s)));
-        if samples.iter().filter(|e| e.contact_radius >= 0.5 * reach).all(|e| !below(e)) {
-            break;
+        let pieces: Vec<(Curve, Nodes)> = pieces(problem, basis, reach, from)
+            .map(|curve| {
+                let nodes = Nodes::new(&curve, control, &curve.limit_points(control));
+                (curve, nodes)
+            })
+            .collect();
+        let values = || {
+            pieces.iter().flat_map(|(curve, nodes)| {
+                nodes
+                    .points()
+                    .iter()
+                    .enumerate()
+                    .map(|(i, p)| (curve.equilibrium.contact_radius(p), nodes.value(i)))
+            })
+        };
+        // Above the value over the outer half: no wave further out comes down to it again.
+        if values().take_while(|(s, _)| *s >= 0.5 * reach).all(|(_, v)| v > value) {
+            let smallest = values().map(|(_, v)| v).fold(f64::INFINITY, f64::min);
+            let found =
+                pieces.iter().find_map(|(curve, nodes)| Some((curve, nodes.outermost(curve, value)?)));
+            let (curve, start) = found.ok_or(StartError::OutOfReach { name, value, smallest })?;
+            return Ok(curve.equilibrium.contact_radius(&start));
         }
         if reach >= largest {
             return Err(StartError::NotReached { name, value, largest });
         }
-        from = reach;
         reach *= 2.0;
     }
-    let smallest = samples.iter().map(|e| control.value(e.approach, e.force)).fold(f64::INFINITY, f64::min);
-    let missing = StartError::OutOfReach { name, value, smallest };
-    let last = samples.iter().rposition(below).ok_or(missing)?;
-    let (inside, outside) = (&samples[last], samples.get(last + 1).ok_or(missing)?);
-    let equilibrium = Equilibrium {
-        problem: problem.clone(),
-        basis: Arc::clone(basis),
-        scales: Scales::of([inside, outside]),
-    };
-    let points = [outside, inside].map(|e| equilibrium.explicit(e.contact_radius));
-    let [Some(outside), Some(inside)] = points else { return Err(missing) };
-    let row = equilibrium.control_row(control);
-    let settings = Settings::new(3);
-    let found = control_value(&equilibrium, &outside, &inside, &row, value, &settings, &mut Work::default());
-    found.map(|point| equilibrium.contact_radius(&point)).ok_or(missing)
+}
+
+/// The equilibrium curve from `reach` down to `from` in its connected pieces, the outermost first: rings too coarse
+/// for the waves have radii without an equilibrium.
+fn pieces(problem: &Reduced, basis: &Arc<dyn Basis>, reach: f64, from: f64) -> impl Iterator<Item = Curve> {
+    /// Just below the last radius of a piece.
+    const BELOW: f64 = 1.0 - 1e-6;
+    let mut outer = Some(reach);
+    std::iter::from_fn(move || {
+        let steps = radii(outer?, from, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
+        let first = steps.into_iter().find(|s| basis.equilibrium(problem, *s).is_some())?;
+        let curve = Curve::swept(problem.clone(), Arc::clone(basis), first, from, || true)?;
+        outer = Some(curve.innermost() * BELOW).filter(|s| *s > from);
+        Some(curve)
+    })
 }
