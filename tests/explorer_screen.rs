@@ -1,4 +1,3 @@
-#![cfg(feature = "tui")]
 //! A whole session in a pseudo-terminal, as a person has it: open, step, run to an instability, jump, turn a
 //! knob, save, export, quit, and find the preset again.
 

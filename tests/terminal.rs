@@ -1,4 +1,3 @@
-#![cfg(feature = "tui")]
 //! The program in a pseudo-terminal: whatever ends it, the terminal is given back.
 
 mod support;
