@@ -187,15 +187,7 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
         };
         let value = nodes.value(limit);
         let before_point = nodes.points()[limit].clone();
-        let mut landing = nodes.run(curve, limit, value, Run::Inward);
-        if landing.is_none() {
-            let s = curve.equilibrium.contact_radius(&before_point);
-            if INWARD_REACH * s < curve.innermost() && curve.extend(INWARD_REACH * s) {
-                // Indices before the extension stay true: it only adds points at the end.
-                nodes = Nodes::new(curve, control, &curve.limit_points(control));
-                landing = nodes.run(curve, limit, value, Run::Inward);
-            }
-        }
+        let landing = landing_inward(curve, &mut nodes, limit);
         let before = curve.equilibrium.state(&before_point);
         if landing.is_none() && curve.innermost() > INWARD_REACH * before.contact_radius * (1.0 + 1e-9) {
             // The basis has no equilibrium further in: where the edge would land is not known, so this is no pull-off.
@@ -217,24 +209,33 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
             Some(landing) => here = landing,
         }
     };
-    let smallest = |of: Control| {
-        let limits = curve.limit_points(of);
-        // The extremes over the path: its own points, and limit points of the quantity between them.
-        let on_path =
-            limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, &path, &events, p));
-        let state = |p: &Point| curve.equilibrium.quantities(&p.y);
-        let least = path.iter().chain(on_path).min_by(|a, b| {
-            let value = |p: &Point| {
-                let [delta, force, _] = state(p);
-                of.value(delta, force)
-            };
-            value(a).total_cmp(&value(b))
-        });
-        least.map_or(start, |p| curve.equilibrium.state(p))
-    };
-    let (min_force, min_approach) = (smallest(Control::Force), smallest(Control::Displacement));
+    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
+    let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked_state.filter(|_| unstable_start);
     Ok(Unloading { control, start, asked, events, stop, min_force, min_approach })
+}
+
+/// Where the edge lands when it runs inward from the limit point at node `limit`; the curve is extended, and the
+/// nodes with it, where nothing is found on it.
+fn landing_inward(curve: &mut Curve, nodes: &mut Nodes, limit: usize) -> Option<Landing> {
+    let value = nodes.value(limit);
+    let landing = nodes.run(curve, limit, value, Run::Inward);
+    let reach = INWARD_REACH * curve.equilibrium.contact_radius(&nodes.points()[limit]);
+    if landing.is_some() || reach >= curve.innermost() || !curve.extend(reach) {
+        return landing;
+    }
+    // Indices before the extension stay true: it only adds points at the end.
+    *nodes = Nodes::new(curve, nodes.control, &curve.limit_points(nodes.control));
+    nodes.run(curve, limit, value, Run::Inward)
+}
+
+/// The point of a path at which the quantity that `of` controls is smallest: one of its own, or a limit point of
+/// that quantity between them.
+fn least(curve: &Curve, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
+    let row = curve.equilibrium.control_row(of);
+    let limits = curve.limit_points(of);
+    let between = limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, path, events, p));
+    path.iter().chain(between).min_by(|a, b| row.dot(&a.y).total_cmp(&row.dot(&b.y))).cloned()
 }
 
 /// Whether `point` lies on the stable pieces of a path: between its outermost and innermost point, and not
