@@ -181,7 +181,9 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
             return Outcome::Stopped("the end contact radius is reached; b turns round".to_owned());
         }
         if !request.inward && s > ROOM * case.start {
-            return Outcome::Stopped("far outside the start; b turns round".to_owned());
+            return Outcome::Stopped(
+                "nothing found up to three times the start radius; b turns round".to_owned(),
+            );
         }
     }
     if run { Outcome::Stopped(format!("no limit point within {RUN_POINTS} steps")) } else { Outcome::Done }

@@ -3,9 +3,9 @@
 use super::is_selected;
 use crate::contact::Control;
 use crate::explorer::curve::{CurveData, CurvePoint};
-use crate::explorer::history::NodeKind;
+use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::{Axes, Chart as Which, Model, Panel};
-use crate::quasistatic::{EventKind, State};
+use crate::quasistatic::{Event, EventKind, State};
 use crate::tui::app::App;
 use crate::tui::chart::{Bounds, Chart, Mark, Series, Stroke};
 use crate::tui::theme::{Theme, ink};
@@ -78,6 +78,12 @@ fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: The
     series.extend(pieces(curve, &all));
     let mut marks = limit_marks(curve, scale, which);
     walk(model, scale, which, &mut series, &mut marks);
+    // The walker may have left the range of the curve: the chart follows it there.
+    let walker = model.walker().filter(|node| !node.is_apart()).map(|node| {
+        let state = node.state.in_units(node.setting.case.units());
+        scale.place(which, state.approach, state.force, state.contact_radius)
+    });
+    let bounds = Bounds::of(all.iter().copied().chain(walker));
     let (y, x) = match which {
         Which::ForceApproach => (scale.force_name(), "δ"),
         Which::RadiusForce => (scale.radius_name(), scale.force_name()),
@@ -92,7 +98,7 @@ fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: The
     Chart {
         title: format!("{y} over {x}{hint}"),
         x_title: x.to_owned(),
-        bounds: Bounds::of(all),
+        bounds,
         series,
         marks,
         legend: format!("{line}{smooth} v limit X pull-off @ here"),
@@ -161,9 +167,21 @@ fn limit_marks(curve: &CurveData, scale: Scale, which: Which) -> Vec<Mark> {
     marks
 }
 
+/// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
+fn apart(node: &Node, event: &Event) -> State {
+    /// Under a dead load the bodies fall apart for ever: a line to the left, out of the chart.
+    const FAR: f64 = -1e3;
+    let (approach, force) = match node.control {
+        Control::Displacement => (event.before.approach, 0.0),
+        Control::Force => (FAR * event.before.approach.abs(), event.before.force),
+        Control::Stiffness(_) => (event.control_value, 0.0),
+    };
+    State { contact_radius: 0.0, approach, force, energy: 0.0 }
+}
+
 /// The walk: its steps, its jumps as straight lines, and the walker.
 fn walk(model: &Model, scale: Scale, which: Which, series: &mut Vec<Series>, marks: &mut Vec<Mark>) {
-    let place = |node: &crate::explorer::Node, state: &State| {
+    let place = |node: &Node, state: &State| {
         let state = state.in_units(node.setting.case.units());
         scale.place(which, state.approach, state.force, state.contact_radius)
     };
@@ -185,14 +203,8 @@ fn walk(model: &Model, scale: Scale, which: Which, series: &mut Vec<Series>, mar
             NodeKind::Jump(event) => {
                 finish(&mut steps);
                 let before = place(node, &event.before);
-                let after = event.after.as_ref().map_or_else(
-                    || {
-                        // Apart: no force, no contact; the approach stays under displacement control.
-                        let delta = event.before.in_units(node.setting.case.units()).approach;
-                        scale.place(which, delta, 0.0, 0.0)
-                    },
-                    |after| place(node, after),
-                );
+                let after =
+                    event.after.map_or_else(|| place(node, &apart(node, event)), |after| place(node, &after));
                 jumps.push(vec![before, after]);
                 if event.after.is_some() {
                     let style = Style::new().fg(ink::JUMP).add_modifier(Modifier::BOLD);
