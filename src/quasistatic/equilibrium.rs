@@ -29,7 +29,9 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The ranges over `evaluations`; a quantity that does not vary is scaled by its size.
+    /// The ranges over `evaluations`, as powers of two; a quantity that does not vary is scaled by its size.
+    ///
+    /// Powers of two cost no digit: a state comes back from the unknowns as it went in.
     pub fn of<'a>(evaluations: impl IntoIterator<Item = &'a Evaluation>) -> Self {
         let empty = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
         let mut ranges = [empty; 3];
@@ -40,7 +42,8 @@ impl Scales {
         }
         let scale = |[lo, hi, size]: [f64; 3]| {
             let range = hi - lo;
-            [range, size].into_iter().find(|x| x.is_finite() && *x > 0.0).unwrap_or(1.0)
+            let found = [range, size].into_iter().find(|x| x.is_finite() && *x > 0.0).unwrap_or(1.0);
+            found.log2().round().exp2()
         };
         let [approach, force, contact_radius] = ranges.map(scale);
         Self { approach, force, contact_radius }
