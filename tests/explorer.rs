@@ -165,6 +165,20 @@ fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
 }
 
 #[test]
+fn undo_before_the_answer_takes_the_value_back() {
+    let mut session = Session::new("wavy-sphere");
+    // The curve is asked for but has not come when undo is pressed.
+    let late = update(&mut session.model, Id::MuchMore.into());
+    let effects = update(&mut session.model, Id::Undo.into());
+    assert!(!session.model.is_unsaved());
+    session.driver.settle(&mut session.model, late);
+    session.driver.settle(&mut session.model, effects);
+    assert_eq!(session.model.shown_events().len(), 6);
+    assert!(session.model.walker().is_some());
+    assert!(!session.model.is_computing());
+}
+
+#[test]
 fn a_state_that_cannot_be_solved_stays_with_the_reason() {
     let mut session = Session::new("wavy-sphere");
     session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);

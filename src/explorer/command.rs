@@ -163,7 +163,7 @@ fn knob(model: &Model) -> bool {
 }
 
 fn can_undo(model: &Model) -> bool {
-    model.history.parent().is_some()
+    model.history.parent().is_some() || model.is_ahead()
 }
 
 fn can_redo(model: &Model) -> bool {

@@ -138,6 +138,12 @@ pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 /// The keys without a knob: the version of the format, and the name of the only basis.
 const NO_KNOB: [&str; 2] = ["format", "basis.kind"];
 
+/// Whether two presets have the same curve: everything but the title and the control is equal.
+fn same_curve(a: &Preset, b: &Preset) -> bool {
+    (a.material, a.gap, a.basis, a.path.start, a.path.end_contact_radius)
+        == (b.material, b.gap, b.basis, b.path.start, b.path.end_contact_radius)
+}
+
 impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
@@ -211,12 +217,14 @@ impl Model {
     /// Whether the current node solves the problem of the curve on the screen.
     pub fn is_on_curve(&self, node: &Node) -> bool {
         let Some(curve) = &self.curve else { return false };
-        let (a, b) = (&node.setting, &curve.setting);
-        let same = |x: &Preset, y: &Preset| {
-            (x.material, x.gap, x.basis, x.path.start, x.path.end_contact_radius)
-                == (y.material, y.gap, y.basis, y.path.start, y.path.end_contact_radius)
-        };
-        same(&a.preset, &b.preset) && !matches!(node.kind, NodeKind::Stale(_))
+        same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
+    }
+
+    /// Whether the values have been changed since the walker's state was made: undo takes that back first.
+    pub fn is_ahead(&self) -> bool {
+        self.history.current().is_some_and(|node| {
+            !same_curve(&node.setting.preset, &self.preset) && !matches!(node.kind, NodeKind::Stale(_))
+        })
     }
 
     /// The walker's node, where it stands on the curve on the screen.

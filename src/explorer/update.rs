@@ -69,6 +69,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),
         Id::Double => scale_length(model, 2.0),
+        Id::Undo if model.is_ahead() => return take_back(model),
         Id::Undo => return travel(model, super::History::undo),
         Id::Redo => return travel(model, super::History::redo),
         Id::Control => return change_control(model),
@@ -311,11 +312,18 @@ fn travel(model: &mut Model, go: fn(&mut super::History) -> bool) -> Vec<Effect>
     effects
 }
 
+/// The parameters of the walker's state, where the curve on the screen has others.
 fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
     let Some(node) = model.history.current() else { return Vec::new() };
     if model.is_on_curve(node) || matches!(node.kind, NodeKind::Stale(_)) {
         return Vec::new();
     }
+    take_back(model)
+}
+
+/// The parameters of the walker's state instead of those typed since.
+fn take_back(model: &mut Model) -> Vec<Effect> {
+    let Some(node) = model.history.current() else { return Vec::new() };
     let mut preset = node.setting.preset.clone();
     preset.title.clone_from(&model.preset.title);
     preset.path.control = model.preset.path.control;
