@@ -174,6 +174,12 @@ impl Case {
                 ));
             }
         }
+        if self.reduced.work_of_adhesion == 0.0 && self.reduced.gap.feature_length().is_some() {
+            warnings.push(
+                "without adhesion one connected disc is assumed, not checked: tension in it means nothing"
+                    .to_owned(),
+            );
+        }
         let weak = 1e-6;
         if self.reduced.work_of_adhesion > 0.0 && self.reduced.work_of_adhesion < weak {
             warnings.push(format!(

@@ -124,7 +124,7 @@ fn a_count_is_so_many_steps_and_the_length_is_the_longest_step() {
     session.does(Command::Steps(5));
     let path = session.model.history.path();
     assert_eq!(path.len(), 6);
-    for node in &path[1..] {
+    for (_, node) in &path[1..] {
         assert!(node.point.length <= length * (1.0 + 1e-9), "{} {length}", node.point.length);
     }
 }
@@ -296,6 +296,8 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
         for ending in ["csv", "json"] {
             let path = session.folder.path().join(format!("{}.{ending}", what.name()));
             let shown = path.to_str().unwrap().to_owned();
+            session.does(Command::Export { what, path: format!("{shown}.txt"), replace: false });
+            assert!(session.status().contains("must end in"), "{}", session.status());
             session.does(Command::Export { what, path: shown.clone(), replace: false });
             assert!(session.status().contains("exported"), "{}", session.status());
             let text = std::fs::read_to_string(&path).unwrap();
@@ -342,6 +344,28 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
     ]);
     assert!(!session.model.is_unsaved());
     assert_eq!(session.model.axes, Axes::Raw);
+}
+
+#[test]
+fn a_restart_begins_a_walk_of_its_own() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    assert_eq!(session.model.walked_events().len(), 2);
+    session.all(&[Id::Restart, Id::NextLimit, Id::Jump]);
+    assert_eq!(session.model.walked_events().len(), 1);
+    // Nothing is erased: the walk before is an undo away.
+    session.all(&[Id::Restart, Id::Undo]);
+    assert_eq!(session.model.walked_events().len(), 1);
+}
+
+#[test]
+fn from_an_unstable_start_the_edge_runs_outward_as_in_an_unloading() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("path.start_contact_radius", "0.385").does(Id::Restart);
+    assert!(session.status().contains("x lets the edge run outward"), "{}", session.status());
+    session.does(Id::Jump);
+    let start = session.model.curve.as_ref().unwrap().unloading.as_ref().unwrap().start;
+    assert!((session.radius() / start.contact_radius - 1.0).abs() < 1e-9);
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     let export = home.path().join("walk.csv");
     let env = [("XDG_CONFIG_HOME", config.to_str().unwrap()), ("HOME", home.path().to_str().unwrap())];
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("Events on the curve 6"), "the curve and its events");
+    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve and its events");
 
     // Steps, one and several.
     pty.keys(" ");
@@ -87,7 +87,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 
     // The preset is there again, from the list.
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("Events on the curve 6"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve");
     pty.keys("o");
     pty.wait_for(|screen| screen.contains("lab-3"), "the list");
     pty.keys("jjjjjj\r");
@@ -99,7 +99,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 #[test]
 fn quitting_with_unsaved_changes_asks_first() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
-    pty.wait_for(|screen| screen.contains("Events on the curve 2"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events: on curve 2"), "the curve");
     pty.keys("}");
     pty.wait_for(|screen| screen.contains("unsaved"), "a change");
     pty.keys("q");

@@ -54,6 +54,8 @@ pub struct Node {
     pub state: State,
     /// Steps since the start.
     pub step: usize,
+    /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
+    pub begins: bool,
 }
 
 impl Node {
@@ -147,13 +149,13 @@ impl History {
         target.is_some()
     }
 
-    /// The nodes from the root to the current one.
-    pub fn path(&self) -> Vec<&Node> {
+    /// The walk that led to the current node: from where it began, each node with its number.
+    pub fn path(&self) -> Vec<(usize, &Node)> {
         let mut path = Vec::new();
         let mut at = self.cursor;
-        while let Some(node) = at.and_then(|i| self.nodes.get(i)) {
-            path.push(node);
-            at = node.parent;
+        while let Some((number, node)) = at.and_then(|i| Some((i, self.nodes.get(i)?))) {
+            path.push((number, node));
+            at = node.parent.filter(|_| !node.begins);
         }
         path.reverse();
         path

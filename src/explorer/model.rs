@@ -5,7 +5,6 @@ use super::history::{History, Node, NodeKind};
 use super::walk::Action;
 use crate::contact::Control;
 use crate::preset::{Fingerprint, Listing, Loaded, Parameter, Preset, Source, Value};
-use crate::quasistatic::Event;
 use crate::report::unload::EventReport;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -252,19 +251,15 @@ impl Model {
         !node.is_apart() && (node.is_limit(control) || !node.stability().under(control))
     }
 
-    /// The jumps on the way to the walker, with the number of their node.
+    /// The jumps of the walk that led to the walker, with the number of their node.
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
-        let mut at = self.history.cursor();
-        let mut events = Vec::new();
-        while let Some((number, node)) = at.and_then(|i| Some((i, self.history.nodes().get(i)?))) {
-            if let NodeKind::Jump(event) = &node.kind {
-                let event: &Event = event;
-                events.push((number, EventReport::new(&node.setting.case, node.control, event)));
+        let event = |(number, node): (usize, &Node)| match &node.kind {
+            NodeKind::Jump(event) => {
+                Some((number, EventReport::new(&node.setting.case, node.control, event)))
             }
-            at = node.parent;
-        }
-        events.reverse();
-        events
+            _ => None,
+        };
+        self.history.path().into_iter().filter_map(event).collect()
     }
 
     /// The events of the source shown.

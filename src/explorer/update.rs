@@ -167,6 +167,7 @@ fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         point,
         state,
         step: 0,
+        begins: true,
     });
 }
 
@@ -209,9 +210,12 @@ fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     }
     let on_limit = node.is_some_and(|node| node.is_limit(control));
     let from = node.map(|node| node.point.clone());
+    let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = number(model);
     model.walking = Some(id);
-    let (inward, length) = (model.inward, model.length);
+    // From an unstable start the edge runs outward, as at the beginning of an unloading.
+    let inward = model.inward && !(begins && action == Action::Jump);
+    let length = model.length;
     vec![Effect::Walk(Box::new(Request { id, action, curve, from, on_limit, control, inward, length }))]
 }
 
@@ -260,6 +264,7 @@ fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>)
 
 fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
     let step = model.history.current().map_or(0, |node| node.step + 1);
+    let step = if state.begins { 0 } else { step };
     let solved = state.kind == NodeKind::Solved;
     let again = model
         .history
@@ -273,6 +278,7 @@ fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
         point: state.point,
         state: state.state,
         step,
+        begins: state.begins,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.
     if solved && again { model.history.push_beside(node) } else { model.history.push(node) }
@@ -282,7 +288,7 @@ fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
 fn mark_stale(model: &mut Model, reason: &str) {
     let Some(node) = model.history.current().cloned() else { return };
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
-    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step: node.step + 1, ..node };
+    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step: node.step + 1, begins: false, ..node };
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
@@ -446,7 +452,12 @@ fn export(model: &mut Model, what: Document, path: String, replace: bool) -> Vec
         tell(model, Level::Error, "there is no curve to export yet");
         return Vec::new();
     };
-    let walk = model.history.path().into_iter().cloned().collect();
+    let ending = std::path::Path::new(&path).extension().and_then(|ending| ending.to_str());
+    if !ending.is_some_and(|ending| ["csv", "json"].iter().any(|known| known.eq_ignore_ascii_case(ending))) {
+        tell(model, Level::Error, "the file must end in .csv or .json");
+        return Vec::new();
+    }
+    let walk = model.history.path().into_iter().map(|(_, node)| node.clone()).collect();
     let events = model.shown_events();
     vec![file(Job::Export { what, curve, walk, events, path, replace })]
 }
@@ -546,15 +557,24 @@ pub fn hint(model: &Model) -> String {
     }
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
-    if node.stability().under(control) {
-        match node.kind {
-            NodeKind::Start => {
-                format!("Start, stable under {held} control. n runs to a limit point, ? helps")
-            }
-            _ => format!("Stable under {held} control, walking {way}. Space steps, n runs to a limit"),
+    if node.is_limit(control) {
+        return "Limit point outside the curve: x lets the edge run, Space goes on along it".to_owned();
+    }
+    match (node.stability().under(control), &node.kind) {
+        (true, NodeKind::Start) => {
+            format!("Start, stable under {held} control. n runs to a limit point, ? helps")
         }
-    } else {
-        format!("Unstable under {held} control, walking {way}. x lets the edge run, Space steps")
+        (true, NodeKind::Solved) => {
+            format!("Solved again at the {held} held, stable. n runs to a limit point")
+        }
+        (true, _) => format!("Stable under {held} control. Space steps {way}, n runs to a limit point"),
+        (false, NodeKind::Start | NodeKind::Moved) => {
+            format!("This start is unstable under {held} control: x lets the edge run outward")
+        }
+        (false, NodeKind::Solved) => {
+            format!("Solved again at the {held} held, unstable there: x lets the edge run")
+        }
+        (false, _) => format!("Unstable under {held} control. x lets the edge run, Space steps {way}"),
     }
 }
 

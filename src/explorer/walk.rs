@@ -72,6 +72,8 @@ pub struct Made {
     pub point: Point,
     /// The state, reduced.
     pub state: State,
+    /// Whether a walk of its own begins here.
+    pub begins: bool,
 }
 
 /// The end of a request.
@@ -93,14 +95,17 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::Jump => jump(request, emit),
         Action::MoveTo(s) => match request.equilibrium().explicit(*s) {
             Some(point) => {
-                emit(made(request.equilibrium(), NodeKind::Moved, point));
+                emit(Made { begins: true, ..made(request.equilibrium(), NodeKind::Moved, point) });
                 Outcome::Done
             }
             None => Outcome::Stopped("there is no equilibrium at that contact radius".to_owned()),
         },
         Action::MoveToLimit(number) => match request.curve.limits.get(*number) {
             Some(limit) => {
-                emit(made(request.equilibrium(), NodeKind::Limit, limit.point.clone()));
+                emit(Made {
+                    begins: true,
+                    ..made(request.equilibrium(), NodeKind::Limit, limit.point.clone())
+                });
                 Outcome::AtLimit
             }
             None => Outcome::Stopped("the curve has changed meanwhile".to_owned()),
@@ -122,7 +127,7 @@ impl Request {
 
 fn made(equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
     let state = equilibrium.state(&point);
-    Made { kind, point, state }
+    Made { kind, point, state, begins: false }
 }
 
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
@@ -230,7 +235,7 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let event = Event::new(equilibrium, control, value, equilibrium.state(from), landing.as_ref());
     let point = landing.unwrap_or_else(|| from.clone());
     let state = event.after.unwrap_or(event.before);
-    emit(Made { kind: NodeKind::Jump(Box::new(event)), point, state });
+    emit(Made { kind: NodeKind::Jump(Box::new(event)), point, state, begins: false });
     Outcome::Done
 }
 

@@ -53,7 +53,9 @@ pub fn unload(report: &UnloadReport) -> String {
         ratio(report.min_force, critical)
     );
     let _ = writeln!(text, "smallest approach on the path: {}", significant(report.min_approach, 7));
-    let _ = writeln!(text, "energy lost: {}", loss(report.total_dissipated));
+    let unbounded = report.events.iter().any(|event| event.dissipated.is_none());
+    let more = if unbounded { ", and without bound in the pull-off" } else { "" };
+    let _ = writeln!(text, "energy lost: {}{more}", loss(report.total_dissipated));
     let _ = writeln!(text, "end: {}", report.stop);
     for event in report.events.iter().filter(|event| event.dissipated.is_none()) {
         let _ = writeln!(text, "{}: {}", event.kind, event.reason);

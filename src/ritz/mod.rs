@@ -43,6 +43,6 @@ pub trait Basis: Debug + Send + Sync {
     /// The largest number of elements per wave of length `wavelength` in a contact of radius `s`.
     fn elements_per_wave(&self, s: f64, wavelength: f64) -> f64;
 
-    /// Decimal digits of the contact radius the basis can be trusted for at radius `s`.
+    /// Decimal digits of force and contact radius the basis can be trusted for at radius `s`, an estimate.
     fn trusted_digits(&self, problem: &Reduced, s: f64) -> f64;
 }

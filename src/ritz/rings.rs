@@ -194,8 +194,8 @@ impl Basis for Rings {
     }
 
     fn trusted_digits(&self, problem: &Reduced, _s: f64) -> f64 {
-        // The relative errors of the contact radius given in the module header.
-        let constant = if problem.work_of_adhesion > 0.0 { 0.16 } else { 0.5 };
+        // The larger of the relative errors of force and contact radius given in the module header.
+        let constant = if problem.work_of_adhesion > 0.0 { 1.4 } else { 0.5 };
         (self.size() as f64 / constant).log10()
     }
 }

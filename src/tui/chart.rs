@@ -64,8 +64,8 @@ pub struct Chart {
     pub marks: Vec<Mark>,
     /// x and y range.
     pub bounds: Bounds,
-    /// What the letters mean, for the frame's lower edge.
-    pub legend: String,
+    /// What lines and letters mean, for the frame's lower edge: the first that fits.
+    pub legend: Vec<String>,
 }
 
 /// The range of both axes, ascending and finite.
@@ -143,8 +143,9 @@ impl Chart {
             .border_set(theme.border())
             .border_style(theme.frame(selected))
             .title(Span::styled(theme.text(&self.title), theme.strong()));
-        if !self.legend.is_empty() {
-            block = block.title_bottom(Line::styled(theme.text(&self.legend), theme.dim()).right_aligned());
+        let fits = |text: &&String| text.chars().count() + 2 <= usize::from(area.width);
+        if let Some(legend) = self.legend.iter().find(fits) {
+            block = block.title_bottom(Line::styled(theme.text(legend), theme.dim()).right_aligned());
         }
         let inner = block.inner(area);
         frame.render_widget(block, area);

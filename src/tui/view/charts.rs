@@ -60,7 +60,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, which: Which, alone: b
             series: Vec::new(),
             marks: Vec::new(),
             bounds: Bounds::of([]),
-            legend: "computing".to_owned(),
+            legend: vec!["computing".to_owned()],
         },
     };
     chart.draw(frame, area, app.theme, is_selected(app, Panel::Charts));
@@ -101,7 +101,11 @@ fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: The
         bounds,
         series,
         marks,
-        legend: format!("{line}{smooth} v limit X pull-off @ here"),
+        legend: vec![
+            format!("{line}{smooth} v limit X pull-off L landing @ here"),
+            "v limit X pull-off L landing @ here".to_owned(),
+            "v limit @ here".to_owned(),
+        ],
     }
 }
 
@@ -185,7 +189,7 @@ fn walk(model: &Model, scale: Scale, which: Which, series: &mut Vec<Series>, mar
         let state = state.in_units(node.setting.case.units());
         scale.place(which, state.approach, state.force, state.contact_radius)
     };
-    let path = model.history.path();
+    let path: Vec<&Node> = model.history.path().into_iter().map(|(_, node)| node).collect();
     let mut steps: Vec<(f64, f64)> = Vec::new();
     let mut finish = |steps: &mut Vec<(f64, f64)>| {
         if steps.len() > 1 {

@@ -12,15 +12,17 @@ use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
 /// Width from which the long columns fit.
-const WIDE: u16 = 112;
+const WIDE: u16 = 117;
 
 /// Draws the list of instabilities.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let events = model.shown_events();
     let selected = is_selected(app, Panel::Events);
-    let block = panel(theme, &title(model), selected)
-        .title_top(Line::styled(theme.text(&headline(model)), theme.strong()).right_aligned());
+    let title = title(model);
+    let room = usize::from(area.width).saturating_sub(title.chars().count() + 3);
+    let block = panel(theme, &title, selected)
+        .title_top(Line::styled(theme.text(&headline(model, room)), theme.strong()).right_aligned());
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
@@ -46,8 +48,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
                 text.push_str(" @");
             }
             if hidden > 0 && i + 1 == first + rows {
-                text.push_str(" +");
-                text.push_str(&hidden.to_string());
+                text.push_str(&format_args!(" (+{hidden})").to_string());
             }
             let chosen = i == model.event && selected;
             let mark = if chosen { '>' } else { ' ' };
@@ -70,35 +71,38 @@ fn title(model: &Model) -> String {
     let on_curve = model.curve.as_ref().and_then(|c| c.report.as_ref()).map_or(0, |r| r.events.len());
     let walked = model.walked_events().len();
     match model.events {
-        EventSource::Curve => format!("Events on the curve {on_curve}, v: walked {walked}"),
-        EventSource::Walked => format!("Events walked {walked}, v: on the curve {on_curve}"),
+        EventSource::Curve => format!("Events: on curve {on_curve}, v walked {walked}"),
+        EventSource::Walked => format!("Events: walked {walked}, v on curve {on_curve}"),
     }
 }
 
-/// Pull-off and total loss.
-fn headline(model: &Model) -> String {
+/// Pull-off and total loss, as much of it as there is room for.
+fn headline(model: &Model, room: usize) -> String {
     let Some(curve) = &model.curve else { return String::new() };
+    let lost = |total: f64, bounded: bool| format!("lost {}{}", loss(total), if bounded { "" } else { "+" });
     if model.events == EventSource::Walked {
-        let lost: f64 =
-            model.walked_events().iter().filter_map(|(_, e)| e.dissipated).fold(0.0, |a, b| a + b);
-        return format!("lost {}", loss(lost));
+        let events = model.walked_events();
+        let total = events.iter().filter_map(|(_, e)| e.dissipated).fold(0.0, |a, b| a + b);
+        return lost(total, events.iter().all(|(_, e)| e.dissipated.is_some()));
     }
-    match &curve.report {
-        None => String::new(),
-        Some(report) => {
-            let force = if curve.critical_force > 0.0 {
-                format!("{} Pc", significant(report.min_force / curve.critical_force, 4))
-            } else {
-                significant(report.min_force, 4)
-            };
-            let pull_off = if report.events.iter().any(|e| e.after.is_none()) { "pull-off" } else { "least" };
-            format!(
-                "{pull_off} {force}, δ {}, lost {}",
-                significant(report.min_approach, 4),
-                loss(report.total_dissipated)
-            )
-        }
-    }
+    let Some(report) = &curve.report else { return String::new() };
+    let force = if curve.critical_force > 0.0 {
+        format!("{} Pc", significant(report.min_force / curve.critical_force, 4))
+    } else {
+        significant(report.min_force, 4)
+    };
+    let pull_off = if report.events.iter().any(|e| e.after.is_none()) { "pull-off" } else { "least" };
+    let bounded = report.events.iter().all(|e| e.dissipated.is_some());
+    let parts = [
+        format!("{pull_off} {force}"),
+        format!("δ {}", significant(report.min_approach, 4)),
+        lost(report.total_dissipated, bounded),
+    ];
+    let [force, _, lost] = &parts;
+    [parts.join(", "), format!("{force}, {lost}"), force.clone()]
+        .into_iter()
+        .find(|text| text.chars().count() <= room)
+        .unwrap_or_default()
 }
 
 fn empty(model: &Model) -> String {
@@ -114,9 +118,9 @@ fn empty(model: &Model) -> String {
 
 fn heads(wide: bool) -> &'static str {
     if wide {
-        "   # event             δ    after           P    after   P/Pc  after         s     after   crest  lost        by area"
+        "   # event              δ      after           P     after   P/Pc  after          s      after   crest  lost        by area"
     } else {
-        "   #         δ   P/Pc after        s  after  crest lost     event"
+        "   #          δ   P/Pc  after         s     after  crest lost      event"
     }
 }
 
@@ -131,7 +135,7 @@ fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String 
     let landed_force = after.map_or_else(dash, |a| force(a.force));
     if !wide {
         return format!(
-            "{number:>3} {:>9} {:>6} {landed_force:>6} {:>7} {:>6} {crests:>6} {lost:<8} {}",
+            "{number:>3} {:>10} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {}",
             significant(before.approach, 4),
             force(before.force),
             significant(before.contact_radius, 4),
@@ -145,7 +149,7 @@ fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String 
         _ => "dead load".to_owned(),
     };
     format!(
-        "{number:>3} {:<9} {:>9} {:>8} {:>11} {:>8} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>7}  {lost:<10}  {agreement}",
+        "{number:>3} {:<9} {:>10} {:>10} {:>11} {:>9} {:>6} {landed_force:>6} {:>10} {:>10} {crests:>7}  {lost:<10}  {agreement}",
         event.kind,
         significant(before.approach, 4),
         after.map_or_else(dash, |a| significant(a.approach, 3)),

@@ -26,13 +26,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let control = model.preset.path.control.to_string().to_uppercase();
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
-    if let Some(Value::Integer(rings)) = model.preset.get("basis.rings") {
+    let warning = model.curve.as_ref().and_then(|curve| curve.warnings.first());
+    // A warning needs the room more than what the Problem panel says as well.
+    if let (Some(Value::Integer(rings)), None) = (model.preset.get("basis.rings"), warning) {
         spans.push(Span::raw(format!("  rings {rings}")));
     }
     if model.is_computing() {
         spans.push(Span::styled("  computing", theme.key().add_modifier(Modifier::BOLD)));
     }
-    let warning = model.curve.as_ref().and_then(|curve| curve.warnings.first());
     if let Some(warning) = warning {
         spans.push(Span::styled(format!("  ! {}", theme.text(warning)), theme.error()));
     } else {

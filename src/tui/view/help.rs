@@ -8,13 +8,15 @@ use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
 use ratatui::text::{Line, Span};
-use ratatui::widgets::{Clear, Paragraph};
+use ratatui::widgets::{Clear, Paragraph, Wrap};
 
 const READING: &[&str] = &[
     "The curve holds every equilibrium of one contact disc: approach δ, force P (tension is negative) and",
     "contact radius s. On its unstable parts (dotted) the contact would not stay under the control chosen.",
     "v marks a limit point of that control: there the edge lets go and runs, at constant control, to the",
     "next stable part, and the energy between is lost. d and p mark the limit points of displacement and force.",
+    "Not every limit point is on the quasi-static path: the events are those where the edge lets go on it.",
+    "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
@@ -45,7 +47,9 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
 
 /// How far the help can be scrolled.
 pub fn lines() -> u16 {
-    u16::try_from(text(Theme { ascii: true }).len()).unwrap_or(u16::MAX).saturating_sub(1)
+    /// As many rows as a line may take on the narrowest screen.
+    const WRAPPED: usize = 3;
+    u16::try_from(WRAPPED * text(Theme { ascii: true }).len()).unwrap_or(u16::MAX)
 }
 
 /// Draws the help over the screen, scrolled by so many lines.
@@ -55,8 +59,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
     let block = panel(theme, "Help: up and down scroll, Esc closes", true);
     let inner = block.inner(area);
-    let last = u16::try_from(lines.len()).unwrap_or(u16::MAX).saturating_sub(inner.height);
+    // Wrapped lines take more rows than there are lines: narrow screens may scroll that much further.
+    let rows: usize =
+        lines.iter().map(|line| line.width().div_ceil(usize::from(inner.width.max(1))).max(1)).sum();
+    let last = u16::try_from(rows).unwrap_or(u16::MAX).saturating_sub(inner.height);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
-    frame.render_widget(Paragraph::new(lines).scroll((scroll.min(last), 0)), inner);
+    let text = Paragraph::new(lines).wrap(Wrap { trim: false });
+    frame.render_widget(text.scroll((scroll.min(last), 0)), inner);
 }

@@ -16,14 +16,24 @@ use ratatui::widgets::Paragraph;
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let selected = is_selected(app, Panel::Problem);
-    let block = side_panel(theme, "Problem", selected);
-    let inner = block.inner(area);
-    frame.render_widget(block, area);
+    // The frame takes the top line and the left column.
+    let inner = Rect {
+        x: area.x + 1,
+        y: area.y + 1,
+        width: area.width.saturating_sub(1),
+        height: area.height.saturating_sub(1),
+    };
     let groups = group_lines(theme, &Groups::of(&model.preset.problem()), inner.width);
     let knobs = model.knobs();
     // The groups stand below as far as there is room for five parameters above them.
     let shown_groups = groups.len().min(usize::from(inner.height).saturating_sub(knobs.len().min(5)));
     let rows = usize::from(inner.height).saturating_sub(shown_groups);
+    let title = if rows < knobs.len() {
+        format!("Problem {}/{}", model.parameter + 1, knobs.len())
+    } else {
+        "Problem".to_owned()
+    };
+    frame.render_widget(side_panel(theme, &title, selected), area);
     // The list scrolls so that the selected line is seen.
     let first = (model.parameter + 1).saturating_sub(rows).min(knobs.len().saturating_sub(rows));
     let mut lines: Vec<Line> = knobs
