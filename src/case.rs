@@ -8,16 +8,12 @@ use crate::preset::{BasisSpec, Preset};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload};
 use crate::quasistatic::{Curve, Unloading};
-use crate::ritz::rings::RING_RANGE;
 use crate::ritz::{Basis, Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use std::sync::Arc;
 
 /// Points of an arc-length trace before it stops.
 pub const TRACE_POINTS: usize = 20_000;
-
-/// Fewer rings than this per shortest wave in the largest contact is a warning: losses are then off by percents.
-pub const RINGS_PER_WAVE: f64 = 10.0;
 
 /// A preset made ready for the engine.
 #[derive(Debug, Clone)]
@@ -158,34 +154,13 @@ impl Case {
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if let Some(wave) = self.reduced.gap.feature_length() {
-            let rings = self.basis.elements_per_wave(largest, wave);
-            if rings < RINGS_PER_WAVE {
-                let wanted = (RINGS_PER_WAVE * largest / wave).ceil();
-                let most = RING_RANGE.end();
-                let advice = if wanted <= *most as f64 {
-                    format!("set basis.rings to {wanted} or more")
-                } else {
-                    format!("even {most} rings are too few, start from a smaller contact")
-                };
-                warnings.push(format!(
-                    "only {rings:.1} rings per wave in the largest contact; {RINGS_PER_WAVE} or more are needed: {advice}"
-                ));
-            }
-        }
+        let mut warnings: Vec<String> =
+            self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string).collect();
         if self.reduced.work_of_adhesion == 0.0 && self.reduced.gap.feature_length().is_some() {
             warnings.push(
                 "without adhesion one connected disc is assumed, not checked: tension in it means nothing"
                     .to_owned(),
             );
-        }
-        let weak = 1e-6;
-        if self.reduced.work_of_adhesion > 0.0 && self.reduced.work_of_adhesion < weak {
-            warnings.push(format!(
-                "gamma/(E* R) = {:.1e} is below {weak:.0e}: the error of ring elements exceeds so weak an adhesion",
-                self.reduced.work_of_adhesion
-            ));
         }
         warnings
     }

@@ -76,12 +76,6 @@ impl State {
     }
 }
 
-impl From<&Evaluation> for State {
-    fn from(e: &Evaluation) -> Self {
-        Self { contact_radius: e.contact_radius, approach: e.approach, force: e.force, energy: e.energy }
-    }
-}
-
 /// The slopes of the curve at a state, from which the stability under every control follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stability {
@@ -157,7 +151,7 @@ impl Equilibrium {
     /// The state at a point, its energy evaluated there.
     pub fn state(&self, point: &Point) -> State {
         let [delta, force, s] = self.quantities(&point.y);
-        let energy = self.basis.evaluate(&self.problem, s, delta).energy;
+        let energy = self.basis.energy(&self.problem, s, delta);
         State { contact_radius: s, approach: delta, force, energy }
     }
 

@@ -9,7 +9,7 @@
 //! G   = (½ wᵀKw + s h1ᵀKw)/(2πs)                             (energy release rate; F = 0 ⇔ G = γ)
 //! ```
 //!
-//! The residual of Newton and of the continuation alike is ρ = √(G/γ) − 1 for γ > 0, which is nearly
+//! The residual of Newton and of the continuation on rings is ρ = √(G/γ) − 1 for γ > 0, which is nearly
 //! linear in s and converges in a handful of rounds from a threefold radius, and F at γ = 0, where the
 //! root form is degenerate.
 
@@ -69,8 +69,6 @@ pub struct Evaluation {
     pub force_gradient: [f64; 2],
     /// Second derivatives of the force.
     pub force_second: [f64; 3],
-    /// U = −Φ: elastic energy minus the adhesion gained.
-    pub energy: f64,
 }
 
 impl Evaluation {
@@ -99,9 +97,19 @@ impl Forms {
         Some(if b > 0.0 && root > 0.0 { 2.0 * c / (b + root) } else { (b - root) / self.cc })
     }
 
-    /// Residual, force and energy with their derivatives at (s, δ) for the work of adhesion `gamma`.
+    /// U = −Φ at (s, δ) for the work of adhesion `gamma`: elastic energy minus the adhesion gained.
+    pub fn energy(&self, s: f64, delta: f64, gamma: f64) -> f64 {
+        0.5 * s * self.ww(delta) - PI * gamma * s * s
+    }
+
+    /// wᵀKw.
+    fn ww(&self, delta: f64) -> f64 {
+        self.hh - 2.0 * delta * self.ch + delta * delta * self.cc
+    }
+
+    /// Residual and force with their derivatives at (s, δ) for the work of adhesion `gamma`.
     pub fn evaluate(&self, s: f64, delta: f64, gamma: f64) -> Evaluation {
-        let ww = self.hh - 2.0 * delta * self.ch + delta * delta * self.cc;
+        let ww = self.ww(delta);
         let cw = self.ch - delta * self.cc;
         let w1 = self.h1 - delta * self.c1;
         let w2 = self.h2 - delta * self.c2;
@@ -153,7 +161,6 @@ impl Forms {
             force_scale: s * (self.ch.abs() + (delta * self.cc).abs()),
             force_gradient: [s * self.cc, -cw - s * self.c1],
             force_second: [0.0, self.cc, -2.0 * self.c1 - s * self.c2],
-            energy: 0.5 * s * ww - PI * gamma * s * s,
         }
     }
 }

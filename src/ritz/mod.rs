@@ -2,20 +2,23 @@
 //!
 //! | file | what lives there |
 //! |---|---|
+//! | [`caution`] | what to be careful about in a basis' answers |
 //! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
 //!
 //! A [`Basis`] is all that the rest of the program knows of a discretization: at a contact radius and an
-//! approach it answers with the equilibrium residual, force and energy and their exact derivatives.
+//! approach it answers with the equilibrium residual and the force and their exact derivatives, and with the energy.
 //! Everything here is in reduced units (E* = 1).
 
+pub mod caution;
 pub mod functional;
 pub mod kernel;
 pub mod newton;
 pub mod rings;
 
+pub use caution::Caution;
 pub use functional::{Evaluation, Forms};
 pub use newton::{NewtonFailure, NewtonSettings, Solved, solve};
 pub use rings::{Rings, RingsError};
@@ -25,8 +28,13 @@ use std::fmt::Debug;
 
 /// A basis of trial pressures on a disc.
 pub trait Basis: Debug + Send + Sync {
-    /// The residual, force and energy at contact radius `s > 0` and approach `delta`.
+    /// The residual and the force at contact radius `s > 0` and approach `delta`.
     fn evaluate(&self, problem: &Reduced, s: f64, delta: f64) -> Evaluation;
+
+    /// U at contact radius `s > 0` and approach `delta`: elastic energy minus the adhesion gained.
+    ///
+    /// Apart from [`Basis::evaluate`]: a curve needs it only at its events.
+    fn energy(&self, problem: &Reduced, s: f64, delta: f64) -> f64;
 
     /// The approach at which a disc of radius `s` is in equilibrium, evaluated there.
     ///
@@ -40,9 +48,9 @@ pub trait Basis: Debug + Send + Sync {
     /// The number of unknown pressures.
     fn size(&self) -> usize;
 
-    /// The largest number of elements per wave of length `wavelength` in a contact of radius `s`.
-    fn elements_per_wave(&self, s: f64, wavelength: f64) -> f64;
-
     /// Decimal digits of force and contact radius the basis can be trusted for at radius `s`, an estimate.
     fn trusted_digits(&self, problem: &Reduced, s: f64) -> f64;
+
+    /// What to be careful about, in a largest contact of radius `s`: waves not resolved, adhesion too weak.
+    fn cautions(&self, problem: &Reduced, s: f64) -> Vec<Caution>;
 }

@@ -15,6 +15,7 @@
 //! for γ = 0 the radius to 0.5/N and the force to 1/N².
 
 use super::Basis;
+use super::caution::Caution;
 use super::functional::{Evaluation, Forms};
 use super::kernel::disc_interaction;
 use crate::contact::{Gap, Reduced};
@@ -25,6 +26,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// The allowed number of rings: fewer than 4 resolve nothing, more than 2000 cost seconds and add no digits.
 pub const RING_RANGE: RangeInclusive<usize> = 4..=2000;
+
+/// Fewer rings than this per shortest wave in the largest contact is a warning: losses are then off by percents.
+pub const RINGS_PER_WAVE: f64 = 10.0;
+
+/// γ/(E* R) below which the error of 200 rings on a sphere exceeds the adhesion.
+pub const WEAK_ADHESION: f64 = 1e-6;
 
 /// How many factorizations are kept: enough to go back and forth between two meshes, 32 MB each at most.
 const KEPT: usize = 3;
@@ -168,6 +175,10 @@ impl Basis for Rings {
         self.forms(problem.gap.as_ref(), s).evaluate(s, delta, problem.work_of_adhesion)
     }
 
+    fn energy(&self, problem: &Reduced, s: f64, delta: f64) -> f64 {
+        self.forms(problem.gap.as_ref(), s).energy(s, delta, problem.work_of_adhesion)
+    }
+
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation> {
         let forms = self.forms(problem.gap.as_ref(), s);
         let delta = forms.equilibrium_approach(s, problem.work_of_adhesion)?;
@@ -189,14 +200,25 @@ impl Basis for Rings {
         self.nodes.len() - 1
     }
 
-    fn elements_per_wave(&self, s: f64, wavelength: f64) -> f64 {
-        self.size() as f64 * wavelength / s
-    }
-
     fn trusted_digits(&self, problem: &Reduced, _s: f64) -> f64 {
         // The larger of the relative errors of force and contact radius given in the module header.
         let constant = if problem.work_of_adhesion > 0.0 { 1.4 } else { 0.5 };
         (self.size() as f64 / constant).log10()
+    }
+
+    fn cautions(&self, problem: &Reduced, s: f64) -> Vec<Caution> {
+        let mut cautions = Vec::new();
+        if let Some(wave) = problem.gap.feature_length() {
+            let per_wave = self.size() as f64 * wave / s;
+            if per_wave < RINGS_PER_WAVE {
+                cautions.push(Caution::FewRings { per_wave, wanted: (RINGS_PER_WAVE * s / wave).ceil() });
+            }
+        }
+        let gamma = problem.work_of_adhesion;
+        if gamma > 0.0 && gamma < WEAK_ADHESION {
+            cautions.push(Caution::WeakAdhesion(gamma));
+        }
+        cautions
     }
 }
 
@@ -253,7 +275,6 @@ mod tests {
                     (by_d(&|e| e.force_gradient[0]), here.force_second[0]),
                     (by_s(&|e| e.force_gradient[0]), here.force_second[1]),
                     (by_s(&|e| e.force_gradient[1]), here.force_second[2]),
-                    (by_d(&|e| e.energy), here.force),
                 ];
                 for (n, (difference, exact)) in pairs.into_iter().enumerate() {
                     let size = exact.abs().max(here.residual_second[2].abs() * 1e-3).max(1e-3);
@@ -262,13 +283,19 @@ mod tests {
                         "γ={gamma} s={s} #{n}: {difference} {exact}"
                     );
                 }
+                let energy = |s: f64, d: f64| rings.energy(&problem, s, d);
+                let energy_slope = (energy(s, delta + ed) - energy(s, delta - ed)) / (2.0 * ed);
+                assert!(
+                    (energy_slope - here.force).abs() < 2e-5 * here.force.abs().max(1e-3),
+                    "γ={gamma} s={s}"
+                );
                 // ∂U/∂s = −F, and F follows from the residual.
                 let release = if gamma > 0.0 {
                     (here.residual + 1.0).powi(2) * gamma * 2.0 * PI * s
                 } else {
                     -here.residual
                 };
-                let energy_slope = by_s(&|e| e.energy);
+                let energy_slope = (energy(s + es, delta) - energy(s - es, delta)) / (2.0 * es);
                 assert!((energy_slope - (release - 2.0 * PI * gamma * s)).abs() < 1e-7, "γ={gamma} s={s}");
             }
         }
