@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::ritz::{NewtonSettings, Rings, Solved, solve};
+use pulloff::ritz::{Basis, NewtonSettings, Rings, Solved, Spectral, solve};
 use pulloff::theory::{hertz, jkr::Jkr};
 
 /// The smooth sphere E* = R = 1.
@@ -101,5 +101,93 @@ fn newton_at_given_force_from_a_threefold_radius() {
             println!("γ={gamma} P={share}P_c: {}", found.rounds);
             assert!(found.rounds <= 7, "γ={gamma} P={share}P_c: {} rounds", found.rounds);
         }
+    }
+}
+
+/// Newton in eigenfunctions, exact for a sphere, from three times the true radius.
+fn exactly_from_threefold(gamma: f64, control: Control, value: f64, exact: f64) -> Solved {
+    let (basis, settings) = (Spectral::new(4).unwrap(), NewtonSettings::default());
+    solve(&basis, &sphere(gamma), control, value, 3.0 * exact, settings)
+        .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
+}
+
+#[test]
+fn eigenfunctions_need_at_most_six_rounds_to_jkr_at_given_approach() {
+    for gamma in [1e-12, 1e-8, 1e-5, 1e-4, 1e-3, 0.01, 0.1] {
+        let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+        let smallest = jkr.approach(jkr.fixed_grips_radius());
+        for delta in [0.9 * smallest, 0.5 * smallest, 0.0, 0.01, 0.1, 0.5] {
+            let exact = jkr_radius(&jkr, delta);
+            let found = exactly_from_threefold(gamma, Control::Displacement, delta, exact);
+            let s = found.evaluation.contact_radius;
+            println!("γ={gamma} δ={delta}: {} rounds, {:.1e}", found.rounds, s / exact - 1.0);
+            assert!((s / exact - 1.0).abs() < 1e-9, "γ={gamma} δ={delta}: {s} {exact}");
+            assert!(found.rounds <= 6, "γ={gamma} δ={delta}: {} rounds", found.rounds);
+        }
+    }
+}
+
+#[test]
+fn eigenfunctions_reach_hertz_to_rounding() {
+    for delta in [1e-4, 0.1, 0.5] {
+        let (radius, force) = (hertz::contact_radius(1.0, delta), hertz::force(1.0, 1.0, delta));
+        for (control, value) in [(Control::Displacement, delta), (Control::Force, force)] {
+            let found = exactly_from_threefold(0.0, control, value, radius);
+            println!("{control} {value}: {} rounds", found.rounds);
+            assert!((found.evaluation.contact_radius / radius - 1.0).abs() < 1e-12, "{control}");
+            assert!((found.evaluation.force / force - 1.0).abs() < 1e-12, "{control}");
+            assert!((found.evaluation.approach / delta - 1.0).abs() < 1e-12, "{control}");
+            assert!(found.rounds <= 7, "{control}: {} rounds", found.rounds);
+        }
+    }
+}
+
+#[test]
+fn eigenfunctions_converge_beyond_any_order_once_they_resolve_the_waves() {
+    let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
+    let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 0.004, shape }.reduced();
+    let at = |n: usize| {
+        let basis = Spectral::new(n).unwrap();
+        let e = basis.equilibrium(&problem, 0.5).unwrap();
+        [e.approach, e.force, basis.energy(&problem, 0.5, e.approach), basis.trusted_digits(&problem, 0.5)]
+    };
+    let exact = at(300);
+    for (n, bound) in [(16, 1.0), (24, 0.3), (32, 1e-1), (40, 1e-8), (48, 1e-12), (56, 1e-12), (1000, 1e-12)]
+    {
+        let [approach, force, energy, digits] = at(n);
+        let error = |ours: f64, exact: f64| (ours / exact - 1.0).abs();
+        let errors = [error(approach, exact[0]), error(force, exact[1]), error(energy, exact[2])];
+        println!(
+            "n = {n}: δ {:.1e}, P {:.1e}, U {:.1e}; digits {digits:.1}",
+            errors[0], errors[1], errors[2]
+        );
+        assert!(errors.iter().all(|e| *e < bound), "n = {n}: {errors:?}");
+        // Never more digits promised than there are, down to rounding.
+        let worst = errors.iter().copied().fold(1e-13, f64::max);
+        assert!(digits.min(12.0) <= 0.7 - worst.log10(), "n = {n}: {digits} digits, {errors:?}");
+    }
+}
+
+#[test]
+fn an_automatic_number_of_functions_is_enough_for_hundreds_of_waves() {
+    for (wavelength, s) in [(0.05, 0.1), (0.05, 5.0), (0.001, 0.5)] {
+        let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.05 * wavelength, wavelength };
+        let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 1e-3, shape }.reduced();
+        let automatic = Spectral::resolving(&problem, s).unwrap();
+        let finer = Spectral::new(2 * automatic.size()).unwrap();
+        let at = |basis: &Spectral| {
+            let e = basis.equilibrium(&problem, s).unwrap();
+            [
+                e.approach,
+                e.force,
+                e.residual_gradient[1],
+                e.force_gradient[1],
+                basis.energy(&problem, s, e.approach),
+            ]
+        };
+        let errors: Vec<f64> =
+            at(&automatic).iter().zip(at(&finer)).map(|(ours, exact)| (ours / exact - 1.0).abs()).collect();
+        println!("{} waves, {} functions: {errors:?}", s / wavelength, automatic.size());
+        assert!(errors.iter().all(|e| *e < 1e-10), "{errors:?}");
     }
 }

@@ -8,7 +8,7 @@
 use pulloff::contact::{Control, Problem, Shape};
 use pulloff::quasistatic::unload::unload;
 use pulloff::quasistatic::{Curve, EventKind};
-use pulloff::ritz::{Basis, Rings};
+use pulloff::ritz::{Basis, Rings, Spectral};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -43,9 +43,12 @@ fn fig9() -> Case {
     case(include_str!("data/fig9.json"))
 }
 
+fn rings(number: usize) -> Arc<dyn Basis> {
+    Rings::shared(number).unwrap()
+}
+
 /// The largest errors of an unloading: states relative to the range of their column, losses relative.
-fn errors(case: &Case, control: Control, rings: usize) -> (f64, f64) {
-    let basis: Arc<dyn Basis> = Rings::shared(rings).unwrap();
+fn errors(case: &Case, control: Control, basis: Arc<dyn Basis>) -> (f64, f64) {
     let mut curve =
         Curve::swept(case.problem.reduced(), basis, case.start, 0.004 * case.start, || true).unwrap();
     let ours = unload(&mut curve, control).unwrap();
@@ -106,7 +109,7 @@ fn unloading_agrees_with_the_exact_solution() {
             // first-order error leaves 0.41 % and 0.11 % of them at N = 800, halved with every doubling of N.
             let fine_loss = if name == "fig8" { 5e-3 } else { 1e-3 };
             for (rings, state_bound, loss_bound) in [(200, 1e-3, 1e-2), (800, 3e-4, fine_loss)] {
-                let (state, loss) = errors(&case, control, rings);
+                let (state, loss) = errors(&case, control, self::rings(rings));
                 println!(
                     "{name} {control} {rings} rings: states {state:.1e} of the range, losses {loss:.1e}"
                 );
@@ -126,6 +129,66 @@ fn seven_snaps_and_a_pull_off_under_displacement_control_four_under_force() {
     for (control, snaps) in [(Control::Displacement, 7), (Control::Force, 4)] {
         let exact = case.data["control"][control.to_string()]["unloading"].as_array().unwrap();
         assert_eq!(exact.len(), snaps + 1);
-        errors(&case, control, 200);
+        errors(&case, control, rings(200));
+    }
+}
+
+#[test]
+fn eigenfunctions_give_curve_events_and_losses_to_rounding() {
+    for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
+        let basis: Arc<dyn Basis> =
+            Arc::new(Spectral::resolving(&case.problem.reduced(), case.start).unwrap());
+        for control in controls(&case) {
+            let (state, loss) = errors(&case, control, Arc::clone(&basis));
+            println!("{name} {control} {} functions: states {state:.1e}, losses {loss:.1e}", basis.size());
+            assert!(state < 1e-10, "{name} {control}: states off by {state:.2e} of the range");
+            assert!(loss < 1e-8, "{name} {control}: losses off by {loss:.2e}");
+        }
+    }
+}
+
+#[test]
+fn eigenfunctions_give_the_curve_and_every_limit_point_by_either_tracer() {
+    for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
+        let problem = case.problem.reduced();
+        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, case.start).unwrap());
+        let range = |column: &str| case.data["range"][column].as_f64().unwrap();
+        let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
+        let mut worst = 0.0_f64;
+        for row in case.data["curve"].as_array().unwrap() {
+            // s, δ, P, U.
+            let [s, approach, force, energy]: [f64; 4] = serde_json::from_value(row.clone()).unwrap();
+            let ours = basis.equilibrium(&problem, s).unwrap();
+            worst = worst.max((ours.approach - approach).abs() / range("approach"));
+            worst = worst.max((ours.force - force).abs() / range("force"));
+            let size = range("approach") * range("force");
+            worst = worst.max((basis.energy(&problem, s, ours.approach) - energy).abs() / size);
+        }
+        println!("{name} curve: {worst:.1e} of the range");
+        assert!(worst < 1e-12, "{name}: the curve is off by {worst:.1e} of the range");
+
+        let end = 0.004 * case.start;
+        let swept = Curve::swept(problem.clone(), Arc::clone(&basis), case.start, end, || true).unwrap();
+        let traced =
+            Curve::traced(problem.clone(), Arc::clone(&basis), case.start, end, |_| {}, || true).unwrap();
+        for control in controls(&case) {
+            let exact = case.data["control"][control.to_string()]["limit_points"].as_array().unwrap();
+            for curve in [&swept, &traced] {
+                let ours = curve.limit_points(control);
+                assert_eq!(ours.len(), exact.len(), "{name} {control}");
+                let mut worst = 0.0_f64;
+                // The table runs outward, a curve inward.
+                for (limit, exact) in ours.iter().rev().zip(exact) {
+                    let [approach, force, s] = curve.equilibrium.quantities(&limit.point.y);
+                    let off = |ours: f64, key: &str, column: &str| {
+                        (ours - number(exact, key)).abs() / range(column)
+                    };
+                    worst = worst.max(off(approach, "delta", "approach")).max(off(force, "P", "force"));
+                    worst = worst.max(off(s, "s", "contact_radius"));
+                }
+                println!("{name} {control} limit points: {worst:.1e} of the range");
+                assert!(worst < 1e-10, "{name} {control}: limit points off by {worst:.1e} of the range");
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What to be careful about in the answers of a basis.
 
 use super::rings::{RING_RANGE, RINGS_PER_WAVE, WEAK_ADHESION};
+use super::spectral::{DIGITS_WANTED, FUNCTION_RANGE};
 use std::fmt;
 
 /// A reason to trust the answers of a basis less than one would; its text says what to do.
@@ -15,6 +16,15 @@ pub enum Caution {
     },
     /// The error of ring elements exceeds the adhesion; γ in reduced units.
     WeakAdhesion(f64),
+    /// Too few eigenfunctions for the waves of the gap.
+    FewFunctions {
+        /// Their number.
+        functions: usize,
+        /// Decimal digits they can be trusted for.
+        digits: f64,
+        /// A number that is enough, where there is one.
+        wanted: Option<usize>,
+    },
 }
 
 impl fmt::Display for Caution {
@@ -30,6 +40,18 @@ impl fmt::Display for Caution {
                     write!(f, "set basis.rings to {wanted} or more")
                 } else {
                     write!(f, "even {most} rings are too few, start from a smaller contact")
+                }
+            }
+            Self::FewFunctions { functions, digits, wanted } => {
+                write!(
+                    f,
+                    "{functions} functions are good for {digits:.1} digits in the largest contact; {DIGITS_WANTED} or more \
+                     are needed: "
+                )?;
+                let most = FUNCTION_RANGE.end();
+                match wanted {
+                    Some(wanted) => write!(f, "set basis.functions to {wanted} or \"auto\""),
+                    None => write!(f, "even {most} functions are too few, start from a smaller contact"),
                 }
             }
             Self::WeakAdhesion(gamma) => write!(

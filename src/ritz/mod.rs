@@ -7,6 +7,7 @@
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
+//! | [`spectral`] | eigenfunctions of the half-space operator, exact to rounding |
 //!
 //! A [`Basis`] is all that the rest of the program knows of a discretization: at a contact radius and an
 //! approach it answers with the equilibrium residual and the force and their exact derivatives, and with the energy.
@@ -17,14 +18,27 @@ pub mod functional;
 pub mod kernel;
 pub mod newton;
 pub mod rings;
+pub mod spectral;
 
 pub use caution::Caution;
 pub use functional::{Evaluation, Forms};
 pub use newton::{NewtonFailure, NewtonSettings, Solved, solve};
 pub use rings::{Rings, RingsError};
+pub use spectral::{Spectral, SpectralError};
 
 use crate::contact::Reduced;
 use std::fmt::Debug;
+
+/// Why a basis could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BasisError {
+    /// Ring elements.
+    #[error(transparent)]
+    Rings(#[from] RingsError),
+    /// Eigenfunctions.
+    #[error(transparent)]
+    Spectral(#[from] SpectralError),
+}
 
 /// A basis of trial pressures on a disc.
 pub trait Basis: Debug + Send + Sync {
@@ -39,7 +53,8 @@ pub trait Basis: Debug + Send + Sync {
     /// The approach at which a disc of radius `s` is in equilibrium, evaluated there.
     ///
     /// F is quadratic in δ at fixed s; the physical root is the smaller one, with tension at the edge.
-    /// `None` when it has no real root, which rings too coarse for the gap can produce.
+    /// `None` when it has no real root, which rings too coarse for the gap can produce; the signed residual of
+    /// [`Spectral`] always has one.
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation>;
 
     /// The contact pressure as (r, p) pairs from the axis outward, compression positive.
