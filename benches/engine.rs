@@ -1,4 +1,4 @@
-//! What the engine costs, over a fixed table of ring numbers.
+//! What the engine costs, over a fixed table of ring numbers and with eigenfunctions.
 //!
 //! `cargo bench --no-default-features`; the numbers are for comparing two versions on one machine.
 
@@ -7,7 +7,7 @@
 use divan::{Bencher, black_box};
 use pulloff::case::Case;
 use pulloff::contact::Control;
-use pulloff::preset::{BasisSpec, Store};
+use pulloff::preset::{BasisSpec, Functions, Store};
 use pulloff::ritz::Rings;
 
 /// The ring numbers.
@@ -21,10 +21,19 @@ fn main() {
 
 /// Fig. 9 with this number of rings.
 fn fig_9(rings: usize) -> Case {
+    fig_9_in(BasisSpec::Rings { rings })
+}
+
+/// Fig. 9 with enough eigenfunctions.
+fn fig_9_spectral() -> Case {
+    fig_9_in(BasisSpec::Spectral { functions: Functions::Auto })
+}
+
+fn fig_9_in(basis: BasisSpec) -> Case {
     // A folder that need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let mut preset = store.load(&store.resolve("fig-9").unwrap(), &[] as &[&str]).unwrap().preset;
-    preset.basis = BasisSpec::Rings { rings };
+    preset.basis = basis;
     Case::new(&preset).unwrap()
 }
 
@@ -56,8 +65,7 @@ fn trace(bencher: Bencher, rings: usize) {
 }
 
 /// Every jump of the swept curve with its two losses.
-fn unload(bencher: Bencher, rings: usize, control: Control) {
-    let case = fig_9(rings);
+fn unload(bencher: Bencher, case: &Case, control: Control) {
     let curve = case.sweep(|| true).unwrap();
     bencher
         .with_inputs(|| curve.clone())
@@ -66,15 +74,60 @@ fn unload(bencher: Bencher, rings: usize, control: Control) {
 
 #[divan::bench(args = SIZES, max_time = 5)]
 fn unload_by_displacement(bencher: Bencher, rings: usize) {
-    unload(bencher, rings, Control::Displacement);
+    unload(bencher, &fig_9(rings), Control::Displacement);
 }
 
 #[divan::bench(args = SIZES, max_time = 5)]
 fn unload_by_force(bencher: Bencher, rings: usize) {
-    unload(bencher, rings, Control::Force);
+    unload(bencher, &fig_9(rings), Control::Force);
 }
 
 #[divan::bench(args = SIZES, max_time = 5)]
 fn unload_by_spring(bencher: Bencher, rings: usize) {
-    unload(bencher, rings, Control::Stiffness(0.15));
+    unload(bencher, &fig_9(rings), Control::Stiffness(0.15));
+}
+
+/// The smallest automatic number of functions, its tail checked.
+#[divan::bench]
+fn spectral_case() -> Case {
+    fig_9_spectral()
+}
+
+#[divan::bench]
+fn spectral_evaluation(bencher: Bencher) {
+    let case = fig_9_spectral();
+    bencher.bench_local(|| case.basis.evaluate(&case.reduced, black_box(0.3), black_box(-0.01)));
+}
+
+#[divan::bench]
+fn spectral_energy(bencher: Bencher) {
+    let case = fig_9_spectral();
+    bencher.bench_local(|| case.basis.energy(&case.reduced, black_box(0.3), black_box(-0.01)));
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_sweep(bencher: Bencher) {
+    let case = fig_9_spectral();
+    bencher.bench_local(|| case.sweep(|| true).unwrap());
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_trace(bencher: Bencher) {
+    let case = fig_9_spectral();
+    bencher.bench_local(|| case.trace().unwrap());
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_unload_by_displacement(bencher: Bencher) {
+    unload(bencher, &fig_9_spectral(), Control::Displacement);
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_unload_by_force(bencher: Bencher) {
+    unload(bencher, &fig_9_spectral(), Control::Force);
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_unload_by_spring(bencher: Bencher) {
+    unload(bencher, &fig_9_spectral(), Control::Stiffness(0.15));
 }

@@ -4,11 +4,11 @@
 //! they all see the same numbers.
 
 use crate::contact::{Control, Gap, Problem, Reduced, Start, Units};
-use crate::preset::{BasisSpec, Preset};
+use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload};
 use crate::quasistatic::{Curve, Unloading};
-use crate::ritz::{Basis, Rings, RingsError};
+use crate::ritz::{Basis, BasisError, Rings, Spectral};
 use crate::theory::jkr::Jkr;
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ pub struct Case {
 pub enum CaseError {
     /// The basis could not be made.
     #[error(transparent)]
-    Basis(#[from] RingsError),
+    Basis(#[from] BasisError),
     /// The start state does not exist.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -68,14 +68,12 @@ impl Case {
         let problem = preset.problem();
         let reduced = problem.reduced();
         let units = reduced.units;
-        let BasisSpec::Rings { rings } = preset.basis;
-        let basis: Arc<dyn Basis> = Rings::shared(rings)?;
         let wanted = match preset.path.start {
             Start::ContactRadius(s) => Start::ContactRadius(s / units.length),
             Start::Approach(delta) => Start::Approach(delta / units.length),
             Start::Force(p) => Start::Force(p / units.force),
         };
-        let start = contact_radius(&reduced, &basis, wanted).map_err(|e| e.in_units(&units))?;
+        let (basis, start) = start(&reduced, preset.basis, wanted)?;
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
             return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
@@ -168,4 +166,40 @@ impl Case {
     fn no_start(&self) -> CaseError {
         StartError::NoEquilibrium(self.start).in_units(self.units()).into()
     }
+}
+
+/// The basis and the contact radius at the start, reduced.
+///
+/// An automatic number of functions follows from the largest contact, the start; where the start is an approach or
+/// a force, the two are found in turn.
+fn start(reduced: &Reduced, spec: BasisSpec, wanted: Start) -> Result<(Arc<dyn Basis>, f64), CaseError> {
+    let radius = |basis: &Arc<dyn Basis>| {
+        contact_radius(reduced, basis, wanted).map_err(|e| e.in_units(&reduced.units))
+    };
+    let basis: Arc<dyn Basis> = match spec {
+        BasisSpec::Rings { rings } => Rings::shared(rings).map_err(BasisError::from)?,
+        BasisSpec::Spectral { functions: Functions::Count(n) } => {
+            Arc::new(Spectral::new(n).map_err(BasisError::from)?)
+        }
+        BasisSpec::Spectral { functions: Functions::Auto } => {
+            let resolving = |s| Spectral::resolving(reduced, s).map_err(BasisError::from);
+            // Twice the paraboloid of R = 1 with its adhesion: as far as the search for a start looks first.
+            let unit = |elastic: f64| 2.0 * elastic.max(reduced.work_of_adhesion.cbrt());
+            let mut largest = match wanted {
+                Start::ContactRadius(s) => s,
+                Start::Approach(delta) => unit(delta.abs().sqrt()),
+                Start::Force(p) => unit(p.abs().cbrt()),
+            };
+            loop {
+                let found = radius(&(Arc::new(resolving(largest)?) as Arc<dyn Basis>))?;
+                if found <= largest {
+                    return Ok((Arc::new(resolving(found)?), found));
+                }
+                // A little more, so that rounding cannot ask for another round.
+                largest = 1.01 * found;
+            }
+        }
+    };
+    let found = radius(&basis)?;
+    Ok((basis, found))
 }

@@ -19,7 +19,7 @@
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, landings, losses, the unloading |
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
-//! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, Newton-Raphson |
+//! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
 //! | 2 | [`theory`] | closed forms: Hertz, JKR |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
 //!

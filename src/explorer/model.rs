@@ -134,8 +134,8 @@ pub const FIRST_LENGTH: f64 = 0.02;
 /// The step lengths a person can choose.
 pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 
-/// The keys without a knob: the version of the format, and the name of the only basis.
-const NO_KNOB: [&str; 2] = ["format", "basis.kind"];
+/// The key without a knob: the version of the format.
+const NO_KNOB: &str = "format";
 
 /// Whether two presets have the same curve: everything but the title and the control is equal.
 fn same_curve(a: &Preset, b: &Preset) -> bool {
@@ -190,14 +190,13 @@ impl Model {
 
     /// The parameters with a knob, in the table's order, and their values; no value follows from others.
     pub fn knobs(&self) -> Vec<(&'static Parameter, Option<Value>)> {
-        let shape = self.preset.gap.name();
         // The title last: the numbers are what is turned.
         let (texts, numbers): (Vec<&Parameter>, Vec<&Parameter>) =
             crate::preset::PARAMETERS.iter().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
-            .filter(|row| row.fits(shape) && !NO_KNOB.contains(&row.key))
+            .filter(|row| row.key != NO_KNOB)
             .map(|row| (row, self.preset.get(row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()

@@ -33,11 +33,14 @@ pub fn nudge(preset: &Preset, row: &Parameter, up: bool, amount: Amount) -> Resu
             }
             Value::Number(tidy(if up == (x > 0.0) { x * (1.0 + share) } else { x / (1.0 + share) }))
         }
-        (Kind::Integer { .. }, Some(Value::Integer(n))) => {
-            // Exact for every count of rings; at least one, so that small counts move too.
+        (Kind::Integer { .. } | Kind::Count { .. }, Some(Value::Integer(n))) => {
+            // Exact for every count; at least one, so that small counts move too.
             #[expect(clippy::cast_possible_truncation)]
             let by = ((n as f64 * share).round() as i64).max(1);
             Value::Integer(if up { n + by } else { n - by })
+        }
+        (Kind::Count { .. }, Some(_)) => {
+            return Err(format!("{} is chosen by the program; Enter types a number", row.label));
         }
         (Kind::Choice(words), Some(Value::Text(word))) => {
             let at = words.iter().position(|w| *w == word).unwrap_or(0);

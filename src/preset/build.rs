@@ -3,7 +3,7 @@
 //! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
 
 use super::invalid::Invalid;
-use super::model::{BasisSpec, Material, PathSpec, Preset};
+use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
 use super::schema::{
     Applies, Fallback, PARAMETERS, Parameter, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
     parameter,
@@ -23,7 +23,7 @@ pub type Values = BTreeMap<&'static str, Value>;
 pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
     let mut given = Given { values, faults: Vec::new() };
     given.check_each();
-    given.check_shape();
+    given.check_choices();
     let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(key)).collect();
     if let [first, second, ..] = starts[..] {
         given.faults.push(Invalid::Starts { first, second });
@@ -52,7 +52,7 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
             work_of_adhesion: given.number("material.work_of_adhesion"),
         },
         gap,
-        basis: BasisSpec::Rings { rings: usize::try_from(given.integer("basis.rings")).unwrap_or_default() },
+        basis: given.basis(),
         path: PathSpec {
             control: given.control("path.control"),
             start,
@@ -88,6 +88,17 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     faults
 }
 
+/// The word of a choice, given or by default; `None` where it is missing or no word of the choice.
+pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
+    let row = parameter(chooser)?;
+    let word = match (values.get(chooser), row.fallback) {
+        (Some(value), _) => value.clone(),
+        (None, Fallback::Text(word)) => word.into(),
+        (None, _) => return None,
+    };
+    row.check(word).ok().map(|word| word.to_string())
+}
+
 /// The values with what was found wrong so far. A value that is missing or wrong reads as one that keeps
 /// the rest going; no preset comes of it.
 struct Given<'a> {
@@ -104,16 +115,31 @@ impl Given<'_> {
         }
     }
 
-    /// Keys of other shapes are faults.
-    fn check_shape(&mut self) {
-        let Some(shape) = self.values.get("gap.shape").map(ToString::to_string) else { return };
+    /// Keys of other shapes and of the other basis are faults.
+    fn check_choices(&mut self) {
         for row in self.values.keys().filter_map(|key| parameter(key)) {
-            if let Applies::Shapes(shapes) = row.applies
-                && !row.fits(&shape)
-            {
-                let belongs = shapes.join(" or ");
-                self.faults.push(Invalid::OtherShape { key: row.key, belongs, shape: shape.clone() });
+            let Applies::With { key: chooser, words } = row.applies else { continue };
+            let Some(word) = chosen(self.values, chooser) else { continue };
+            if !row.fits(chooser, &word) {
+                let belongs = words.join(" or ");
+                let (what, chosen) =
+                    if chooser == "gap.shape" { ("gap", format!("a {word}")) } else { ("basis", word) };
+                self.faults.push(Invalid::OtherChoice { key: row.key, belongs, what, chosen });
             }
+        }
+    }
+
+    fn basis(&mut self) -> BasisSpec {
+        let count = |n: i64| usize::try_from(n).unwrap_or_default();
+        match self.text("basis.kind").as_str() {
+            "spectral" => BasisSpec::Spectral {
+                functions: match self.value("basis.functions") {
+                    Some(Value::Integer(n)) => Functions::Count(count(n)),
+                    _ => Functions::Auto,
+                },
+            },
+            // An unknown word is among the faults already.
+            _ => BasisSpec::Rings { rings: count(self.integer("basis.rings")) },
         }
     }
 

@@ -95,15 +95,17 @@ pub enum Invalid {
         /// Its required keys.
         keys: String,
     },
-    /// A key of another gap shape.
-    #[error("{key} belongs to {belongs}, and the gap is a {shape}")]
-    OtherShape {
+    /// A key that another choice does not know.
+    #[error("{key} belongs to {belongs}, and the {what} is {chosen}")]
+    OtherChoice {
         /// The key.
         key: &'static str,
-        /// The shapes it belongs to.
+        /// The words of the choice it belongs to.
         belongs: String,
-        /// The shape of this preset.
-        shape: String,
+        /// What was chosen in one word, as `gap`.
+        what: &'static str,
+        /// The word chosen in this preset, with its article where it has one.
+        chosen: String,
     },
     /// More than one start.
     #[error("{second} and {first} both say where the path starts: give exactly one")]
@@ -152,7 +154,7 @@ impl Invalid {
             | Self::Choice { key, .. }
             | Self::Unprintable { key, .. }
             | Self::Missing { key, .. }
-            | Self::OtherShape { key, .. }
+            | Self::OtherChoice { key, .. }
             | Self::Starts { second: key, .. }
             | Self::EndBeyondStart { key, .. }
             | Self::Wide { key, .. } => Some(key),

@@ -42,7 +42,7 @@ pub mod write;
 pub use atomic::{Overwrite, WriteError, write_atomically};
 pub use file::Fingerprint;
 pub use invalid::Invalid;
-pub use model::{BasisSpec, Material, PathSpec, Preset};
+pub use model::{BasisSpec, Functions, Material, PathSpec, Preset};
 pub use read::{Mistake, Origin, ReadError, read, read_with};
 pub use schema::{PARAMETERS, Parameter, parameter};
 pub use shipped::SHIPPED;

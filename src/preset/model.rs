@@ -2,7 +2,9 @@
 
 use super::build::{Values, build};
 use super::invalid::Invalid;
-use super::schema::{END_OVER_START, FORMAT, PARAMETERS, Parameter, START_KEYS, parameter};
+use super::schema::{
+    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, PARAMETERS, Parameter, START_KEYS, parameter,
+};
 use super::suggest::closest_key;
 use super::text::quote;
 use super::value::Value;
@@ -40,6 +42,20 @@ pub enum BasisSpec {
         /// Their number N, from 4 to 2000.
         rings: usize,
     },
+    /// Eigenfunctions of the half-space operator.
+    Spectral {
+        /// Their number.
+        functions: Functions,
+    },
+}
+
+/// A number of eigenfunctions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Functions {
+    /// Enough for the waves in the largest contact.
+    Auto,
+    /// This many, from 4 to 4096.
+    Count(usize),
 }
 
 /// The path through the equilibrium states.
@@ -87,7 +103,6 @@ impl Preset {
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
         let Self { title, material, gap, basis, path } = self;
-        let BasisSpec::Rings { rings } = *basis;
         Some(match key {
             "format" => FORMAT.into(),
             "title" => title.as_str().into(),
@@ -97,8 +112,18 @@ impl Preset {
             "gap.radius_of_curvature" => gap.radius_of_curvature().into(),
             "gap.amplitude" => gap.wave()?.0.into(),
             "gap.wavelength" => gap.wave()?.1.into(),
-            "basis.kind" => "rings".into(),
-            "basis.rings" => i64::try_from(rings).ok()?.into(),
+            "basis.kind" => match basis {
+                BasisSpec::Rings { .. } => "rings".into(),
+                BasisSpec::Spectral { .. } => "spectral".into(),
+            },
+            "basis.rings" | "basis.functions" => match (key, *basis) {
+                ("basis.rings", BasisSpec::Rings { rings: n })
+                | ("basis.functions", BasisSpec::Spectral { functions: Functions::Count(n) }) => {
+                    i64::try_from(n).ok()?.into()
+                }
+                ("basis.functions", BasisSpec::Spectral { functions: Functions::Auto }) => AUTO.into(),
+                _ => return None,
+            },
             "path.control" => path.control.into(),
             "path.control.stiffness" => match path.control {
                 Control::Stiffness(k) => k.into(),
@@ -119,7 +144,8 @@ impl Preset {
     /// Gives a key another value.
     ///
     /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
-    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9.
+    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `basis.kind` drops
+    /// the keys of the old basis, and takes the defaults of its own.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
@@ -127,12 +153,15 @@ impl Preset {
         let row = parameter(key).ok_or_else(|| unknown_key(key))?;
         let value = row.check(value)?;
         let mut values = self.keyed();
+        if CHOOSERS.contains(&row.key) {
+            values
+                .retain(|key, _| parameter(key).is_some_and(|other| other.fits(row.key, &value.to_string())));
+        }
         match row.key {
             "gap.shape" => {
                 let radius = self.gap.radius_of_curvature();
-                values.retain(|key, _| parameter(key).is_some_and(|row| row.fits(&value.to_string())));
                 for (key, over_radius) in [("gap.amplitude", 0.0025), ("gap.wavelength", 0.05)] {
-                    if parameter(key).is_some_and(|row| row.fits(&value.to_string())) {
+                    if parameter(key).is_some_and(|other| other.fits(row.key, &value.to_string())) {
                         values.entry(key).or_insert(Value::Number(over_radius * radius));
                     }
                 }
@@ -154,6 +183,9 @@ impl Preset {
         let mut values = self.keyed();
         let parent = row.table().filter(|_| row.is_part());
         values.remove(parent.unwrap_or(row.key));
+        if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&row.key)) {
+            values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(row.key, word)));
+        }
         *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
         Ok(())
     }
@@ -192,7 +224,6 @@ pub(super) fn unknown_key(key: &str) -> Invalid {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::preset::schema::Fallback;
     use proptest::prelude::*;
 
     pub fn wavy() -> Preset {
@@ -224,22 +255,21 @@ pub(super) mod tests {
                 }
             ),
         ];
+        let basis = prop_oneof![
+            (4usize..=2000).prop_map(|rings| BasisSpec::Rings { rings }),
+            (4usize..=4096).prop_map(|n| BasisSpec::Spectral { functions: Functions::Count(n) }),
+            Just(BasisSpec::Spectral { functions: Functions::Auto }),
+        ];
         let control = prop_oneof![
             Just(Control::Displacement),
             Just(Control::Force),
             positive().prop_map(Control::Stiffness)
         ];
         (
-            (
-                "[ -~γλ\u{e9}\"'\\\\]{0,40}",
-                positive(),
-                prop_oneof![Just(0.0), positive()],
-                gap,
-                4usize..=2000,
-            ),
+            ("[ -~γλ\u{e9}\"'\\\\]{0,40}", positive(), prop_oneof![Just(0.0), positive()], gap, basis),
             (control, 0..3u8, 0.001..10.0f64, finite(), proptest::option::of(0.0001..0.99f64)),
         )
-            .prop_map(|((title, e, gamma, gap, rings), (control, which, over, x, end))| {
+            .prop_map(|((title, e, gamma, gap, basis), (control, which, over, x, end))| {
                 let radius = gap.radius_of_curvature().clamp(1e-20, 1e29);
                 let gap = match gap {
                     Shape::Sphere { .. } => Shape::Sphere { radius_of_curvature: radius },
@@ -256,7 +286,7 @@ pub(super) mod tests {
                     title,
                     material: Material { effective_modulus: e, work_of_adhesion: gamma },
                     gap,
-                    basis: BasisSpec::Rings { rings },
+                    basis,
                     path: PathSpec { control, start, end_contact_radius: end.map(|f| f * over * radius) },
                 }
             })
@@ -267,7 +297,9 @@ pub(super) mod tests {
         // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
         let Preset { title: _, material, gap, basis, path } = wavy();
         let Material { effective_modulus: _, work_of_adhesion: _ } = material;
-        let BasisSpec::Rings { rings: _ } = basis;
+        match basis {
+            BasisSpec::Rings { rings: _ } | BasisSpec::Spectral { functions: _ } => {}
+        }
         let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
         match gap {
             Shape::Sphere { radius_of_curvature: _ }
@@ -284,6 +316,7 @@ pub(super) mod tests {
             "gap.wavelength",
             "basis.kind",
             "basis.rings",
+            "basis.functions",
             "path.control",
             "path.control.stiffness",
             "path.start_contact_radius",
@@ -300,17 +333,20 @@ pub(super) mod tests {
                 "format" => FORMAT.into(),
                 "title" => "t".into(),
                 "gap.shape" => "sphere".into(),
-                "basis.kind" => "rings".into(),
-                "basis.rings" => 77.into(),
+                "basis.kind" => "spectral".into(),
+                "basis.rings" | "basis.functions" => 77.into(),
                 "path.control" => Control::Force.into(),
                 "path.end_contact_radius" => 0.003.into(),
                 _ => Value::Number(0.75),
             };
+            if row.key == "basis.functions" {
+                preset.set("basis.kind", "spectral".into()).unwrap();
+            }
             preset.set(row.key, value.clone()).unwrap();
             assert_eq!(preset.get(row.key), Some(value), "{}", row.key);
             assert_eq!(
                 preset.reset(row.key).is_err(),
-                row.fallback == Fallback::Required && row.fits(preset.gap.name()),
+                row.fallback == Fallback::Required && row.fits("gap.shape", preset.gap.name()),
                 "{}",
                 row.key
             );
@@ -353,6 +389,20 @@ pub(super) mod tests {
         let wave = preset.set("gap.amplitude", 0.1.into()).unwrap_err();
         assert_eq!(wave.to_string(), "gap.amplitude belongs to wavy-sphere, and the gap is a sphere");
         preset.set("gap.shape", "wavy-sphere".into()).unwrap();
+        assert_eq!(preset, wavy());
+    }
+
+    #[test]
+    fn a_basis_drops_the_keys_of_the_other() {
+        let mut preset = wavy();
+        let few = preset.set("basis.functions", 48.into()).unwrap_err();
+        assert_eq!(few.to_string(), "basis.functions belongs to spectral, and the basis is rings");
+        preset.set("basis.kind", "spectral".into()).unwrap();
+        assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+        assert_eq!(preset.get("basis.rings"), None);
+        preset.set("basis.functions", 48.into()).unwrap();
+        preset.set("basis.functions", "auto".into()).unwrap();
+        preset.set("basis.kind", "rings".into()).unwrap();
         assert_eq!(preset, wavy());
     }
 

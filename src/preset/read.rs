@@ -6,7 +6,7 @@
 use super::build::{Values, build};
 use super::invalid::Invalid;
 use super::model::{Preset, put, unknown_key};
-use super::schema::{Parameter, START_KEYS, parameter, tables};
+use super::schema::{CHOOSERS, Parameter, START_KEYS, parameter, tables};
 use super::suggest::closest;
 use super::text::{quote, sanitize, show_name};
 use super::value::Value;
@@ -194,17 +194,17 @@ impl Sheet {
     }
 
     /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
-    /// the waves of another shape.
+    /// the waves of another shape, the size of another basis.
     fn put(&mut self, row: &'static Parameter, value: Result<Value, Invalid>, origin: Origin) {
         if matches!(origin, Origin::Assignment(_)) {
             if START_KEYS.contains(&row.key) {
                 self.entries.retain(|key, _| !START_KEYS.contains(key));
             }
-            if let ("gap.shape", Ok(shape)) = (row.key, &value) {
-                let shape = shape.to_string();
+            if let (Ok(word), true) = (&value, CHOOSERS.contains(&row.key)) {
+                let word = word.to_string();
                 self.entries.retain(|key, entry| {
                     matches!(entry.origin, Origin::Assignment(_))
-                        || parameter(key).is_some_and(|row| row.fits(&shape))
+                        || parameter(key).is_some_and(|other| other.fits(row.key, &word))
                 });
             }
         }
@@ -347,7 +347,7 @@ mod tests {
     use super::*;
     use crate::contact::Start;
     use crate::contact::{Control, Shape};
-    use crate::preset::model::BasisSpec;
+    use crate::preset::model::{BasisSpec, Functions};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
@@ -543,6 +543,41 @@ end_contact_radius = 0.002
         assert_eq!(set(&["path.start_force=0.02"]).path.start, Start::Force(0.02));
         assert_eq!(set(&["path.start_force=0.02", "path.start_approach=1"]).path.start, Start::Approach(1.0));
         assert_eq!(set(&["gap.shape=sphere"]).gap, Shape::Sphere { radius_of_curvature: 1.0 });
+    }
+
+    #[test]
+    fn a_basis_drops_and_brings_its_keys() {
+        let auto = BasisSpec::Spectral { functions: Functions::Auto };
+        assert_eq!(set(&["basis.kind=spectral"]).basis, auto);
+        assert_eq!(set(&["basis.kind=spectral", "basis.functions=auto"]).basis, auto);
+        let count = BasisSpec::Spectral { functions: Functions::Count(64) };
+        assert_eq!(set(&["basis.functions=64", "basis.kind=spectral"]).basis, count);
+        let text = WAVY.replace("\"rings\"\nrings = 200", "\"spectral\"\nfunctions = \"auto\"");
+        assert_eq!(read("w.toml", &text).unwrap().basis, auto);
+        for (old, new, expected) in [
+            (
+                "\"rings\"",
+                "\"spectral\"",
+                "w.toml:13: basis.rings belongs to rings, and the basis is spectral",
+            ),
+            (
+                "rings = 200",
+                "functions = 9",
+                "w.toml:13: basis.functions belongs to spectral, and the basis is rings",
+            ),
+            (
+                "\"rings\"\nrings = 200",
+                "\"spectral\"\nfunctions = 3",
+                "w.toml:13: basis.functions = 3 is out of range: it must be \"auto\" or a whole number from 4 to 4096",
+            ),
+            (
+                "\"rings\"\nrings = 200",
+                "\"spectral\"\nfunctions = \"many\"",
+                "w.toml:13: basis.functions must be \"auto\" or a whole number from 4 to 4096, not the text \"many\"",
+            ),
+        ] {
+            assert_eq!(edited(old, new), expected);
+        }
     }
 
     #[test]

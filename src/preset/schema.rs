@@ -18,6 +18,9 @@ pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
 /// The three ways to say where a path starts; a preset has exactly one.
 pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
 
+/// The word that leaves a count to the program.
+pub const AUTO: &str = "auto";
+
 /// What kind of value a parameter takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -29,6 +32,13 @@ pub enum Kind {
     Finite,
     /// A whole number from `min` to `max`.
     Integer {
+        /// The smallest accepted.
+        min: i64,
+        /// The largest accepted.
+        max: i64,
+    },
+    /// A whole number from `min` to `max`, or the word [`AUTO`].
+    Count {
         /// The smallest accepted.
         min: i64,
         /// The largest accepted.
@@ -65,8 +75,13 @@ pub enum Fallback {
 pub enum Applies {
     /// In every preset.
     Always,
-    /// Only for these values of `gap.shape`.
-    Shapes(&'static [&'static str]),
+    /// Only where the choice `key` is one of `words`.
+    With {
+        /// The key that chooses.
+        key: &'static str,
+        /// Its words.
+        words: &'static [&'static str],
+    },
     /// Only while the device is a spring.
     Spring,
 }
@@ -90,8 +105,11 @@ pub struct Parameter {
     pub applies: Applies,
 }
 
-/// The names of the gap shapes that have waves.
-const WAVY: &[&str] = &["wavy-sphere"];
+/// The keys whose word decides which other keys apply.
+pub const CHOOSERS: [&str; 2] = ["gap.shape", "basis.kind"];
+
+/// Where the gap has waves.
+const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] };
 
 /// The parameters, in the order in which files and screens show them.
 pub static PARAMETERS: &[Parameter] = &[
@@ -156,7 +174,7 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: "length",
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
-        applies: Applies::Shapes(WAVY),
+        applies: WAVY,
     },
     Parameter {
         key: "gap.wavelength",
@@ -165,14 +183,14 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: "length",
         kind: Kind::Positive,
         fallback: Fallback::Required,
-        applies: Applies::Shapes(WAVY),
+        applies: WAVY,
     },
     Parameter {
         key: "basis.kind",
         label: "basis",
         meaning: "functions in which the contact pressure is sought",
         dimension: "",
-        kind: Kind::Choice(&["rings"]),
+        kind: Kind::Choice(&["rings", "spectral"]),
         fallback: Fallback::Text("rings"),
         applies: Applies::Always,
     },
@@ -183,7 +201,16 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: "",
         kind: Kind::Integer { min: 4, max: 2000 },
         fallback: Fallback::Integer(200),
-        applies: Applies::Always,
+        applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
+    },
+    Parameter {
+        key: "basis.functions",
+        label: "functions",
+        meaning: "number of eigenfunctions; auto takes enough for the waves in the largest contact",
+        dimension: "",
+        kind: Kind::Count { min: 4, max: 4096 },
+        fallback: Fallback::Text(AUTO),
+        applies: Applies::With { key: CHOOSERS[1], words: &["spectral"] },
     },
     Parameter {
         key: "path.control",
@@ -281,11 +308,11 @@ impl Parameter {
         matches!(self.kind, Kind::Positive)
     }
 
-    /// Whether it means something for this `gap.shape`.
+    /// Whether it means something where the choice `chooser` is `word`.
     #[must_use]
-    pub fn fits(&self, shape: &str) -> bool {
+    pub fn fits(&self, chooser: &str, word: &str) -> bool {
         match self.applies {
-            Applies::Shapes(shapes) => shapes.contains(&shape),
+            Applies::With { key, words } => key != chooser || words.contains(&word),
             Applies::Always | Applies::Spring => true,
         }
     }
@@ -299,6 +326,7 @@ impl Parameter {
             Kind::Finite => format!("a number from -{LARGEST:?} to {LARGEST:?}"),
             Kind::Integer { min, max } if min == max => format!("the number {min}"),
             Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
+            Kind::Count { min, max } => format!("\"{AUTO}\" or a whole number from {min} to {max}"),
             Kind::Text { max_chars } => format!("printable text of at most {max_chars} characters"),
             Kind::Choice(words) => {
                 words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")

@@ -65,7 +65,8 @@ mod tests {
                     row.key
                 );
             }
-            assert!(preset.values().len() >= PARAMETERS.len() - 5);
+            // Two of three starts, the stiffness, a wave of two and the size of the other basis may be missing.
+            assert!(preset.values().len() >= PARAMETERS.len() - 6);
         }
     }
 

@@ -1,7 +1,7 @@
 //! One parameter's value, and its check against the parameter's row.
 
 use super::invalid::Invalid;
-use super::schema::{Kind, LARGEST, Parameter, SMALLEST};
+use super::schema::{AUTO, Kind, LARGEST, Parameter, SMALLEST};
 use super::suggest::closest;
 use super::text::{is_unsafe, quote};
 use crate::contact::Control;
@@ -116,6 +116,11 @@ impl Parameter {
                 found if self.key == "format" => Err(Invalid::Format { found }),
                 n => Err(self.out_of_range(&n.to_string())),
             },
+            (Kind::Count { min, max }, Value::Integer(n)) if (min..=max).contains(&n) => {
+                Ok(Value::Integer(n))
+            }
+            (Kind::Count { .. }, Value::Integer(n)) => Err(self.out_of_range(&n.to_string())),
+            (Kind::Count { .. }, Value::Text(word)) if word == AUTO => Ok(Value::Text(word)),
             (Kind::Text { max_chars }, Value::Text(text)) => {
                 if text.chars().nth(max_chars).is_some() {
                     Err(self.out_of_range(&format!("\"{}\"", quote(&text))))

@@ -1,6 +1,5 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
-use crate::preset::Value;
 use crate::tui::app::App;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -27,9 +26,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
     let warning = model.curve.as_ref().and_then(|curve| curve.warnings.first());
-    // A warning needs the room more than what the Problem panel says as well.
-    if let (Some(Value::Integer(rings)), None) = (model.preset.get("basis.rings"), warning) {
-        spans.push(Span::raw(format!("  rings {rings}")));
+    for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
+        // A warning needs the room more than what the Problem panel says as well.
+        if let (Some(count), None) = (model.preset.get(key), warning) {
+            spans.push(Span::raw(format!("  {name} {count}")));
+        }
     }
     if model.is_computing() {
         spans.push(Span::styled("  computing", theme.key().add_modifier(Modifier::BOLD)));
