@@ -42,6 +42,8 @@ pub struct CurveData {
     pub smooth: Vec<CurvePoint>,
     /// The dimensionless groups.
     pub groups: Groups,
+    /// Decimal digits the basis can be trusted for at the start.
+    pub digits: f64,
     /// `P_c`; 0 without adhesion.
     pub critical_force: f64,
     /// What to be careful about.
@@ -87,6 +89,7 @@ impl CurveData {
             Arc::new(Setting { preset: preset.clone(), equilibrium: curve.equilibrium.clone(), case });
         let case = &setting.case;
         Ok(Self {
+            digits: case.basis.trusted_digits(&case.reduced, case.start),
             groups: Groups::of(&case.problem),
             critical_force: case.smooth().pull_off_force(),
             setting: Arc::clone(&setting),

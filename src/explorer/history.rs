@@ -54,6 +54,8 @@ pub struct Node {
     pub state: State,
     /// Steps since the start.
     pub step: usize,
+    /// Decimal digits the basis can be trusted for here.
+    pub digits: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
 }

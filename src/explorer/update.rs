@@ -167,6 +167,7 @@ fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         point,
         state,
         step: 0,
+        digits: curve.digits,
         begins: true,
     });
 }
@@ -278,6 +279,7 @@ fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
         point: state.point,
         state: state.state,
         step,
+        digits: state.digits,
         begins: state.begins,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.

@@ -72,6 +72,8 @@ pub struct Made {
     pub point: Point,
     /// The state, reduced.
     pub state: State,
+    /// Decimal digits the basis can be trusted for there.
+    pub digits: f64,
     /// Whether a walk of its own begins here.
     pub begins: bool,
 }
@@ -127,7 +129,8 @@ impl Request {
 
 fn made(equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
     let state = equilibrium.state(&point);
-    Made { kind, point, state, begins: false }
+    let digits = equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius);
+    Made { kind, point, state, digits, begins: false }
 }
 
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
@@ -234,8 +237,7 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     }
     let event = Event::new(equilibrium, control, value, equilibrium.state(from), landing.as_ref());
     let point = landing.unwrap_or_else(|| from.clone());
-    let state = event.after.unwrap_or(event.before);
-    emit(Made { kind: NodeKind::Jump(Box::new(event)), point, state, begins: false });
+    emit(made(equilibrium, NodeKind::Jump(Box::new(event)), point));
     Outcome::Done
 }
 

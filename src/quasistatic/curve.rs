@@ -24,7 +24,7 @@ pub enum CurveStop {
     #[error("the end contact radius was reached")]
     End,
     /// The basis has no equilibrium beyond.
-    #[error("the basis has no equilibrium below the contact radius {0:.6e} (more rings may help)")]
+    #[error("the basis has no equilibrium below the contact radius {0:.6e} (a finer basis may help)")]
     NoEquilibrium(f64),
     /// The tracer stopped for another reason.
     #[error("{0}")]

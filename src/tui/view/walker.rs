@@ -92,7 +92,7 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         last.extend(pair(theme, " crest ", &crest.to_string()));
     }
     last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
-    last.extend(pair(theme, " dig. ", &format!("{:.1}", case.basis.trusted_digits(&case.reduced, s))));
+    last.extend(pair(theme, " dig. ", &format!("{:.1}", node.digits)));
     lines.push(Line::from(last));
     lines
 }
