@@ -20,7 +20,7 @@
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, landings, losses, the unloading |
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
 //! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
-//! | 2 | [`theory`] | closed forms: Hertz, JKR |
+//! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
 //!
 //! # Where the equations are
@@ -32,6 +32,7 @@
 //! | (11), (18) coefficients W, (13)-(15) the scaled mesh | [`ritz::rings`] |
 //! | (20), (23) gaps | [`contact::shape`] |
 //! | (21) Hertz, (22) JKR | [`theory::hertz`], [`theory::jkr`] |
+//! | the exact solution for (23) and any other gap | [`theory::guduru`], [`theory::sneddon`], [`theory::disc`] |
 //! | spherical arc length | [`continuation::corrector`], [`continuation::step`] |
 //! | Fig. 10, jumps and dissipation | [`quasistatic::jump`], [`quasistatic::energy`] |
 //!

@@ -9,6 +9,7 @@
 //! The paper's (22) prints the force with the surface energy of one face and a plus sign; these hold.
 //! Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141.
 
+use super::disc::{Disc, Transform};
 use std::f64::consts::PI;
 
 /// A smooth adhesive sphere.
@@ -50,6 +51,35 @@ impl Jkr {
     /// The contact radius `s_c/3^{2/3`} at pull-off under fixed grips, where `P = −5P_c/9`.
     pub fn fixed_grips_radius(&self) -> f64 {
         self.pull_off_radius() / 9f64.cbrt()
+    }
+}
+
+/// g = s²/R. At γ = 0 this is Hertz.
+impl Disc for Jkr {
+    fn name(&self) -> &'static str {
+        if self.work_of_adhesion > 0.0 { "JKR 1971" } else { "Hertz 1881" }
+    }
+
+    fn effective_modulus(&self) -> f64 {
+        self.effective_modulus
+    }
+
+    fn work_of_adhesion(&self) -> f64 {
+        self.work_of_adhesion
+    }
+
+    fn wave(&self) -> Option<f64> {
+        None
+    }
+
+    fn transform(&self, a: f64) -> Transform {
+        let radius = self.radius_of_curvature;
+        Transform { value: a * a / radius, slope: 2.0 * a / radius, moment: 2.0 * a.powi(3) / (3.0 * radius) }
+    }
+
+    /// M₂ = 8s⁵/(15R²).
+    fn rise(&self, from: f64, to: f64) -> f64 {
+        8.0 / 15.0 * (to.powi(5) - from.powi(5)) / self.radius_of_curvature.powi(2)
     }
 }
 

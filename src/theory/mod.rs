@@ -1,11 +1,31 @@
-//! Closed forms, independent of the Ritz code: used by tests and by the screen alike.
+//! Exact solutions, independent of the Ritz code: used by tests and by the screen alike.
+//!
+//! For any gap with a connected contact disc all of them follow from one function, the Abel transform g of the gap;
+//! they differ in how they come by it.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`hertz`] | a smooth sphere without adhesion, eq. (21) |
 //! | [`jkr`] | a smooth sphere with adhesion, eq. (22) with its misprints corrected |
+//! | [`disc`] | δ, P, U, their slopes and the pressure of one connected disc, from the transform of its gap |
+//! | [`sneddon`] | any gap: the transform by quadrature |
+//! | [`guduru`] | the wavy sphere: the transform in closed form |
+//! | [`struve`] | the functions H₀, H₁ of that closed form |
+//! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
+//! | [`exact`] | the best of these for a problem |
+//! | [`quadrature`] | integrals to rounding: Gauss-Legendre panels that halve where they must |
 //!
 //! Any consistent units.
 
+pub mod disc;
+pub mod exact;
+pub mod guduru;
 pub mod hertz;
 pub mod jkr;
+pub mod kesari_lew;
+pub mod quadrature;
+pub mod sneddon;
+pub mod struve;
+
+pub use disc::{Disc, Equilibrium};
+pub use exact::Exact;

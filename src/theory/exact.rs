@@ -1,0 +1,54 @@
+//! The exact solution of a problem: the closed form where there is one, quadrature otherwise.
+
+use super::disc::Disc;
+use super::guduru::Guduru;
+use super::jkr::Jkr;
+use super::sneddon::Sneddon;
+use crate::contact::{Gap, Problem, Shape};
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// The exact solution of one problem, to be asked as a [`Disc`].
+///
+/// ```
+/// use pulloff::contact::{Problem, Shape};
+/// use pulloff::theory::Exact;
+///
+/// let shape = Shape::Sphere { radius_of_curvature: 2.0 };
+/// let exact = Exact::of(&Problem { effective_modulus: 3.0, work_of_adhesion: 0.0, shape });
+/// assert_eq!((exact.name(), exact.approach(0.5)), ("Hertz 1881", 0.125));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Exact(Arc<dyn Disc>);
+
+impl Exact {
+    /// The solution of `problem`, in its units: Hertz or JKR for a sphere, Guduru for a wavy one.
+    pub fn of(problem: &Problem) -> Self {
+        let Problem { effective_modulus, work_of_adhesion, shape } = *problem;
+        Self(match shape {
+            Shape::Sphere { radius_of_curvature } => {
+                Arc::new(Jkr { effective_modulus, work_of_adhesion, radius_of_curvature })
+            }
+            Shape::WavySphere { radius_of_curvature, amplitude, wavelength } => Arc::new(Guduru {
+                effective_modulus,
+                work_of_adhesion,
+                radius_of_curvature,
+                amplitude,
+                wavelength,
+            }),
+        })
+    }
+
+    /// The solution for a gap that has no closed form, by quadrature.
+    pub fn by_quadrature(effective_modulus: f64, work_of_adhesion: f64, gap: Arc<dyn Gap>) -> Self {
+        Self(Arc::new(Sneddon { effective_modulus, work_of_adhesion, gap }))
+    }
+}
+
+impl Deref for Exact {
+    type Target = dyn Disc;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.0
+    }
+}

@@ -1,0 +1,176 @@
+//! The exact solutions against one another, against the reference tables and against their own calculus.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
+use pulloff::contact::{Problem, Shape};
+use pulloff::theory::guduru::Guduru;
+use pulloff::theory::jkr::Jkr;
+use pulloff::theory::quadrature::integrate;
+use pulloff::theory::{Disc, Exact};
+use serde_json::Value;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+fn by_quadrature(problem: &Problem) -> Exact {
+    Exact::by_quadrature(problem.effective_modulus, problem.work_of_adhesion, Arc::new(problem.shape))
+}
+
+fn problems() -> Vec<Problem> {
+    let problem = |shape, work_of_adhesion| Problem { effective_modulus: 0.7, work_of_adhesion, shape };
+    let wavy = |amplitude, wavelength, gamma| {
+        problem(Shape::WavySphere { radius_of_curvature: 1.3, amplitude, wavelength }, gamma)
+    };
+    vec![
+        problem(Shape::Sphere { radius_of_curvature: 1.3 }, 0.0),
+        problem(Shape::Sphere { radius_of_curvature: 1.3 }, 0.004),
+        wavy(0.0025, 0.05, 0.004),
+        wavy(0.001, 0.3, 0.01),
+        wavy(0.0004, 0.01, 1e-4),
+        wavy(0.0, 0.05, 0.004),
+    ]
+}
+
+/// From well inside the first wave to far out.
+fn radii() -> Vec<f64> {
+    (0..30).map(|i| 0.002 * 1.21f64.powi(i)).collect()
+}
+
+#[test]
+fn closed_forms_agree_with_quadrature() {
+    let mut worst = [0.0_f64; 4];
+    for problem in problems() {
+        let (closed, numerical) = (Exact::of(&problem), by_quadrature(&problem));
+        let radii = radii();
+        for (a, b) in closed.curve(&radii).iter().zip(&numerical.curve(&radii)) {
+            let s = a.contact_radius;
+            // The wave's part of g' is an integral of terms of this size, of which little may be left.
+            let steepest = 2.0 * s / 1.3 + problem.shape.wave().map_or(0.0, |(a, l)| 60.0 * a * s / (l * l));
+            let (g, h) = (closed.transform(s), numerical.transform(s));
+            for (worst, error) in worst.iter_mut().zip([
+                (g.value - h.value) / g.value,
+                (g.slope - h.slope) / steepest,
+                (a.force - b.force) / a.force_scale,
+                (a.energy - b.energy) / (a.energy.abs() + PI * problem.work_of_adhesion * s * s),
+            ]) {
+                *worst = worst.max(error.abs());
+            }
+        }
+    }
+    println!("g, g', P, U: {worst:?}");
+    assert!(worst.iter().all(|error| *error <= 1e-11), "{worst:?}");
+}
+
+#[test]
+fn the_energy_is_the_integral_of_its_definition() {
+    // U = E*∫(δ − g)² da − πγs², without the rearrangement that avoids cancellation.
+    for problem in problems() {
+        let exact = Exact::of(&problem);
+        for s in [0.03, 0.11, 0.37] {
+            let delta = exact.approach(s);
+            let wave = exact.wave().map(|wave| 0.5 * wave);
+            let [square] = integrate(0.0, s, wave, |a| [(delta - exact.transform(a).value).powi(2)]);
+            let contact = PI * problem.work_of_adhesion * s * s;
+            let elastic = problem.effective_modulus * square;
+            assert!(
+                (elastic - contact - exact.energy(s)).abs() <= 1e-12 * (elastic + contact),
+                "{problem:?} {s}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_force_is_the_slope_of_the_energy() {
+    for problem in problems() {
+        let exact = Exact::of(&problem);
+        for s in [0.013, 0.06, 0.21, 0.4] {
+            let wave = exact.wave().unwrap_or(s).min(s);
+            let e = 1e-5 * wave;
+            let [before, here, after] = exact.curve(&[s - e, s, s + e])[..] else { unreachable!() };
+            let (delta, force) = exact.slopes(s);
+            let (size, load) = ((here.approach.abs() + exact.edge(s)) / wave, here.force_scale);
+            let close = |a: f64, b: f64, slope: f64, size: f64| {
+                assert!(((b - a) / (2.0 * e) - slope).abs() <= 1e-6 * size, "{problem:?} {s}");
+            };
+            close(before.approach, after.approach, delta, size);
+            close(before.force, after.force, force, load / wave);
+            close(before.energy, after.energy, here.force * delta, load * size);
+        }
+    }
+}
+
+#[test]
+fn the_pressure_carries_the_force() {
+    for problem in problems() {
+        let (exact, s) = (Exact::of(&problem), 0.17_f64);
+        let modulus = problem.effective_modulus;
+        // Without the edge, in t = √(s² − r²), of which this part of the pressure is a smooth function.
+        let pressed = Exact::of(&Problem { work_of_adhesion: 0.0, ..problem });
+        let wave = exact.wave().map(|wave| 0.1 * wave);
+        let [force] = integrate(0.0, s, wave, |t| {
+            let r = ((s - t) * (s + t)).sqrt();
+            [TAU * t * pressed.pressure(s, r)]
+        });
+        let scale = exact.equilibrium(s, 0.0).force_scale;
+        assert!((force - pressed.force(s)).abs() <= 1e-9 * scale, "{problem:?}: {force}");
+        // The edge: a flat punch under the tension 2E*sT.
+        let pull = exact.force(s) - pressed.force(s);
+        for r in [0.0, 0.08, 0.169] {
+            let punch = pull / (TAU * s * (s * s - r * r).sqrt());
+            let ours = exact.pressure(s, r) - pressed.pressure(s, r);
+            assert!(
+                (ours - punch).abs() <= 1e-10 * (ours.abs() + modulus),
+                "{problem:?} {r}: {ours} {punch}"
+            );
+        }
+    }
+}
+
+#[test]
+fn without_waves_it_is_jkr() {
+    let jkr = Jkr { effective_modulus: 0.7, work_of_adhesion: 0.004, radius_of_curvature: 1.3 };
+    let guduru = |amplitude| Guduru {
+        effective_modulus: 0.7,
+        work_of_adhesion: 0.004,
+        radius_of_curvature: 1.3,
+        amplitude,
+        wavelength: 0.05,
+    };
+    for s in radii() {
+        let scale = jkr.equilibrium(s, 0.0).force_scale;
+        assert!((guduru(0.0).force(s) - jkr.force(s)).abs() <= 1e-14 * scale);
+        assert!((guduru(0.0).approach(s) - jkr.approach(s)).abs() <= 1e-14);
+        assert!((guduru(1e-12).force(s) - jkr.force(s)).abs() <= 1e-6 * scale);
+    }
+}
+
+#[test]
+fn the_reference_curves_of_figures_8_and_9() {
+    let mut worst = [0.0_f64; 3];
+    for text in [include_str!("data/fig8.json"), include_str!("data/fig9.json")] {
+        let data: Value = serde_json::from_str(text).unwrap();
+        let number = |value: &Value| value.as_f64().unwrap();
+        let profile = &data["case"]["profile"];
+        let problem = Problem {
+            effective_modulus: 1.0,
+            work_of_adhesion: number(&data["case"]["w"]),
+            shape: Shape::WavySphere {
+                radius_of_curvature: number(&profile["R"]),
+                amplitude: number(&profile["A"]),
+                wavelength: number(&profile["lambda"]),
+            },
+        };
+        let rows: Vec<Vec<f64>> = serde_json::from_value(data["curve"].clone()).unwrap();
+        let radii: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+        let energies = rows.iter().fold(0.0_f64, |most, row| most.max(row[3].abs()));
+        for exact in [Exact::of(&problem), by_quadrature(&problem)] {
+            for (row, ours) in rows.iter().zip(exact.curve(&radii)) {
+                worst[0] = worst[0].max((ours.approach - row[1]).abs() / number(&data["range"]["approach"]));
+                worst[1] = worst[1].max((ours.force - row[2]).abs() / number(&data["range"]["force"]));
+                worst[2] = worst[2].max((ours.energy - row[3]).abs() / energies);
+            }
+        }
+    }
+    println!("approach, force, energy: {worst:?}");
+    assert!(worst.iter().all(|error| *error <= 1e-12), "{worst:?}");
+}
