@@ -223,6 +223,34 @@ fn the_csv_of_a_trace_is_its_json() {
     }
 }
 
+#[test]
+fn theory_adds_the_exact_columns_behind_the_others() {
+    let home = Home::new();
+    let (plain, text) = (home.quiet(&short("trace", &[])), home.quiet(&short("trace", &["--theory"])));
+    let added = ",exact_approach,exact_force,exact_energy,relative_difference";
+    assert_eq!(text.lines().next().unwrap(), format!("{TRACE_HEADER}{added}"));
+    let document = home.json(&short("trace", &["--theory"]));
+    let points = document["points"].as_array().unwrap();
+    assert_eq!(plain.lines().count(), text.lines().count());
+    for (plain, with) in plain.lines().zip(text.lines()) {
+        assert!(with.starts_with(&format!("{plain},")), "{plain} {with}");
+    }
+    for (row, point) in records(&text).iter().zip(points) {
+        let columns = ["exact_approach", "exact_force", "exact_energy", "relative_difference"];
+        for (cell, key) in row[9..].iter().zip(columns) {
+            assert_eq!(cell.parse::<f64>().unwrap().to_bits(), number(point, &format!("/{key}")).to_bits());
+        }
+        // Sixty rings on five waves: a few percent.
+        assert!(number(point, "/relative_difference").abs() < 0.1, "{row:?}");
+        assert!((number(point, "/approach") - number(point, "/exact_approach")).abs() < 0.002, "{row:?}");
+    }
+    assert!(home.json(&short("trace", &[]))["points"][0].get("exact_force").is_none());
+    for preset in ["fig-1-hertz", "fig-3-jkr"] {
+        let rows = records(&home.quiet(&["trace", preset, "--theory"]));
+        assert!(rows.iter().all(|row| row[12].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
+    }
+}
+
 // ---- unload ----
 
 #[test]

@@ -3,6 +3,7 @@
 use super::{Failure, Problem, output, warn};
 use crate::quasistatic::CurveStop;
 use crate::report::{TraceReport, json};
+use crate::theory::Exact;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,6 +16,9 @@ pub struct Arguments {
     /// csv has one row per point; json also has the limit points and the problem
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
+    /// Add the exact solution at the same contact radius, and the relative difference of the force
+    #[arg(long)]
+    theory: bool,
     /// Write to this file instead of standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -28,7 +32,10 @@ enum Format {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let loaded = arguments.problem.load()?;
-    let report = TraceReport::compute(&loaded.preset)?;
+    let mut report = TraceReport::compute(&loaded.preset)?;
+    if arguments.theory {
+        report = report.beside(&Exact::of(&loaded.preset.problem()));
+    }
     warn(&report.warnings);
     let text = match arguments.format {
         Format::Csv => report.csv()?,

@@ -6,6 +6,7 @@ use crate::case::{Case, CaseError};
 use crate::contact::Control;
 use crate::preset::Preset;
 use crate::quasistatic::Curve;
+use crate::theory::{Equilibrium, Exact};
 use serde::Serialize;
 
 /// The equilibrium curve with its limit points.
@@ -48,6 +49,36 @@ pub struct PointReport {
     pub newton_iterations: usize,
     /// Its stability under each control.
     pub stable: StableReport,
+    /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub exact: Option<ExactReport>,
+}
+
+/// The exact solution at the contact radius of a point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExactReport {
+    /// δ.
+    pub exact_approach: f64,
+    /// P.
+    pub exact_force: f64,
+    /// U.
+    pub exact_energy: f64,
+    /// P of the point less the exact P, over the larger of the two forces whose difference the exact P is: that of the
+    /// gap, 2E*|∫a g' da|, and that of the adhesive edge, √(8πγE*s³). P itself passes through zero, these do not at
+    /// once.
+    pub relative_difference: f64,
+}
+
+impl ExactReport {
+    /// `force` of a point beside the exact equilibrium at its radius.
+    fn new(force: f64, exact: &Equilibrium) -> Self {
+        Self {
+            exact_approach: exact.approach,
+            exact_force: exact.force,
+            exact_energy: exact.energy,
+            relative_difference: (force - exact.force) / exact.force_scale,
+        }
+    }
 }
 
 /// Stability under each control.
@@ -89,6 +120,9 @@ pub const COLUMNS: &[&str] = &[
     "stable_chosen",
 ];
 
+/// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
+pub const EXACT_COLUMNS: &[&str] = &["exact_approach", "exact_force", "exact_energy", "relative_difference"];
+
 impl TraceReport {
     /// Traces `preset` by arc length and reports it.
     ///
@@ -98,6 +132,16 @@ impl TraceReport {
         let case = Case::new(preset)?;
         let curve = case.trace()?;
         Ok(Self::new(preset, &case, &curve))
+    }
+
+    /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
+    #[must_use]
+    pub fn beside(mut self, exact: &Exact) -> Self {
+        let radii: Vec<f64> = self.points.iter().map(|point| point.contact_radius).collect();
+        for (point, exact) in self.points.iter_mut().zip(exact.curve(&radii)) {
+            point.exact = Some(ExactReport::new(point.force, &exact));
+        }
+        self
     }
 
     /// The document of a curve of `case`.
@@ -124,6 +168,7 @@ impl TraceReport {
                         force: stability.under(Control::Force),
                         chosen: stability.under(case.control),
                     },
+                    exact: None,
                 }
             })
             .collect();
@@ -165,6 +210,9 @@ impl TraceReport {
     /// # Errors
     /// As [`rows::csv`].
     pub fn csv(&self) -> Result<String, rows::RowsError> {
-        rows::csv(COLUMNS, &self.points)
+        if self.points.iter().all(|point| point.exact.is_none()) {
+            return rows::csv(COLUMNS, &self.points);
+        }
+        rows::csv(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
     }
 }
