@@ -227,7 +227,7 @@ fn the_csv_of_a_trace_is_its_json() {
 fn theory_adds_the_exact_columns_behind_the_others() {
     let home = Home::new();
     let (plain, text) = (home.quiet(&short("trace", &[])), home.quiet(&short("trace", &["--theory"])));
-    let added = ",exact_approach,exact_force,exact_energy,relative_difference";
+    let added = ",exact_approach,exact_force,exact_energy,exact_relative_difference";
     assert_eq!(text.lines().next().unwrap(), format!("{TRACE_HEADER}{added}"));
     let document = home.json(&short("trace", &["--theory"]));
     let points = document["points"].as_array().unwrap();
@@ -236,15 +236,18 @@ fn theory_adds_the_exact_columns_behind_the_others() {
         assert!(with.starts_with(&format!("{plain},")), "{plain} {with}");
     }
     for (row, point) in records(&text).iter().zip(points) {
-        let columns = ["exact_approach", "exact_force", "exact_energy", "relative_difference"];
-        for (cell, key) in row[9..].iter().zip(columns) {
-            assert_eq!(cell.parse::<f64>().unwrap().to_bits(), number(point, &format!("/{key}")).to_bits());
+        let members = ["approach", "force", "energy", "relative_difference"];
+        for (cell, key) in row[9..].iter().zip(members) {
+            assert_eq!(
+                cell.parse::<f64>().unwrap().to_bits(),
+                number(point, &format!("/exact/{key}")).to_bits()
+            );
         }
         // Sixty rings on five waves: a few percent.
-        assert!(number(point, "/relative_difference").abs() < 0.1, "{row:?}");
-        assert!((number(point, "/approach") - number(point, "/exact_approach")).abs() < 0.002, "{row:?}");
+        assert!(number(point, "/exact/relative_difference").abs() < 0.1, "{row:?}");
+        assert!((number(point, "/approach") - number(point, "/exact/approach")).abs() < 0.002, "{row:?}");
     }
-    assert!(home.json(&short("trace", &[]))["points"][0].get("exact_force").is_none());
+    assert!(home.json(&short("trace", &[]))["points"][0].get("exact").is_none());
     for preset in ["fig-1-hertz", "fig-3-jkr"] {
         let rows = records(&home.quiet(&["trace", preset, "--theory"]));
         assert!(rows.iter().all(|row| row[12].parse::<f64>().unwrap().abs() < 0.05), "{preset}");

@@ -56,6 +56,8 @@ pub struct Node {
     pub step: usize,
     /// Decimal digits the basis can be trusted for here.
     pub digits: f64,
+    /// The relative difference of P from the exact solution at the same contact radius.
+    pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
 }

@@ -168,6 +168,7 @@ fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         state,
         step: 0,
         digits: curve.digits,
+        from_exact: super::walk::from_exact(&curve.setting.case, &state),
         begins: true,
     });
 }
@@ -280,6 +281,7 @@ fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
         state: state.state,
         step,
         digits: state.digits,
+        from_exact: state.from_exact,
         begins: state.begins,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.

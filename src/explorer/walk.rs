@@ -5,6 +5,7 @@
 
 use super::curve::CurveData;
 use super::history::{NodeKind, Setting};
+use crate::case::Case;
 use crate::contact::Control;
 use crate::continuation::{Bracket, Point, Stepper, Work, events, locate, step_size};
 use crate::quasistatic::curve::settings;
@@ -12,6 +13,7 @@ use crate::quasistatic::jump::{Landing, Nodes, Run};
 use crate::quasistatic::unload::INWARD_REACH;
 use crate::quasistatic::{Equilibrium, Event, State};
 use crate::ritz::{self, NewtonSettings};
+use crate::theory::Exact;
 use std::sync::Arc;
 
 /// Most states of one request: a run that meets nothing ends.
@@ -74,6 +76,8 @@ pub struct Made {
     pub state: State,
     /// Decimal digits the basis can be trusted for there.
     pub digits: f64,
+    /// The difference of P from the exact solution at the same contact radius, relative to its force scale.
+    pub from_exact: f64,
     /// Whether a walk of its own begins here.
     pub begins: bool,
 }
@@ -97,7 +101,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::Jump => jump(request, emit),
         Action::MoveTo(s) => match request.equilibrium().explicit(*s) {
             Some(point) => {
-                emit(Made { begins: true, ..made(request.equilibrium(), NodeKind::Moved, point) });
+                emit(Made {
+                    begins: true,
+                    ..made(request.case(), request.equilibrium(), NodeKind::Moved, point)
+                });
                 Outcome::Done
             }
             None => Outcome::Stopped("there is no equilibrium at that contact radius".to_owned()),
@@ -106,7 +113,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             Some(limit) => {
                 emit(Made {
                     begins: true,
-                    ..made(request.equilibrium(), NodeKind::Limit, limit.point.clone())
+                    ..made(request.case(), request.equilibrium(), NodeKind::Limit, limit.point.clone())
                 });
                 Outcome::AtLimit
             }
@@ -121,16 +128,29 @@ impl Request {
         &self.curve.setting.equilibrium
     }
 
+    fn case(&self) -> &Case {
+        &self.curve.setting.case
+    }
+
     /// The problem the new states belong to.
     pub fn setting(&self) -> &Arc<Setting> {
         &self.curve.setting
     }
 }
 
-fn made(equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
+/// The difference of the force of `state` from the exact solution of `case` at the same contact radius, relative
+/// to the larger of the two forces whose difference the exact one is.
+pub fn from_exact(case: &Case, state: &State) -> f64 {
+    let state = state.in_units(case.units());
+    let exact = Exact::of(&case.problem).curve(&[state.contact_radius]);
+    exact.first().map_or(f64::NAN, |exact| (state.force - exact.force) / exact.force_scale)
+}
+
+fn made(case: &Case, equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
     let state = equilibrium.state(&point);
     let digits = equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius);
-    Made { kind, point, state, digits, begins: false }
+    let from_exact = from_exact(case, &state);
+    Made { kind, point, state, digits, from_exact, begins: false }
 }
 
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
@@ -176,13 +196,13 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
             point.length = (&point.y - &here.y).norm();
             point.turning = step_size::turning(&here, &point);
             point.rounds = next.rounds;
-            emit(made(equilibrium, NodeKind::Limit, point));
+            emit(made(request.case(), equilibrium, NodeKind::Limit, point));
             return Outcome::AtLimit;
         }
         just_left = false;
         let s = equilibrium.contact_radius(&next);
         here = next.clone();
-        if !emit(made(equilibrium, NodeKind::Step, next)) {
+        if !emit(made(request.case(), equilibrium, NodeKind::Step, next)) {
             return Outcome::Stopped("paused".to_owned());
         }
         if request.inward && s < case.end {
@@ -237,7 +257,7 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     }
     let event = Event::new(equilibrium, control, value, equilibrium.state(from), landing.as_ref());
     let point = landing.unwrap_or_else(|| from.clone());
-    emit(made(equilibrium, NodeKind::Jump(Box::new(event)), point));
+    emit(made(request.case(), equilibrium, NodeKind::Jump(Box::new(event)), point));
     Outcome::Done
 }
 
@@ -276,7 +296,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
     let point = newton.or_else(|| nearest_crossing(request, value, s));
     match point {
         Some(point) => {
-            emit(made(equilibrium, NodeKind::Solved, point));
+            emit(made(request.case(), equilibrium, NodeKind::Solved, point));
             Outcome::Done
         }
         None => Outcome::Stopped(format!(

@@ -50,7 +50,7 @@ pub struct PointReport {
     /// Its stability under each control.
     pub stable: StableReport,
     /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExactReport>,
 }
 
@@ -58,11 +58,11 @@ pub struct PointReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExactReport {
     /// δ.
-    pub exact_approach: f64,
+    pub approach: f64,
     /// P.
-    pub exact_force: f64,
+    pub force: f64,
     /// U.
-    pub exact_energy: f64,
+    pub energy: f64,
     /// P of the point less the exact P, over the larger of the two forces whose difference the exact P is: that of the
     /// gap, 2E*|∫a g' da|, and that of the adhesive edge, √(8πγE*s³). P itself passes through zero, these do not at
     /// once.
@@ -73,9 +73,9 @@ impl ExactReport {
     /// `force` of a point beside the exact equilibrium at its radius.
     fn new(force: f64, exact: &Equilibrium) -> Self {
         Self {
-            exact_approach: exact.approach,
-            exact_force: exact.force,
-            exact_energy: exact.energy,
+            approach: exact.approach,
+            force: exact.force,
+            energy: exact.energy,
             relative_difference: (force - exact.force) / exact.force_scale,
         }
     }
@@ -121,7 +121,8 @@ pub const COLUMNS: &[&str] = &[
 ];
 
 /// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
-pub const EXACT_COLUMNS: &[&str] = &["exact_approach", "exact_force", "exact_energy", "relative_difference"];
+pub const EXACT_COLUMNS: &[&str] =
+    &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
 
 impl TraceReport {
     /// Traces `preset` by arc length and reports it.

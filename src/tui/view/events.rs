@@ -12,7 +12,7 @@ use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
 /// Width from which the long columns fit.
-const WIDE: u16 = 117;
+const WIDE: u16 = 112;
 
 /// Draws the list of instabilities.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
@@ -118,7 +118,7 @@ fn empty(model: &Model) -> String {
 
 fn heads(wide: bool) -> &'static str {
     if wide {
-        "   # event              δ      after           P     after   P/Pc  after          s      after   crest  lost        by area"
+        "  # event            δ     after         P     after   P/Pc  after         s     after  crest lost      by area"
     } else {
         "   #          δ   P/Pc  after         s     after  crest lost      event"
     }
@@ -149,12 +149,12 @@ fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String 
         _ => "dead load".to_owned(),
     };
     format!(
-        "{number:>3} {:<9} {:>10} {:>10} {:>11} {:>9} {:>6} {landed_force:>6} {:>10} {:>10} {crests:>7}  {lost:<10}  {agreement}",
+        "{number:>2} {:<8} {:>9} {:>9} {:>9} {:>9} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {agreement}",
         event.kind,
         significant(before.approach, 4),
-        after.map_or_else(dash, |a| significant(a.approach, 3)),
-        significant(before.force, 5),
-        after.map_or_else(dash, |a| significant(a.force, 3)),
+        after.map_or_else(dash, |a| significant(a.approach, 4)),
+        significant(before.force, 4),
+        after.map_or_else(dash, |a| significant(a.force, 4)),
         force(before.force),
         significant(before.contact_radius, 5),
         after.map_or_else(dash, |a| significant(a.contact_radius, 5)),

@@ -94,6 +94,9 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
     last.extend(pair(theme, " dig. ", &format!("{:.1}", node.digits)));
     lines.push(Line::from(last));
+    // Where there is room: what the basis' own estimate is worth.
+    lines
+        .push(Line::from(pair(theme, " P off the exact by ", &format!("{:+.1e}", node.from_exact)).to_vec()));
     lines
 }
 
