@@ -5,7 +5,7 @@
 //! value and the landing is where it falls back through it; running outward, where it rises back. Either way
 //! the control grows with s there, which is stability.
 
-use super::curve::{Curve, Limit};
+use super::curve::{Curve, Limit, Turn};
 use crate::contact::Control;
 use crate::continuation::locate::control_value;
 use crate::continuation::{Point, Vector, Work};
@@ -26,8 +26,8 @@ pub struct Nodes {
     pub control: Control,
     row: Vector,
     points: Vec<Point>,
-    /// Indices of the limit points among the nodes.
-    limits: Vec<usize>,
+    /// The limit points among the nodes: their index and which way the control turns.
+    limits: Vec<(usize, Turn)>,
 }
 
 /// A landing: the state and the node before it.
@@ -48,7 +48,7 @@ impl Nodes {
         for (index, point) in curve.branch.points.iter().enumerate() {
             points.push(point.clone());
             while let Some(limit) = limits.next_if(|limit| limit.index == index) {
-                indices.push(points.len());
+                indices.push((points.len(), limit.turn));
                 points.push(limit.point.clone());
             }
         }
@@ -82,12 +82,7 @@ impl Nodes {
 
     /// The first limit point at or after node `node` at which the control is smallest.
     pub fn next_minimum(&self, node: usize) -> Option<usize> {
-        self.limits.iter().copied().find(|&at| {
-            at >= node
-                && at > 0
-                && at + 1 < self.points.len()
-                && self.value(at) < self.value(at - 1).min(self.value(at + 1))
-        })
+        self.limits.iter().find(|&&(at, turn)| at >= node && turn == Turn::Minimum).map(|&(at, _)| at)
     }
 
     /// Runs from node `node` at the control value `value` to the next stable state.

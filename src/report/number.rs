@@ -32,6 +32,16 @@ pub fn loss(x: f64) -> String {
     format!("{x:.3e}")
 }
 
+/// `x` with so many decimals.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    format!("{x:.decimals$}")
+}
+
+/// A relative difference: its sign, two digits and the decade.
+pub fn difference(x: f64) -> String {
+    format!("{x:+.1e}")
+}
+
 fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }

@@ -73,10 +73,9 @@ fn row(number: usize, event: &EventReport) -> Vec<String> {
     let landed =
         |of: fn(&super::unload::StateReport) -> f64| after.map_or_else(dash, |a| significant(of(a), 5));
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
-    let agreement = match (event.dissipated, event.dissipated_by_area) {
-        (Some(a), Some(b)) if (a - b).abs() <= 1e-6 * a.abs() => "agrees".to_owned(),
-        (Some(_), Some(b)) => loss(b),
-        _ => dash(),
+    let agreement = match event.losses_agree() {
+        Some(true) => "agrees".to_owned(),
+        _ => event.dissipated_by_area.map_or_else(dash, loss),
     };
     vec![
         number.to_string(),

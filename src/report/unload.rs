@@ -188,6 +188,17 @@ impl EventReport {
     }
 }
 
+/// The two losses agree when they differ by at most this share of the loss.
+pub const LOSS_AGREEMENT: f64 = 1e-6;
+
+impl EventReport {
+    /// Whether the loss by area confirms the one by energy; `None` where a loss is not defined.
+    pub fn losses_agree(&self) -> Option<bool> {
+        let (energy, area) = self.dissipated.zip(self.dissipated_by_area)?;
+        Some((energy - area).abs() <= LOSS_AGREEMENT * energy.abs())
+    }
+}
+
 /// The word for a kind of event.
 pub fn kind_name(kind: EventKind) -> &'static str {
     match kind {

@@ -20,6 +20,9 @@ pub mod newton;
 pub mod rings;
 pub mod spectral;
 
+#[cfg(test)]
+pub(crate) mod examples;
+
 pub use caution::Caution;
 pub use functional::{Evaluation, Forms};
 pub use newton::{NewtonFailure, NewtonSettings, Solved, solve};

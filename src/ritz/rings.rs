@@ -224,17 +224,9 @@ impl Basis for Rings {
 
 #[cfg(test)]
 mod tests {
+    use super::super::examples::{check_derivatives, wavy};
     use super::*;
     use crate::contact::{Problem, Shape};
-
-    fn wavy(gamma: f64) -> Reduced {
-        Problem {
-            effective_modulus: 1.0,
-            work_of_adhesion: gamma,
-            shape: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
-        }
-        .reduced()
-    }
 
     #[test]
     fn the_pressure_matrix_is_symmetric_and_sums_to_the_full_disc() {
@@ -256,46 +248,13 @@ mod tests {
                 // Off the curve, on its tension side.
                 let s = 0.05 + 0.011 * f64::from(i);
                 let delta = rings.equilibrium(&problem, s).unwrap().approach - 0.003 * f64::from(i % 5 + 1);
-                let at = |s: f64, d: f64| rings.evaluate(&problem, s, d);
-                let here = at(s, delta);
-                let (es, ed) = (1e-6 * s, 1e-6);
-                let (s0, s1, d0, d1) =
-                    (at(s - es, delta), at(s + es, delta), at(s, delta - ed), at(s, delta + ed));
-                let by_s = |f: &dyn Fn(&Evaluation) -> f64| (f(&s1) - f(&s0)) / (2.0 * es);
-                let by_d = |f: &dyn Fn(&Evaluation) -> f64| (f(&d1) - f(&d0)) / (2.0 * ed);
-                let pairs = [
-                    (by_d(&|e| e.residual), here.residual_gradient[0]),
-                    (by_s(&|e| e.residual), here.residual_gradient[1]),
-                    (by_d(&|e| e.residual_gradient[0]), here.residual_second[0]),
-                    (by_s(&|e| e.residual_gradient[0]), here.residual_second[1]),
-                    (by_d(&|e| e.residual_gradient[1]), here.residual_second[1]),
-                    (by_s(&|e| e.residual_gradient[1]), here.residual_second[2]),
-                    (by_d(&|e| e.force), here.force_gradient[0]),
-                    (by_s(&|e| e.force), here.force_gradient[1]),
-                    (by_d(&|e| e.force_gradient[0]), here.force_second[0]),
-                    (by_s(&|e| e.force_gradient[0]), here.force_second[1]),
-                    (by_s(&|e| e.force_gradient[1]), here.force_second[2]),
-                ];
-                for (n, (difference, exact)) in pairs.into_iter().enumerate() {
-                    let size = exact.abs().max(here.residual_second[2].abs() * 1e-3).max(1e-3);
-                    assert!(
-                        (difference - exact).abs() < 2e-5 * size,
-                        "γ={gamma} s={s} #{n}: {difference} {exact}"
-                    );
-                }
-                let energy = |s: f64, d: f64| rings.energy(&problem, s, d);
-                let energy_slope = (energy(s, delta + ed) - energy(s, delta - ed)) / (2.0 * ed);
-                assert!(
-                    (energy_slope - here.force).abs() < 2e-5 * here.force.abs().max(1e-3),
-                    "γ={gamma} s={s}"
-                );
+                let (here, energy_slope) = check_derivatives(&rings, &problem, s, delta);
                 // ∂U/∂s = −F, and F follows from the residual.
                 let release = if gamma > 0.0 {
                     (here.residual + 1.0).powi(2) * gamma * 2.0 * PI * s
                 } else {
                     -here.residual
                 };
-                let energy_slope = (energy(s + es, delta) - energy(s - es, delta)) / (2.0 * es);
                 assert!((energy_slope - (release - 2.0 * PI * gamma * s)).abs() < 1e-7, "γ={gamma} s={s}");
             }
         }

@@ -357,17 +357,9 @@ impl Basis for Spectral {
 
 #[cfg(test)]
 mod tests {
+    use super::super::examples::{check_derivatives, wavy};
     use super::*;
     use crate::contact::{Problem, Shape};
-
-    fn wavy(gamma: f64) -> Reduced {
-        Problem {
-            effective_modulus: 1.0,
-            work_of_adhesion: gamma,
-            shape: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
-        }
-        .reduced()
-    }
 
     fn sphere(gamma: f64) -> Reduced {
         let shape = Shape::Sphere { radius_of_curvature: 1.0 };
@@ -409,39 +401,9 @@ mod tests {
                 // Off the curve on both sides: the residual is signed.
                 let s = 0.05 + 0.011 * f64::from(i);
                 let delta = basis.equilibrium(&problem, s).unwrap().approach + 0.003 * f64::from(i % 5 - 2);
-                let at = |s: f64, d: f64| basis.evaluate(&problem, s, d);
-                let here = at(s, delta);
-                let (es, ed) = (1e-6 * s, 1e-6);
-                let (s0, s1, d0, d1) =
-                    (at(s - es, delta), at(s + es, delta), at(s, delta - ed), at(s, delta + ed));
-                let by_s = |f: &dyn Fn(&Evaluation) -> f64| (f(&s1) - f(&s0)) / (2.0 * es);
-                let by_d = |f: &dyn Fn(&Evaluation) -> f64| (f(&d1) - f(&d0)) / (2.0 * ed);
-                let pairs = [
-                    (by_d(&|e| e.residual), here.residual_gradient[0]),
-                    (by_s(&|e| e.residual), here.residual_gradient[1]),
-                    (by_d(&|e| e.residual_gradient[0]), here.residual_second[0]),
-                    (by_s(&|e| e.residual_gradient[0]), here.residual_second[1]),
-                    (by_d(&|e| e.residual_gradient[1]), here.residual_second[1]),
-                    (by_s(&|e| e.residual_gradient[1]), here.residual_second[2]),
-                    (by_d(&|e| e.force), here.force_gradient[0]),
-                    (by_s(&|e| e.force), here.force_gradient[1]),
-                    (by_d(&|e| e.force_gradient[0]), here.force_second[0]),
-                    (by_s(&|e| e.force_gradient[0]), here.force_second[1]),
-                    (by_s(&|e| e.force_gradient[1]), here.force_second[2]),
-                ];
-                for (n, (difference, exact)) in pairs.into_iter().enumerate() {
-                    let size = exact.abs().max(here.residual_second[2].abs() * 1e-3).max(1e-3);
-                    assert!(
-                        (difference - exact).abs() < 2e-5 * size,
-                        "γ={gamma} s={s} #{n}: {difference} {exact}"
-                    );
-                }
-                let energy = |s: f64, d: f64| basis.energy(&problem, s, d);
-                let by_approach = (energy(s, delta + ed) - energy(s, delta - ed)) / (2.0 * ed);
-                let by_radius = (energy(s + es, delta) - energy(s - es, delta)) / (2.0 * es);
+                let (here, by_radius) = check_derivatives(&basis, &problem, s, delta);
                 // G follows from the residual, and ∂U/∂s = 2πs(G − γ).
                 let root = here.residual + gamma.sqrt();
-                assert!((by_approach - here.force).abs() < 1e-8, "γ={gamma} s={s}");
                 assert!((by_radius - TAU * s * (root * root - gamma)).abs() < 1e-7, "γ={gamma} s={s}");
                 // With tension at the edge or without, P_s = −2q: the two quadratures belong together.
                 let q = root * (TAU * s).sqrt();

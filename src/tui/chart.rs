@@ -4,6 +4,7 @@
 //! finite reaches the canvas, and bounds always ascend.
 
 use super::theme::Theme;
+use crate::report::number::{fixed, short};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
@@ -126,11 +127,7 @@ pub fn ticks([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
             let tick = if tick.abs() < 0.5 * step { 0.0 } else { tick };
             // Between 0 and 5, checked above.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let label = if plain {
-                format!("{tick:.*}", decimals as usize)
-            } else {
-                crate::report::number::short(tick, 3)
-            };
+            let label = if plain { fixed(tick, decimals as usize) } else { short(tick, 3) };
             (tick, label)
         })
         .collect()

@@ -2,7 +2,7 @@
 
 use super::{is_selected, panel};
 use crate::explorer::{EventSource, Model, Panel};
-use crate::report::number::{loss, significant};
+use crate::report::number::{fixed, loss, significant};
 use crate::report::unload::EventReport;
 use crate::tui::app::App;
 use ratatui::Frame;
@@ -127,7 +127,7 @@ fn heads(wide: bool) -> &'static str {
 fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
     let dash = || "-".to_owned();
     let after = event.after.as_ref();
-    let force = |p: f64| if critical > 0.0 { format!("{:.3}", p / critical) } else { significant(p, 3) };
+    let force = |p: f64| if critical > 0.0 { fixed(p / critical, 3) } else { significant(p, 3) };
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
     let crests = format!("{}>{}", crest(event.before.wave), crest(after.and_then(|a| a.wave)));
     let lost = event.dissipated.map_or_else(|| "no bound".to_owned(), loss);
@@ -143,10 +143,9 @@ fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String 
             event.kind,
         );
     }
-    let agreement = match (event.dissipated, event.dissipated_by_area) {
-        (Some(a), Some(b)) if (a - b).abs() <= 1e-6 * a.abs() => "agrees".to_owned(),
-        (Some(_), Some(b)) => loss(b),
-        _ => "dead load".to_owned(),
+    let agreement = match event.losses_agree() {
+        Some(true) => "agrees".to_owned(),
+        _ => event.dissipated_by_area.map_or_else(|| "dead load".to_owned(), loss),
     };
     format!(
         "{number:>2} {:<8} {:>9} {:>9} {:>9} {:>9} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {agreement}",

@@ -5,7 +5,7 @@ use crate::contact::{Control, Gap};
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::{Model, Panel};
 use crate::quasistatic::equilibrium::wave_index;
-use crate::report::number::{short, significant};
+use crate::report::number::{difference, fixed, short, significant};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
@@ -92,11 +92,10 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         last.extend(pair(theme, " crest ", &crest.to_string()));
     }
     last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
-    last.extend(pair(theme, " dig. ", &format!("{:.1}", node.digits)));
+    last.extend(pair(theme, " dig. ", &fixed(node.digits, 1)));
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
-    lines
-        .push(Line::from(pair(theme, " P off the exact by ", &format!("{:+.1e}", node.from_exact)).to_vec()));
+    lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
     lines
 }
 
