@@ -39,11 +39,17 @@ pub fn potential(control: Control, value: f64, state: &State) -> f64 {
 ///
 /// `None` for a pull-off under a dead load.
 pub fn loss(control: Control, value: f64, before: &State, after: Option<&State>) -> Option<f64> {
-    match (after, control) {
-        (Some(after), _) => Some(potential(control, value, before) - potential(control, value, after)),
-        (None, Control::Force) => None,
-        (None, _) => Some(potential(control, value, before)),
-    }
+    let Some(after) = after else {
+        return (control != Control::Force).then(|| potential(control, value, before));
+    };
+    // The device's part as a product: its energy can be a billion times the loss, and would cancel.
+    let given = before.approach - after.approach;
+    let device = match control {
+        Control::Displacement => 0.0,
+        Control::Force => -value * given,
+        Control::Stiffness(k) => -0.5 * k * given * (2.0 * value - before.approach - after.approach),
+    };
+    Some(before.energy - after.energy + device)
 }
 
 /// The energy lost in a jump as the area between the curve and the control line.
