@@ -60,6 +60,19 @@ pub trait Basis: Debug + Send + Sync {
     /// [`Spectral`] always has one.
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation>;
 
+    /// The equilibria at `radii`, one after the other, up to the first radius that has none.
+    ///
+    /// Shorter than `radii` there, and where `go_on`, asked before each radius, says no. A curve is made of these:
+    /// a basis that samples the gap for many radii at once answers faster than one by one.
+    fn equilibria(
+        &self,
+        problem: &Reduced,
+        radii: &[f64],
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<Evaluation> {
+        radii.iter().take_while(|_| go_on()).map_while(|&s| self.equilibrium(problem, s)).collect()
+    }
+
     /// The contact pressure as (r, p) pairs from the axis outward, compression positive.
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)>;
 
