@@ -471,16 +471,19 @@ fn any_consistent_units_give_the_same_reduced_answer() {
             0.5 * length
         ),
     );
-    let (ours, reduced) = (home.json(&["unload", &si]), home.json(&["unload", "fig-9"]));
-    assert_eq!(kinds(&ours), kinds(&reduced));
-    for (a, b) in events(&ours).iter().zip(events(&reduced)) {
-        let near = |pointer: &str, unit: f64| {
-            let (a, b) = (number(a, pointer) / unit, number(b, pointer));
-            assert!((a - b).abs() <= 1e-7 * b.abs(), "{pointer}: {a} {b}");
-        };
-        near("/before/contact_radius", length);
-        near("/before/force", modulus * length * length);
-        near("/dissipated", modulus * length.powi(3));
+    for kind in ["basis.kind=spectral", "basis.kind=rings"] {
+        let unload = |preset: &str| home.json(&["unload", preset, "--set", kind]);
+        let (ours, reduced) = (unload(&si), unload("fig-9"));
+        assert_eq!(kinds(&ours), kinds(&reduced));
+        for (a, b) in events(&ours).iter().zip(events(&reduced)) {
+            let near = |pointer: &str, unit: f64| {
+                let (a, b) = (number(a, pointer) / unit, number(b, pointer));
+                assert!((a - b).abs() <= 1e-7 * b.abs(), "{kind} {pointer}: {a} {b}");
+            };
+            near("/before/contact_radius", length);
+            near("/before/force", modulus * length * length);
+            near("/dissipated", modulus * length.powi(3));
+        }
     }
 }
 
@@ -556,7 +559,8 @@ fn a_preset_file_needs_only_its_required_keys() {
     let file = home.file("mine.toml", FILE);
     let document = home.json(&["unload", &file]);
     assert_eq!(kinds(&document), ["pull-off"]);
-    assert_eq!(document["problem"]["preset"]["basis"]["rings"], 200);
+    let basis = &document["problem"]["preset"]["basis"];
+    assert_eq!(*basis, serde_json::json!({"kind": "spectral", "functions": "auto"}));
     assert!((number(&document, "/problem/end_contact_radius") - 0.002).abs() < 1e-15);
     // Relative, without a slash: it is a file because it ends in .toml.
     assert_eq!(home.json(&["unload", "mine.toml"])["events"], document["events"]);

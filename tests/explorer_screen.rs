@@ -43,7 +43,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     pty.wait_for(|screen| screen.contains("Limit point 1/15: x jumps to crest 7"), "the limit point");
     assert!(line(&pty, " stable δ").contains("δ LIMIT"));
     pty.keys("x");
-    pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.212e-4"), "the landing");
+    pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.217e-4"), "the landing");
     assert!(line(&pty, "crest 7").contains("crest 7"));
 
     // Undo and redo move a cursor over what is kept.

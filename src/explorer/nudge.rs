@@ -79,8 +79,9 @@ mod tests {
     use super::*;
     use crate::preset::{parameter, read};
 
+    /// The paper's Fig. 9, in 200 rings.
     fn preset() -> Preset {
-        read("t", crate::preset::shipped::find("wavy-sphere").unwrap().text).unwrap()
+        read("t", crate::preset::shipped::find("fig-9").unwrap().text).unwrap()
     }
 
     #[test]
@@ -101,6 +102,11 @@ mod tests {
         let rings = parameter("basis.rings").unwrap();
         preset.set("basis.rings", Value::Integer(4)).unwrap();
         assert!(nudge(&preset, rings, false, Amount::Fine).unwrap_err().contains('4'));
+        let kind = parameter("basis.kind").unwrap();
+        let other = nudge(&preset, kind, true, Amount::Fine).unwrap();
+        assert_eq!(other.get("basis.functions"), Some("auto".into()));
+        let back = nudge(&other, kind, true, Amount::Fine).unwrap();
+        assert_eq!(back.get("basis.rings"), Some(Value::Integer(200)));
         let control = parameter("path.control").unwrap();
         let start = preset.get("path.control");
         for _ in 0..3 {

@@ -5,8 +5,8 @@
 use super::invalid::Invalid;
 use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
 use super::schema::{
-    Applies, Fallback, PARAMETERS, Parameter, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
-    parameter,
+    Applies, CHOOSERS, Fallback, PARAMETERS, Parameter, RADIUS_OVER_CURVATURE, START_KEYS,
+    START_OVER_CURVATURE, parameter,
 };
 use super::value::Value;
 use crate::contact::Start;
@@ -89,11 +89,20 @@ fn across(preset: &Preset) -> Vec<Invalid> {
 }
 
 /// The word of a choice, given or by default; `None` where it is missing or no word of the choice.
+///
+/// Where the choice has a default and is not given, a key that belongs to one word alone gives it: a file with
+/// nothing but `basis.rings` means rings.
 pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
     let row = parameter(chooser)?;
+    let implied = || {
+        values.keys().find_map(|key| match parameter(key)?.applies {
+            Applies::With { key, words: [word] } if key == chooser => Some(*word),
+            _ => None,
+        })
+    };
     let word = match (values.get(chooser), row.fallback) {
         (Some(value), _) => value.clone(),
-        (None, Fallback::Text(word)) => word.into(),
+        (None, Fallback::Text(word)) => implied().unwrap_or(word).into(),
         (None, _) => return None,
     };
     row.check(word).ok().map(|word| word.to_string())
@@ -131,8 +140,8 @@ impl Given<'_> {
 
     fn basis(&mut self) -> BasisSpec {
         let count = |n: i64| usize::try_from(n).unwrap_or_default();
-        match self.text("basis.kind").as_str() {
-            "spectral" => BasisSpec::Spectral {
+        match chosen(self.values, CHOOSERS[1]).as_deref() {
+            Some("spectral") => BasisSpec::Spectral {
                 functions: match self.value("basis.functions") {
                     Some(Value::Integer(n)) => Functions::Count(count(n)),
                     _ => Functions::Auto,
@@ -226,10 +235,26 @@ mod tests {
             ("gap.radius_of_curvature", 3.0.into()),
         ]))
         .unwrap();
-        assert_eq!(preset.basis, BasisSpec::Rings { rings: 200 });
+        assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
         assert_eq!(preset.path.control, Control::Displacement);
         assert_eq!(preset.path.start, Start::ContactRadius(1.5));
         assert_eq!(preset.path.end_contact_radius, None);
+    }
+
+    #[test]
+    fn a_count_alone_says_which_basis_is_meant() {
+        let sphere = [
+            ("material.effective_modulus", 2.0.into()),
+            ("material.work_of_adhesion", 0.0.into()),
+            ("gap.shape", "sphere".into()),
+            ("gap.radius_of_curvature", 3.0.into()),
+        ];
+        let with =
+            |key, value: Value| build(&values(&[&sphere[..], &[(key, value)]].concat())).map(|p| p.basis);
+        assert_eq!(with("basis.rings", 70.into()), Ok(BasisSpec::Rings { rings: 70 }));
+        assert_eq!(with("basis.kind", "rings".into()), Ok(BasisSpec::Rings { rings: 200 }));
+        let functions = Functions::Count(48);
+        assert_eq!(with("basis.functions", 48.into()), Ok(BasisSpec::Spectral { functions }));
     }
 
     #[test]

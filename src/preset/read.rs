@@ -408,7 +408,7 @@ end_contact_radius = 0.002
     fn material_and_gap_are_enough() {
         let end = WAVY.find("[basis]").unwrap();
         let preset = read("w.toml", &WAVY[..end]).unwrap();
-        assert_eq!(preset.basis, BasisSpec::Rings { rings: 200 });
+        assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
         assert_eq!(preset.path.start, Start::ContactRadius(0.5));
     }
 

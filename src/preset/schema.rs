@@ -191,7 +191,7 @@ pub static PARAMETERS: &[Parameter] = &[
         meaning: "functions in which the contact pressure is sought",
         dimension: "",
         kind: Kind::Choice(&["rings", "spectral"]),
-        fallback: Fallback::Text("rings"),
+        fallback: Fallback::Text("spectral"),
         applies: Applies::Always,
     },
     Parameter {
