@@ -1,0 +1,78 @@
+//! Opening, saving and exporting: what is asked, and what becomes of the answers.
+
+use super::values::want_curve;
+use super::{open, tell};
+use crate::explorer::driver::Effect;
+use crate::explorer::files::{Document, Done, Job};
+use crate::explorer::model::{Level, Model, Question};
+use crate::preset::{Overwrite, Source};
+
+pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
+    if let Source::Shipped(_) = model.source {
+        tell(model, Level::Error, "shipped presets are read-only: S saves under a name of your own");
+        return Vec::new();
+    }
+    let overwrite = model.fingerprint.map_or(Overwrite::Never, Overwrite::IfUnchanged);
+    save(model, overwrite)
+}
+
+pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
+    let (source, preset) = (model.source.clone(), Box::new(model.preset.clone()));
+    vec![file(Job::Save { source, preset, overwrite })]
+}
+
+pub(super) fn export(model: &mut Model, what: Document, path: String, replace: bool) -> Vec<Effect> {
+    let Some(curve) = model.curve.clone() else {
+        tell(model, Level::Error, "there is no curve to export yet");
+        return Vec::new();
+    };
+    let ending = std::path::Path::new(&path).extension().and_then(|ending| ending.to_str());
+    if !ending.is_some_and(|ending| ["csv", "json"].iter().any(|known| known.eq_ignore_ascii_case(ending))) {
+        tell(model, Level::Error, "the file must end in .csv or .json");
+        return Vec::new();
+    }
+    let walk = model.history.path().into_iter().map(|(_, node)| node.clone()).collect();
+    let events = model.shown_events();
+    vec![file(Job::Export { what, curve, walk, events, path, replace })]
+}
+
+pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
+    match done {
+        Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Opened(loaded) => {
+            let (mut opened, effects) = open(*loaded);
+            // Request numbers go on, so that late replies to the old session are recognised; so do the views.
+            opened.next_request = model.next_request + 1;
+            opened.curve_shown = model.next_request;
+            (opened.axes, opened.smooth, opened.chart) = (model.axes, model.smooth, model.chart);
+            (opened.panel, opened.events) = (model.panel, model.events);
+            *model = opened;
+            drop(effects);
+            let effect = want_curve(model);
+            return vec![effect];
+        }
+        Done::Saved { source, fingerprint, preset } => {
+            tell(model, Level::Info, format!("saved as {}", source.shown()));
+            (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
+        }
+        Done::Conflict => {
+            model.question = Some(Question::SaveAnyway);
+            tell(model, Level::Error, "the file was changed by somebody else since it was read: not saved");
+        }
+        Done::NameTaken(name) => {
+            tell(model, Level::Error, format!("a preset called {name} exists: not saved"));
+            model.question = Some(Question::ReplacePreset(name));
+        }
+        Done::Exported(path) => tell(model, Level::Info, format!("exported to {path}")),
+        Done::FileExists(what, path) => {
+            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.question = Some(Question::ReplaceFile(what, path));
+        }
+        Done::Failed(reason) => tell(model, Level::Error, reason),
+    }
+    Vec::new()
+}
+
+pub(super) fn file(job: Job) -> Effect {
+    Effect::File(Box::new(job))
+}

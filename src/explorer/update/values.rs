@@ -1,0 +1,117 @@
+//! Values changed, and the curve that follows from them.
+
+use super::walk::{begin_walk, stop, walk};
+use super::{number, tell};
+use crate::explorer::curve::CurveData;
+use crate::explorer::driver::Effect;
+use crate::explorer::history::NodeKind;
+use crate::explorer::model::{Level, Model};
+use crate::explorer::nudge::{Amount, next_control, nudge};
+use crate::explorer::walk::Action;
+use crate::preset::Preset;
+use std::sync::Arc;
+
+pub(super) fn want_curve(model: &mut Model) -> Effect {
+    let id = number(model);
+    model.curve_wanted = id;
+    Effect::Curve { id, preset: Box::new(model.preset.clone()) }
+}
+
+pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveData>, String>) -> Vec<Effect> {
+    if id <= model.curve_shown {
+        return Vec::new();
+    }
+    model.curve_shown = id;
+    match result {
+        Err(reason) => {
+            tell(model, Level::Error, format!("no curve for these values: {reason}"));
+            model.curve_error = Some(reason);
+            Vec::new()
+        }
+        Ok(curve) => {
+            model.curve_error = None;
+            let first = model.history.current().is_none();
+            model.curve = Some(Arc::clone(&curve));
+            model.event = model.event.min(model.shown_events().len().saturating_sub(1));
+            if first {
+                begin_walk(model, &curve);
+                return Vec::new();
+            }
+            let Some(node) = model.history.current() else { return Vec::new() };
+            if model.is_on_curve(node) || node.is_apart() || model.walking.is_some() {
+                return Vec::new();
+            }
+            let state = node.state.in_units(node.setting.case.units());
+            walk(model, Action::Solve { state })
+        }
+    }
+}
+
+/// The parameters of the walker's state, where the curve on the screen has others.
+pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
+    let Some(node) = model.history.current() else { return Vec::new() };
+    if model.is_on_curve(node) || matches!(node.kind, NodeKind::Stale(_)) {
+        return Vec::new();
+    }
+    take_back(model)
+}
+
+/// The parameters of the walker's state instead of those typed since.
+pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
+    let Some(node) = model.history.current() else { return Vec::new() };
+    let mut preset = node.setting.preset.clone();
+    preset.title.clone_from(&model.preset.title);
+    preset.path.control = model.preset.path.control;
+    change(model, preset)
+}
+
+/// Takes a changed preset and asks for its curve.
+fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
+    if preset == model.preset {
+        return Vec::new();
+    }
+    let same_problem = {
+        let mut old = model.preset.clone();
+        old.title.clone_from(&preset.title);
+        old == preset
+    };
+    model.preset = preset;
+    if same_problem {
+        return Vec::new();
+    }
+    let knobs = model.knobs().len();
+    model.parameter = model.parameter.min(knobs.saturating_sub(1));
+    let mut effects = stop(model);
+    effects.push(want_curve(model));
+    effects
+}
+
+pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
+    let Some((row, _)) = model.selected_knob() else { return Vec::new() };
+    match nudge(&model.preset, row, up, amount) {
+        Ok(preset) => change(model, preset),
+        Err(reason) => {
+            tell(model, Level::Error, reason);
+            Vec::new()
+        }
+    }
+}
+
+pub(super) fn set(model: &mut Model, key: &'static str, text: &str) -> Vec<Effect> {
+    let Some(row) = crate::preset::parameter(key) else { return Vec::new() };
+    let mut preset = model.preset.clone();
+    let result = row.parse(text).and_then(|value| preset.set(key, value));
+    match result {
+        Ok(()) => change(model, preset),
+        Err(invalid) => {
+            tell(model, Level::Error, invalid.to_string());
+            Vec::new()
+        }
+    }
+}
+
+pub(super) fn change_control(model: &mut Model) -> Vec<Effect> {
+    let mut preset = model.preset.clone();
+    preset.path.control = next_control(&model.preset, preset.path.control, true);
+    change(model, preset)
+}

@@ -1,0 +1,178 @@
+//! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
+
+use super::values::adopt_parameters;
+use super::{number, tell};
+use crate::explorer::curve::CurveData;
+use crate::explorer::driver::Effect;
+use crate::explorer::history::{History, Node, NodeKind};
+use crate::explorer::model::{LENGTHS, Level, Model};
+use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
+use std::sync::Arc;
+
+/// Walks waiting behind the one that runs; more key presses than these are a held key.
+const QUEUE: usize = 1000;
+
+pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
+    if model.walking.is_some() {
+        if model.queue.len() < QUEUE {
+            model.queue.push_back(action);
+        }
+        return Vec::new();
+    }
+    let Some(curve) = model.curve.clone() else {
+        tell(model, Level::Info, "the curve is being computed");
+        return Vec::new();
+    };
+    let control = curve.setting.case.control;
+    let moves = matches!(action, Action::MoveTo(_) | Action::MoveToLimit(_) | Action::Solve { .. });
+    let node = model.history.current();
+    if !moves {
+        if node.is_some_and(Node::is_apart) {
+            tell(model, Level::Error, "the bodies are apart: u goes back, 0 restarts");
+            return Vec::new();
+        }
+        if let Some(node) = node.filter(|node| !model.is_on_curve(node)) {
+            if model.is_computing() {
+                tell(model, Level::Info, "the curve is being computed");
+                return Vec::new();
+            }
+            let stale = matches!(node.kind, NodeKind::Stale(_));
+            if stale {
+                tell(
+                    model,
+                    Level::Error,
+                    "this state is not solved for the values as they are: u goes back, 0 restarts",
+                );
+                return Vec::new();
+            }
+        }
+    }
+    let on_limit = node.is_some_and(|node| node.is_limit(control));
+    let from = node.map(|node| node.point.clone());
+    let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
+    let id = number(model);
+    model.walking = Some(id);
+    // From an unstable start the edge runs outward, as at the beginning of an unloading.
+    let inward = model.inward && !(begins && action == Action::Jump);
+    let length = model.length;
+    vec![Effect::Walk(Box::new(Request { id, action, curve, from, on_limit, control, inward, length }))]
+}
+
+pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
+    if model.walking != Some(id) {
+        return Vec::new();
+    }
+    let Some(curve) = model.curve.clone() else { return Vec::new() };
+    for state in made {
+        append(model, &curve, state);
+    }
+    let Some(outcome) = outcome else { return Vec::new() };
+    model.walking = None;
+    match outcome {
+        Outcome::Done => {}
+        Outcome::AtLimit => {
+            // A held key stops at the limit point; pressing it again goes on.
+            model.queue.retain(|action| !matches!(action, Action::Steps(_)));
+        }
+        Outcome::Stopped(reason) => {
+            model.queue.clear();
+            let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
+            if unsolved {
+                mark_stale(model, &reason);
+            }
+            tell(model, Level::Error, reason);
+        }
+    }
+    // The problem may have changed while the walk ran.
+    let outdated = model
+        .history
+        .current()
+        .filter(|node| {
+            !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
+        })
+        .map(|node| node.state.in_units(node.setting.case.units()));
+    if let (Some(state), false) = (outdated, model.is_computing()) {
+        model.queue.clear();
+        return walk(model, Action::Solve { state });
+    }
+    match model.queue.pop_front() {
+        Some(next) => walk(model, next),
+        None => Vec::new(),
+    }
+}
+
+fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
+    let step = model.history.current().map_or(0, |node| node.step + 1);
+    let step = if state.begins { 0 } else { step };
+    let solved = state.kind == NodeKind::Solved;
+    let again = model
+        .history
+        .current()
+        .is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
+    let node = Node {
+        parent: None,
+        kind: state.kind,
+        setting: Arc::clone(&curve.setting),
+        control: curve.setting.case.control,
+        point: state.point,
+        state: state.state,
+        step,
+        digits: state.digits,
+        from_exact: state.from_exact,
+        begins: state.begins,
+    };
+    // A knob turned further is one change: the states in between are kept, but undo leads before them.
+    if solved && again { model.history.push_beside(node) } else { model.history.push(node) }
+}
+
+/// A state that could not be solved for the new values stays, marked, with the reason.
+fn mark_stale(model: &mut Model, reason: &str) {
+    let Some(node) = model.history.current().cloned() else { return };
+    let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
+    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step: node.step + 1, begins: false, ..node };
+    if again { model.history.push_beside(stale) } else { model.history.push(stale) }
+}
+
+pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
+    model.queue.clear();
+    model.walking.map(Effect::StopWalk).into_iter().collect()
+}
+
+pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
+    model.queue.clear();
+    model.inward = true;
+    let start = model.curve.as_ref().map(|curve| curve.setting.case.start);
+    start.map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
+}
+
+pub(super) fn scale_length(model: &mut Model, by: f64) {
+    model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
+}
+
+/// Undo and redo: the parameters of the node come back with it.
+pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Effect> {
+    let mut effects = stop(model);
+    model.walking = None;
+    if go(&mut model.history) {
+        effects.extend(adopt_parameters(model));
+    }
+    effects
+}
+
+pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
+    let Some(point) = curve.curve.branch.points.first().cloned() else { return };
+    let state = curve.setting.equilibrium.state(&point);
+    let control = curve.setting.case.control;
+    model.history.push(Node {
+        parent: None,
+        kind: NodeKind::Start,
+        setting: Arc::clone(&curve.setting),
+        control,
+        point,
+        state,
+        step: 0,
+        digits: curve.digits,
+        from_exact: from_exact(&curve.setting.case, &state),
+        begins: true,
+    });
+}

@@ -1,0 +1,108 @@
+//! What the status line says.
+
+use crate::explorer::command::Id;
+use crate::explorer::history::{Node, NodeKind};
+use crate::explorer::model::Model;
+use crate::quasistatic::EventKind;
+use crate::report::number::{loss, significant};
+use crate::report::unload::control_name;
+
+/// Why a command cannot be done now.
+pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
+    let apart = model.history.current().is_some_and(Node::is_apart);
+    match id {
+        Id::Undo => "this is the start: there is nothing to undo",
+        Id::Redo => "there is nothing to redo",
+        Id::Jump if apart => "the bodies are apart: u goes back, 0 restarts",
+        Id::Jump => "the state is stable: the edge stays; n runs to the next limit point",
+        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
+            "select a parameter first: Tab goes to the Problem panel"
+        }
+        _ => "the curve is being computed",
+    }
+}
+
+/// What the state is and which key is next.
+pub fn hint(model: &Model) -> String {
+    if let Some(error) = &model.curve_error {
+        return format!("no curve for these values: {error}");
+    }
+    let Some(node) = model.history.current() else {
+        return "computing the equilibrium curve".to_owned();
+    };
+    if model.walking.is_some() {
+        return "walking; Esc stops".to_owned();
+    }
+    if let NodeKind::Stale(reason) = &node.kind {
+        return format!("not solved: {reason}");
+    }
+    if model.is_computing() {
+        return "computing the curve for the new values".to_owned();
+    }
+    let Some(control) = model.control() else { return String::new() };
+    if let NodeKind::Jump(event) = &node.kind {
+        let units = node.setting.case.units();
+        let lost = event.dissipated.map(|lost| format!(", lost {}", loss(lost * units.energy)));
+        return match event.kind {
+            EventKind::PullOff => {
+                format!(
+                    "Pulled off: the bodies are apart{}. u goes back, 0 restarts",
+                    lost.unwrap_or_default()
+                )
+            }
+            EventKind::Snap => {
+                format!(
+                    "Landed, stable again{}. n runs to the next limit point, u undoes",
+                    lost.unwrap_or_default()
+                )
+            }
+        };
+    }
+    if let Some(at) = model.limit_number() {
+        return limit_hint(model, at);
+    }
+    let way = if model.inward { "inward" } else { "outward" };
+    let held = control_name(control);
+    if node.is_limit(control) {
+        return "Limit point outside the curve: x lets the edge run, Space goes on along it".to_owned();
+    }
+    match (node.stability().under(control), &node.kind) {
+        (true, NodeKind::Start) => {
+            format!("Start, stable under {held} control. n runs to a limit point, ? helps")
+        }
+        (true, NodeKind::Solved) => {
+            format!("Solved again at the {held} held, stable. n runs to a limit point")
+        }
+        (true, _) => format!("Stable under {held} control. Space steps {way}, n runs to a limit point"),
+        (false, NodeKind::Start | NodeKind::Moved) => {
+            format!("This start is unstable under {held} control: x lets the edge run outward")
+        }
+        (false, NodeKind::Solved) => {
+            format!("Solved again at the {held} held, unstable there: x lets the edge run")
+        }
+        (false, _) => format!("Unstable under {held} control. x lets the edge run, Space steps {way}"),
+    }
+}
+
+fn limit_hint(model: &Model, at: usize) -> String {
+    let Some(curve) = &model.curve else { return String::new() };
+    let count = curve.limits.len();
+    let events = curve.unloading.as_ref().ok().map(|u| u.events.as_slice()).unwrap_or_default();
+    let s = curve.curve.equilibrium.contact_radius(&curve.limits[at].point);
+    let event = events.iter().position(|e| (e.before.contact_radius - s).abs() <= 1e-7 * s);
+    let report = event.and_then(|i| curve.report.as_ref()?.events.get(i));
+    match report {
+        Some(report) => {
+            let lands = match (report.after, report.after.and_then(|a| a.wave)) {
+                (None, _) => "pulls off".to_owned(),
+                (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
+                (Some(after), None) => format!("jumps to s {}", significant(after.contact_radius, 4)),
+            };
+            let lost = report.dissipated.map_or_else(String::new, |lost| format!(" (loses {})", loss(lost)));
+            format!("Limit point {}/{count}: x {lands}{lost}, Space goes on unstable", at + 1)
+        }
+        None => {
+            format!("Limit point {}/{count}: x lets the edge run, Space goes on along the curve", at + 1)
+        }
+    }
+}
