@@ -5,6 +5,7 @@
 //! | [`caution`] | what to be careful about in a basis' answers |
 //! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
+//! | [`outside`] | the displacement of the surface outside the contact |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
 //! | [`spectral`] | eigenfunctions of the half-space operator, exact to rounding |
@@ -17,6 +18,7 @@ pub mod caution;
 pub mod functional;
 pub mod kernel;
 pub mod newton;
+pub mod outside;
 pub mod rings;
 pub mod spectral;
 
@@ -75,6 +77,18 @@ pub trait Basis: Debug + Send + Sync {
 
     /// The contact pressure as (r, p) pairs from the axis outward, compression positive.
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)>;
+
+    /// The contact pressure as [`Basis::pressure`], at points that make a picture: finite, and dense towards the edge.
+    ///
+    /// Rings have one value each, the pressure being a step function: those at mid-ring are given.
+    fn pressure_profile(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
+        self.pressure(problem, s, delta)
+    }
+
+    /// The displacement u of the surface at `radii`, none below `s`, by the pressures at (s, δ); positive as δ is.
+    ///
+    /// The deformed gap there is h(r) + u(r) − δ, see [`outside`].
+    fn outside_displacement(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64>;
 
     /// The number of unknown pressures.
     fn size(&self) -> usize;

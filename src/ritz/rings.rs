@@ -18,6 +18,7 @@ use super::Basis;
 use super::caution::Caution;
 use super::functional::{Evaluation, Forms};
 use super::kernel::disc_interaction;
+use super::outside;
 use crate::contact::{Gap, Reduced};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::f64::consts::PI;
@@ -124,6 +125,12 @@ impl Rings {
         self.factor.l_dirty().solve_lower_triangular_unchecked_mut(columns);
     }
 
+    /// The pressure on each ring.
+    fn ring_pressures(&self, gap: &dyn Gap, s: f64, delta: f64) -> DVector<f64> {
+        let gap: Vec<f64> = self.nodes.iter().map(|&x| gap.jet(s * x).value - delta).collect();
+        self.factor.solve(&DVector::from_vec(self.ring_integrals(|j| gap[j]))) / -s
+    }
+
     /// The forms of `gap` at radius `s`.
     fn forms(&self, gap: &dyn Gap, s: f64) -> Forms {
         let samples: Vec<[f64; 4]> = self
@@ -186,13 +193,20 @@ impl Basis for Rings {
     }
 
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
-        let gap: Vec<f64> = self.nodes.iter().map(|&x| problem.gap.jet(s * x).value - delta).collect();
-        let load = DVector::from_vec(self.ring_integrals(|j| gap[j]));
-        let p = self.factor.solve(&load);
-        self.nodes
-            .windows(2)
-            .zip(p.iter())
-            .map(|(edge, &p)| (0.5 * s * (edge[0] + edge[1]), -p / s))
+        let pressures = self.ring_pressures(problem.gap.as_ref(), s, delta);
+        let middles = self.nodes.windows(2).map(|edge| 0.5 * s * (edge[0] + edge[1]));
+        middles.zip(pressures.iter().copied()).collect()
+    }
+
+    fn outside_displacement(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
+        let pressures = self.ring_pressures(problem.gap.as_ref(), s, delta);
+        // A ring's pressure up to its outer edge, less what the next one has.
+        let inward = |j: usize| pressures[j] - pressures.get(j + 1).copied().unwrap_or(0.0);
+        let discs: Vec<(f64, f64)> =
+            self.nodes[1..].iter().enumerate().map(|(j, edge)| (s * edge, inward(j))).collect();
+        radii
+            .iter()
+            .map(|&r| discs.iter().map(|&(edge, step)| step * outside::by_disc(edge.min(r), r)).sum())
             .collect()
     }
 

@@ -34,6 +34,7 @@
 use super::Basis;
 use super::caution::Caution;
 use super::functional::Evaluation;
+use super::outside;
 use crate::contact::{Gap, Reduced};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -55,6 +56,10 @@ const EDGE_ROUNDING: f64 = 1e-3;
 /// The amplitude of the last terms of the energy, relative to the largest, at which an automatic number of functions is enough: a decade
 /// above the rounding of the coefficients, and far below what a screen or a file's reader can use.
 pub const TAIL_TOLERANCE: f64 = 1e-12;
+
+/// Points of a picture of the pressure per wave, and the fewest and most of them.
+const PICTURE_POINTS_PER_WAVE: f64 = 20.0;
+const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 
 /// The coefficients that count as the tail: two, in case one of them passes through zero.
 const TAIL: usize = 2;
@@ -334,6 +339,22 @@ impl Basis for Spectral {
         let radii: Vec<f64> = self.disc.iter().rev().map(|node| node.radius).collect();
         let pressure = self.pressure_at(problem, s, delta, &radii);
         radii.iter().map(|r| s * r).zip(pressure).collect()
+    }
+
+    fn pressure_profile(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
+        let waves = problem.gap.feature_length().map_or(0.0, |wave| s / wave);
+        let [least, most] = PICTURE_POINTS;
+        let points = (PICTURE_POINTS_PER_WAVE * waves).clamp(least, most).ceil();
+        // r̃ = sin θ: evenly spaced near the axis and, as t = cos θ, near the edge too, which itself is left out.
+        let angles = std::iter::successors(Some(0.0), |j| Some(j + 1.0)).take_while(|j| *j < points);
+        let radii: Vec<f64> = angles.map(|j| (FRAC_PI_2 * j / points).sin()).collect();
+        let pressure = self.pressure_at(problem, s, delta, &radii);
+        radii.iter().map(|r| s * r).zip(pressure).collect()
+    }
+
+    fn outside_displacement(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
+        let coefficients = self.coefficients(problem.gap.as_ref(), s, delta);
+        radii.iter().map(|r| outside::by_eigenfunctions(&coefficients, r / s)).collect()
     }
 
     fn size(&self) -> usize {
