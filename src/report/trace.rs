@@ -139,8 +139,17 @@ impl TraceReport {
     #[must_use]
     pub fn beside(mut self, exact: &Exact) -> Self {
         let radii: Vec<f64> = self.points.iter().map(|point| point.contact_radius).collect();
+        let mut unresolved = 0;
         for (point, exact) in self.points.iter_mut().zip(exact.curve(&radii)) {
+            unresolved += usize::from(!exact.resolved);
             point.exact = Some(ExactReport::new(point.force, &exact));
+        }
+        if unresolved > 0 {
+            self.warnings.push(format!(
+                "the integrals of the exact solution are not resolved at {unresolved} of {} points: its waves are too \
+                 many, and its digits there uncertain",
+                self.points.len()
+            ));
         }
         self
     }

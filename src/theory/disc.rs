@@ -16,11 +16,11 @@
 //! Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141. The formulas
 //! hold for one connected disc; whether the gap outside stays open is not asked here.
 
-use super::quadrature::integrate;
+use super::quadrature::{Integral, integrate};
 use std::f64::consts::{PI, TAU};
 
 /// The Abel transform of a gap at one radius.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
     /// g, a length: the approach at which the disc would have this radius without adhesion.
     pub value: f64,
@@ -28,6 +28,9 @@ pub struct Transform {
     pub slope: f64,
     /// M₁ = ∫₀ᵃ a g' da, an area.
     pub moment: f64,
+    /// Whether the three are good to rounding: closed forms are, a quadrature that met structure of the gap too fine
+    /// for it is not.
+    pub resolved: bool,
 }
 
 /// One exact equilibrium, in the units of the disc.
@@ -45,6 +48,9 @@ pub struct Equilibrium {
     ///
     /// What an error of P is fairly measured by: P itself passes through zero.
     pub force_scale: f64,
+    /// Whether every integral behind it was [resolved](super::quadrature::Integral::resolved), so that all is good to
+    /// rounding.
+    pub resolved: bool,
 }
 
 /// One connected contact disc: what a gap, E* and γ say about it.
@@ -83,8 +89,8 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
 
     /// U(s).
     fn energy(&self, s: f64) -> f64 {
-        let rise = self.rise(0.0, s);
-        self.equilibrium(s, rise).energy
+        let [square] = self.rise(0.0, s).values;
+        self.equilibrium(s, square).energy
     }
 
     /// dδ/ds and dP/ds along the curve.
@@ -95,25 +101,26 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     }
 
     /// The pressure p(r), compression positive, in a disc of radius `s` at `0 ≤ r < s`.
+    ///
+    /// Its integral has the waves of g', which the transform of the gap has resolved where it says so.
     fn pressure(&self, s: f64, r: f64) -> f64 {
         let depth = ((s - r) * (s + r)).sqrt();
         // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
-        let [pressed] = integrate(0.0, depth, self.wave(), |t| {
+        let pressed = integrate(0.0, depth, self.wave(), |t| {
             let a = r.hypot(t);
             [self.transform(a).slope / a]
         });
-        self.effective_modulus() / PI * (pressed - self.edge(s) / depth)
+        self.effective_modulus() / PI * (pressed.values[0] - self.edge(s) / depth)
     }
 
     /// M₂ at `to` less M₂ at `from`.
-    fn rise(&self, from: f64, to: f64) -> f64 {
+    fn rise(&self, from: f64, to: f64) -> Integral<1> {
         // A product of two waves has waves of half the length.
         let wave = self.wave().map(|wave| 0.5 * wave);
-        let [rise] = integrate(from, to, wave, |a| {
+        integrate(from, to, wave, |a| {
             let g = self.transform(a);
             [2.0 * g.slope * g.moment]
-        });
-        rise
+        })
     }
 
     /// The equilibrium at `s`, M₂ there known.
@@ -126,6 +133,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
             force: 2.0 * modulus * (g.moment - s * edge),
             energy: modulus * (square - 2.0 * edge * g.moment) + PI * self.work_of_adhesion() * s * s,
             force_scale: 2.0 * modulus * g.moment.abs().max(s * edge),
+            resolved: g.resolved,
         }
     }
 
@@ -133,13 +141,19 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     fn curve(&self, radii: &[f64]) -> Vec<Equilibrium> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&i, &j| radii[i].total_cmp(&radii[j]));
-        let mut squares = vec![0.0; radii.len()];
-        let (mut at, mut square) = (0.0, 0.0);
+        let mut squares = vec![(0.0, true); radii.len()];
+        let (mut at, mut square, mut resolved) = (0.0, 0.0, true);
         for i in order {
-            square += self.rise(at, radii[i]);
+            let rise = self.rise(at, radii[i]);
+            square += rise.values[0];
+            resolved &= rise.resolved;
             at = radii[i];
-            squares[i] = square;
+            squares[i] = (square, resolved);
         }
-        radii.iter().zip(squares).map(|(&s, square)| self.equilibrium(s, square)).collect()
+        let state = |(&s, (square, resolved))| {
+            let state = self.equilibrium(s, square);
+            Equilibrium { resolved: resolved && state.resolved, ..state }
+        };
+        radii.iter().zip(squares).map(state).collect()
     }
 }

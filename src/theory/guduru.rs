@@ -61,6 +61,7 @@ impl Disc for Guduru {
             value: a * a / radius + wave * a * h0,
             slope: 2.0 * a / radius + wave * (h0 + q * (FRAC_2_PI - h1)),
             moment: 2.0 * a.powi(3) / (3.0 * radius) + wave * a * a * (h0 - ratio),
+            resolved: true,
         }
     }
 }

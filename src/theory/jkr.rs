@@ -10,6 +10,7 @@
 //! Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141.
 
 use super::disc::{Disc, Transform};
+use super::quadrature::Integral;
 use std::f64::consts::PI;
 
 /// A smooth adhesive sphere.
@@ -74,12 +75,18 @@ impl Disc for Jkr {
 
     fn transform(&self, a: f64) -> Transform {
         let radius = self.radius_of_curvature;
-        Transform { value: a * a / radius, slope: 2.0 * a / radius, moment: 2.0 * a.powi(3) / (3.0 * radius) }
+        Transform {
+            value: a * a / radius,
+            slope: 2.0 * a / radius,
+            moment: 2.0 * a.powi(3) / (3.0 * radius),
+            resolved: true,
+        }
     }
 
     /// M₂ = 8s⁵/(15R²).
-    fn rise(&self, from: f64, to: f64) -> f64 {
-        8.0 / 15.0 * (to.powi(5) - from.powi(5)) / self.radius_of_curvature.powi(2)
+    fn rise(&self, from: f64, to: f64) -> Integral<1> {
+        let rise = 8.0 / 15.0 * (to.powi(5) - from.powi(5)) / self.radius_of_curvature.powi(2);
+        Integral { values: [rise], resolved: true }
     }
 }
 

@@ -17,7 +17,7 @@ pub const TOLERANCE: f64 = 2e-14;
 /// Panels at the start at most; a wave so short that more were wanted is left to the halving.
 const STARTED: f64 = 4096.0;
 
-/// Panels of one integral at most: what is not resolved then stays as good as it is.
+/// Panels of one integral at most: what is not resolved then stays as good as it is, and says so.
 const PANELS: usize = 1 << 15;
 
 /// A node on (−1, 1), its weight, and its weights in the last two Legendre coefficients.
@@ -71,16 +71,26 @@ impl<const K: usize> Panel<K> {
     }
 }
 
+/// `K` integrals over one interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Integral<const K: usize> {
+    /// The integrals.
+    pub values: [f64; K],
+    /// Whether every panel met [`TOLERANCE`]. If not, the integrand has structure too fine for the panels, or is no
+    /// number, and the values are only as good as the last panels.
+    pub resolved: bool,
+}
+
 /// The integrals from `from` to `to` of the `K` values of `f`, which has waves of the length `wave` there.
 ///
-/// The error is about 1e-14 of the integrals of |f|. An integrand with endless fine structure is given up at a fixed
-/// number of panels and returned as good as it is then.
+/// The error is about 1e-14 of the integrals of |f| where they are [resolved](Integral::resolved). An integrand with
+/// endless fine structure is given up at a fixed number of panels.
 pub fn integrate<const K: usize>(
     from: f64,
     to: f64,
     wave: Option<f64>,
     mut f: impl FnMut(f64) -> [f64; K],
-) -> [f64; K] {
+) -> Integral<K> {
     let waves = wave.map_or(1.0, |wave| ((to - from).abs() / wave).clamp(1.0, STARTED)).ceil();
     let width = (to - from) / waves;
     let mut panels: Vec<Panel<K>> = Vec::new();
@@ -91,14 +101,15 @@ pub fn integrate<const K: usize>(
         index += 1.0;
     }
     let scale: [f64; K] = std::array::from_fn(|k| panels.iter().map(|p| p.absolute[k]).sum());
-    let mut sum = [0.0; K];
+    let mut integral = Integral { values: [0.0; K], resolved: true };
     let mut made = panels.len();
     while let Some(panel) = panels.pop() {
         let resolved = (0..K).all(|k| panel.tail[k] <= TOLERANCE * scale[k]);
         let middle = 0.5 * (panel.from + panel.to);
         let halves = panel.from.min(panel.to) < middle && middle < panel.from.max(panel.to);
         if resolved || made >= PANELS || !halves {
-            for (sum, part) in sum.iter_mut().zip(panel.integral) {
+            integral.resolved &= resolved;
+            for (sum, part) in integral.values.iter_mut().zip(panel.integral) {
                 *sum += part;
             }
             continue;
@@ -107,33 +118,41 @@ pub fn integrate<const K: usize>(
         panels.push(Panel::new(panel.from, middle, &mut f));
         panels.push(Panel::new(middle, panel.to, &mut f));
     }
-    sum
+    integral
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn smooth_wavy_and_kinked_integrands() {
-        let [exp, one] = integrate(0.0, 1.0, None, |x: f64| [x.exp(), 1.0]);
-        assert!((exp - 1f64.exp_m1()).abs() < 4e-15 && (one - 1.0).abs() < 4e-15);
-        for wave in [Some(0.01), None] {
-            let [square] =
-                integrate(0.0, 1.0, wave, |x: f64| [(std::f64::consts::TAU * 100.0 * x).sin().powi(2)]);
-            assert!((square - 0.5).abs() < 1e-14, "{square}");
-        }
-        let [kink] = integrate(0.0, 1.0, None, |x: f64| [(x - 0.3).abs()]);
-        assert!((kink - 0.29).abs() < 1e-13, "{kink}");
-        let [back] = integrate(1.0, 0.0, Some(0.1), |x: f64| [x * x]);
-        assert!((back + 1.0 / 3.0).abs() < 1e-15);
+    /// An integral that must be resolved.
+    fn resolved(from: f64, to: f64, wave: Option<f64>, f: impl Fn(f64) -> f64) -> f64 {
+        let Integral { values: [value], resolved } = integrate(from, to, wave, |x| [f(x)]);
+        assert!(resolved);
+        value
     }
 
     #[test]
-    fn noise_and_nan_end() {
-        let [noise] = integrate(0.0, 1.0, None, |x: f64| [(1e9 * x).sin()]);
-        assert!(noise.is_finite());
-        let [nan] = integrate(0.0, 1.0, Some(1e-300), |_| [f64::NAN]);
-        assert!(nan.is_nan());
+    fn smooth_wavy_and_kinked_integrands() {
+        assert!((resolved(0.0, 1.0, None, f64::exp) - 1f64.exp_m1()).abs() < 4e-15);
+        assert!((resolved(0.0, 1.0, None, |_| 1.0) - 1.0).abs() < 4e-15);
+        for wave in [Some(0.01), None] {
+            let square = resolved(0.0, 1.0, wave, |x| (std::f64::consts::TAU * 100.0 * x).sin().powi(2));
+            assert!((square - 0.5).abs() < 1e-14, "{square}");
+        }
+        let kink = resolved(0.0, 1.0, None, |x| (x - 0.3).abs());
+        assert!((kink - 0.29).abs() < 1e-13, "{kink}");
+        assert!((resolved(1.0, 0.0, Some(0.1), |x| x * x) + 1.0 / 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn noise_and_nan_end_and_say_so() {
+        let noise = integrate(0.0, 1.0, None, |x: f64| [(1e9 * x).sin()]);
+        assert!(noise.values[0].is_finite() && !noise.resolved);
+        let nan = integrate(0.0, 1.0, Some(1e-300), |_| [f64::NAN]);
+        assert!(nan.values[0].is_nan() && !nan.resolved);
+        // The jump of a step cannot be halved away, but its panel becomes negligible.
+        let step = resolved(0.0, 1.0, None, |x| if x < 0.3 { 0.0 } else { 1.0 });
+        assert!((step - 0.7).abs() < 1e-13);
     }
 }

@@ -10,7 +10,7 @@
 //! doi:10.1016/0020-7225(65)90019-4.
 
 use super::disc::{Disc, Transform};
-use super::quadrature::integrate;
+use super::quadrature::{Integral, integrate};
 use crate::contact::Gap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -46,12 +46,13 @@ impl Disc for Sneddon {
     fn transform(&self, a: f64) -> Transform {
         // Near θ = 0 a wave spans λ/a of θ.
         let wave = self.wave().map(|wave| wave / a);
-        let [value, slope, moment] = integrate(0.0, FRAC_PI_2, wave, |theta| {
-            let sin = theta.sin();
-            let r = a * sin;
-            let h = self.gap.jet(r);
-            [h.first, h.first + r * h.second, h.first * sin * sin]
-        });
-        Transform { value: a * value, slope, moment: a * a * moment }
+        let Integral { values: [value, slope, moment], resolved } =
+            integrate(0.0, FRAC_PI_2, wave, |theta| {
+                let sin = theta.sin();
+                let r = a * sin;
+                let h = self.gap.jet(r);
+                [h.first, h.first + r * h.second, h.first * sin * sin]
+            });
+        Transform { value: a * value, slope, moment: a * a * moment, resolved }
     }
 }
