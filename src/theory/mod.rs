@@ -13,7 +13,9 @@
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
 //! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
 //! | [`exact`] | the best of these for a problem |
+//! | [`unloading`] | the quasi-static path of an exact disc: limit points, landings, losses |
 //! | [`quadrature`] | integrals to rounding: Gauss-Legendre panels that halve where they must |
+//! | [`root`] | a root by halving |
 //!
 //! Any consistent units.
 
@@ -24,8 +26,10 @@ pub mod hertz;
 pub mod jkr;
 pub mod kesari_lew;
 pub mod quadrature;
+pub mod root;
 pub mod sneddon;
 pub mod struve;
+pub mod unloading;
 
 pub use disc::{Disc, Equilibrium};
 pub use exact::Exact;
