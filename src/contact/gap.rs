@@ -17,6 +17,11 @@ pub struct Jet {
     pub third: f64,
 }
 
+impl Jet {
+    /// What a gap answers where it is not known.
+    pub const UNKNOWN: Self = Self { value: f64::NAN, first: f64::NAN, second: f64::NAN, third: f64::NAN };
+}
+
 /// An axisymmetric initial gap h(r) between the undeformed bodies, with h(0) = 0.
 pub trait Gap: Debug + Send + Sync {
     /// The gap and its derivatives at the radius `r ≥ 0`.
@@ -29,6 +34,13 @@ pub trait Gap: Debug + Send + Sync {
 
     /// The length by which the problem is reduced (the radius of curvature, where there is one).
     fn reference_length(&self) -> f64;
+
+    /// The radius beyond which the gap is not known, or `None` when it is known everywhere.
+    ///
+    /// Jets beyond it are NaN throughout, so that nothing computed from them can pass for a result.
+    fn largest_radius(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// A gap measured in another length: h̃(r̃) = h(L r̃)/L.
@@ -59,6 +71,10 @@ impl<G: Gap> Gap for Scaled<G> {
     fn reference_length(&self) -> f64 {
         self.gap.reference_length() / self.length
     }
+
+    fn largest_radius(&self) -> Option<f64> {
+        self.gap.largest_radius().map(|r| r / self.length)
+    }
 }
 
 impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
@@ -72,5 +88,9 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
 
     fn reference_length(&self) -> f64 {
         (**self).reference_length()
+    }
+
+    fn largest_radius(&self) -> Option<f64> {
+        (**self).largest_radius()
     }
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`gap`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
 //! | [`shape`] | the gap shapes a person can choose |
+//! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
 //! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
@@ -14,6 +15,7 @@ pub mod gap;
 pub mod groups;
 pub mod problem;
 pub mod shape;
+pub mod shapes;
 pub mod start;
 
 pub use control::Control;

@@ -9,6 +9,9 @@
 //! | [`jkr`] | a smooth sphere with adhesion, eq. (22) with its misprints corrected |
 //! | [`disc`] | δ, P, U, their slopes and the pressure of one connected disc, from the transform of its gap |
 //! | [`sneddon`] | any gap: the transform by quadrature |
+//! | [`sphere`] | the sphere itself: the transform in closed form |
+//! | [`power_law`] | c rⁿ, the cone included: the transform in closed form |
+//! | [`harmonics`] | a paraboloid with any sum of waves: the transform in closed form |
 //! | [`guduru`] | the wavy sphere: the transform in closed form |
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
 //! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
@@ -22,12 +25,15 @@
 pub mod disc;
 pub mod exact;
 pub mod guduru;
+pub mod harmonics;
 pub mod hertz;
 pub mod jkr;
 pub mod kesari_lew;
+pub mod power_law;
 pub mod quadrature;
 pub mod root;
 pub mod sneddon;
+pub mod sphere;
 pub mod struve;
 pub mod unloading;
 

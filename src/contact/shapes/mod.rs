@@ -1,0 +1,27 @@
+//! The gaps, one file each: formula, units, source, and the derivatives as exact as the gap itself.
+//!
+//! | file | h(r) |
+//! |---|---|
+//! | [`exact_sphere`] | R − √(R² − r²), known up to R |
+//! | [`power_law`] | c rⁿ; n = 1 is the cone |
+//! | [`harmonics`] | r²/(2R) and any sum of cosines |
+//! | [`random_waves`] | r²/(2R) and cosines drawn from a power law with a seed |
+//! | [`profile`] | a curve through measured rows, by the spline of [`spline`] |
+//! | [`split_mix`] | the random numbers of all this, the same on every machine |
+
+pub mod exact_sphere;
+pub mod harmonics;
+pub mod power_law;
+pub mod profile;
+pub mod random_waves;
+pub mod spline;
+pub mod split_mix;
+
+pub use exact_sphere::ExactSphere;
+pub use harmonics::{Harmonic, Harmonics};
+pub use power_law::PowerLaw;
+pub use profile::{Profile, Smoothing};
+pub use random_waves::RandomWaves;
+
+#[cfg(test)]
+mod examples;
