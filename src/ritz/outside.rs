@@ -7,10 +7,10 @@
 //! ```
 //!
 //! The Carlson form (Carlson, Numer. Algorithms 10, 13 (1995), doi:10.1007/BF02198293) has no difference in it, and
-//! a pressure constant on rings is a sum of discs, Σ (p_j − p_{j+1}) over the outer edges, so that no thin ring is
+//! a pressure constant on rings is a sum of discs, `Σ (p_j − p_{j+1})` over the outer edges, so that no thin ring is
 //! ever the difference of two nearly equal discs.
 //!
-//! The eigenfunctions P_2k(t)/t of the module [`spectral`](super::spectral) are a layer on a flattened spheroid. Outside
+//! The eigenfunctions `P_2k(t)/t` of the module [`spectral`](super::spectral) are a layer on a flattened spheroid. Outside
 //! the disc, with ζ = √((r/s)² − 1), each decays like the Legendre function of the second kind of its degree (P. M.
 //! Morse and H. Feshbach, *Methods of Theoretical Physics*, 1953, sec. 10.3),
 //!
@@ -19,14 +19,14 @@
 //! n q_{n−1} = (2n+1) ζ q_n + (n+1) q_{n+1}
 //! ```
 //!
-//! which equals (2/π)∫₀^s (δ − g(a))/√(r² − a²) da for the δ − g(a) = Σ (−1)ᵏ (d_k/a_k) P_2k(a/s) of the same pressure, and
-//! meets δ − h(s) at the edge. q_n decays with its degree, so the recurrence is run downwards, where every term is
+//! which equals (2/π)∫₀^s (δ − g(a))/√(r² − a²) da for the `δ − g(a) = Σ (−1)ᵏ (d_k/a_k) P_2k(a/s)` of the same pressure, and
+//! meets δ − h(s) at the edge. `q_n` decays with its degree, so the recurrence is run downwards, where every term is
 //! positive, except so near to the edge that running upwards loses nothing.
 
 use ellip::elliprd;
 use std::f64::consts::{FRAC_2_PI, PI};
 
-/// Degree times η, with q_n ~ e^{−nη}, up to which the recurrence runs upwards: rounding grows by e² at most.
+/// Degree times η, with `q_n ~ e^{−nη}`, up to which the recurrence runs upwards: rounding grows by e² at most.
 const UPWARDS_BELOW: f64 = 1.0;
 
 /// The exponent below which a term counts for nothing: e⁻⁴⁰ is far below rounding.
@@ -115,13 +115,14 @@ mod tests {
             let [e, f] = integrate(0.0, FRAC_PI_2, None, |x| {
                 let root = (1.0 - (k * x.sin()).powi(2)).sqrt();
                 [root, root.recip()]
-            });
+            })
+            .values;
             let exact = 4.0 / PI * (e - (1.0 - k * k) * f);
             assert!((by_disc(k, 1.0) / exact - 1.0).abs() < 1e-13, "{k}");
         }
     }
 
-    /// P_2k(x).
+    /// `P_2k(x)`.
     fn legendre(k: usize, x: f64) -> f64 {
         let (mut before, mut here) = (1.0, x);
         for n in 1..2 * k {
@@ -142,7 +143,8 @@ mod tests {
                 let wave = (k > 0).then(|| PI / (ratio * k as f64));
                 let end = 1f64.atan2(((ratio - 1.0) * (ratio + 1.0)).sqrt());
                 let [sum] =
-                    integrate(0.0, end, wave, |psi| [legendre(k, (ratio * psi.sin()).min(1.0)) / edge]);
+                    integrate(0.0, end, wave, |psi| [legendre(k, (ratio * psi.sin()).min(1.0)) / edge])
+                        .values;
                 let ours = by_eigenfunctions(&coefficients, ratio);
                 // The quadrature sums terms as large as 1/a_k.
                 let exact = FRAC_2_PI * sum;
@@ -190,7 +192,8 @@ mod tests {
                     let wave = exact.wave().map(|wave| wave / r);
                     let [sum] = integrate(0.0, (s / r).min(1.0).asin(), wave, |psi| {
                         [delta - exact.transform(r * psi.sin()).value]
-                    });
+                    })
+                    .values;
                     assert!((u - FRAC_2_PI * sum).abs() <= 1e-11 * s * s, "γ={gamma} s={s} r={r}");
                 }
             }
