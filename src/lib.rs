@@ -17,7 +17,7 @@
 //! | 4 | [`report`] | the one serializable form of a trace and an unloading: JSON, CSV, table |
 //! | 3 | [`case`] | a preset made ready for the engine |
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
-//! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, landings, losses, the unloading |
+//! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, losses, the unloading; profiles, landscapes, admissibility |
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
 //! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |

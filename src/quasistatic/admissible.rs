@@ -1,0 +1,319 @@
+//! Whether a state is possible: the bodies must stay apart outside the contact.
+//!
+//! The method assumes one connected disc. Once solved, the deformed gap
+//!
+//! ```text
+//! w(r) = h(r) + u(r) − δ,   r > s
+//! ```
+//!
+//! must not be negative: where it is, the next crest would already touch, and the state cannot be reached as computed. A
+//! gap that opens at the edge and is positive far away is negative somewhere only if a minimum of it is, so the minima are
+//! looked for, near the crests of h. Without adhesion the pressure inside must not be negative either.
+//!
+//! Far out a crest cannot be reached: u is no lower than (2/π) asin(s/r) times the least δ − g(a) inside (see
+//! [`disc`](crate::theory::disc)), which is −√(2πγs) but for the waves of g. The search ends where h stays above δ by
+//! that and a margin for the waves.
+
+use super::curve::Curve;
+use super::equilibrium::wave_index;
+use crate::contact::{Gap, Reduced};
+use crate::ritz::Basis;
+use std::f64::consts::TAU;
+
+/// The search for crests ends at this multiple of s or this many waves outside the edge, whichever is more.
+const FARTHEST: f64 = 4.0;
+const FARTHEST_WAVES: f64 = 3.0;
+
+/// Steps per wave: a parabola through three of them sees every crest.
+const STEPS_PER_WAVE: f64 = 8.0;
+/// Steps in the first wave outside the edge, where the gap has a root at the edge: even in √(r − s).
+const STEPS_AT_EDGE: f64 = 16.0;
+/// Steps from the edge to the end of the search for a gap without waves.
+const STEPS_WITHOUT_WAVES: f64 = 24.0;
+/// Crests are searched while h is not above δ by this many times √(2πγs) and this share of g(s): for the waves of g.
+const MARGIN: [f64; 2] = [2.0, 0.5];
+/// A gap counts as negative below this share of the lengths whose difference it is: rounding and truncation.
+const ROUNDING: f64 = 1e-9;
+/// A pressure counts as negative below this share of the largest: the truncation of a basis at the free edge.
+const PRESSURE_ROUNDING: f64 = 1e-6;
+/// Halvings for the ends of an interval: 1e-6 of a step and better.
+const HALVINGS: usize = 20;
+
+/// A place outside the contact at which the bodies come near.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crest {
+    /// r, where the deformed gap has a minimum.
+    pub radius: f64,
+    /// The gap there, negative where the bodies would overlap.
+    pub gap: f64,
+    /// Which crest of the waves it is; `None` without waves.
+    pub wave: Option<u64>,
+}
+
+/// What a state must satisfy beyond equilibrium, in reduced units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Admissibility {
+    /// The nearest crest outside; `None` where the gap only grows.
+    pub nearest: Option<Crest>,
+    /// The least pressure inside and its radius, without adhesion only: adhesion may pull.
+    pub least_pressure: Option<(f64, f64)>,
+    /// Whether the bodies stay apart outside and, without adhesion, nothing pulls inside.
+    pub holds: bool,
+}
+
+/// Neighbouring states of a curve that are not admissible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// The largest contact radius.
+    pub from: f64,
+    /// The smallest contact radius.
+    pub to: f64,
+    /// The crest that overlaps most among the points of the curve; `None` where only the pressure is at fault.
+    pub crest: Option<Crest>,
+}
+
+impl Admissibility {
+    /// The admissibility of the state (s, δ).
+    pub fn of(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Self {
+        let nearest = nearest_crest(problem, basis, s, delta);
+        let edge = problem.gap.jet(s).value;
+        let size = delta.abs() + edge.abs() + opening(problem, s);
+        let apart = nearest.is_none_or(|crest| crest.gap >= -ROUNDING * size);
+        if problem.work_of_adhesion > 0.0 {
+            return Self { nearest, least_pressure: None, holds: apart };
+        }
+        let pressure = basis.pressure_profile(problem, s, delta);
+        let most = pressure.iter().fold(0.0_f64, |most, (_, p)| most.max(p.abs()));
+        let least = pressure.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        let pressed = least.is_none_or(|(_, p)| p >= -PRESSURE_ROUNDING * most);
+        Self { nearest, least_pressure: least, holds: apart && pressed }
+    }
+}
+
+/// √(2πγs): by how much adhesion lowers the edge.
+fn opening(problem: &Reduced, s: f64) -> f64 {
+    (TAU * problem.work_of_adhesion * s).sqrt()
+}
+
+/// The states of `curve` that are not admissible, from its start inward, their ends located on the curve.
+pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
+    let equilibrium = &curve.equilibrium;
+    let (problem, basis) = (&equilibrium.problem, equilibrium.basis.as_ref());
+    let explicit = |s: f64| {
+        let delta = basis.equilibrium(problem, s)?.approach;
+        Some(Admissibility::of(problem, basis, s, delta))
+    };
+    // The end of an interval between an admissible radius and one that is not.
+    let end = |mut good: f64, mut bad: f64| {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (good + bad);
+            match explicit(middle) {
+                Some(found) if found.holds => good = middle,
+                _ => bad = middle,
+            }
+        }
+        bad
+    };
+    let mut found: Vec<Overlap> = Vec::new();
+    let mut open = false;
+    let mut last: Option<f64> = None;
+    for point in &curve.branch.points {
+        let [delta, _, s] = equilibrium.quantities(&point.y);
+        let here = Admissibility::of(problem, basis, s, delta);
+        match (here.holds, found.last_mut().filter(|_| open)) {
+            (true, Some(overlap)) => overlap.to = end(s, overlap.to),
+            (false, Some(overlap)) => {
+                overlap.to = s;
+                let gap = |crest: Option<Crest>| crest.map_or(f64::INFINITY, |crest| crest.gap);
+                if gap(here.nearest) < gap(overlap.crest) {
+                    overlap.crest = here.nearest;
+                }
+            }
+            (false, None) => {
+                let from = last.map_or(s, |good| end(good, s));
+                found.push(Overlap { from, to: s, crest: here.nearest.filter(|crest| crest.gap < 0.0) });
+            }
+            (true, None) => {}
+        }
+        open = !here.holds;
+        last = Some(s);
+    }
+    found
+}
+
+/// The minimum of the deformed gap outside that is smallest; `None` where the gap only grows.
+pub fn nearest_crest(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Option<Crest> {
+    let wave = problem.gap.feature_length();
+    let mut radii = radii(s, wave);
+    let h: Vec<f64> = radii.iter().map(|&r| problem.gap.jet(r).value).collect();
+    let opening = opening(problem, s);
+    let reach = delta + MARGIN[0] * opening + MARGIN[1] * (delta + opening).abs();
+    // One step more, so that a minimum at the last radius within reach has two neighbours.
+    let within = h.iter().rposition(|&h| h < reach).map_or(0, |at| at + 2).min(radii.len());
+    radii.truncate(within);
+    let gaps = |radii: &[f64]| -> Vec<f64> {
+        let u = basis.outside_displacement(problem, s, delta, radii);
+        radii.iter().zip(u).map(|(&r, u)| problem.gap.jet(r).value - delta + u).collect()
+    };
+    let w = if radii.len() < 3 { return None } else { gaps(&radii) };
+    let minima = radii.windows(3).zip(w.windows(3)).filter(|(_, w)| w[1] <= w[0] && w[1] <= w[2]);
+    let vertices = minima.map(|(r, w)| vertex([r[0], r[1], r[2]], [w[0], w[1], w[2]]));
+    let (mut radius, mut gap, mut width) = vertices.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    // A parabola narrowed twice is at the minimum to about 1e-8 of a wave, and its value to rounding.
+    for _ in 0..2 {
+        width *= 0.1;
+        let near = [(radius - width).max(s), radius, radius + width];
+        let w = gaps(&near);
+        let [Some(&a), Some(&b), Some(&c)] = [w.first(), w.get(1), w.get(2)] else { return None };
+        let (r, w, _) = vertex(near, [a, b, c]);
+        (radius, gap) = (r, w);
+    }
+    Some(Crest { radius, gap, wave: wave_index(radius, wave) })
+}
+
+/// Where the parabola through three points is smallest, its value, and half their width.
+fn vertex([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> (f64, f64, f64) {
+    let (left, right) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
+    let bend = (right - left) / (c - a);
+    let slope = left + bend * (b - a);
+    let width = 0.5 * (c - a);
+    if bend.is_nan() || bend <= 0.0 {
+        return (b, fb, width);
+    }
+    // Not beyond the three: they bracket the minimum, or nearly do.
+    let step = (-0.5 * slope / bend).clamp(a - b, c - b);
+    (b + step, fb + (slope + bend * step) * step, width)
+}
+
+/// How far out crests are looked for at most.
+pub(super) fn farthest(s: f64, wave: Option<f64>) -> f64 {
+    (FARTHEST * s).max(s + FARTHEST_WAVES * wave.unwrap_or(0.0))
+}
+
+/// The radii of the search, from `s` outward.
+fn radii(s: f64, wave: Option<f64>) -> Vec<f64> {
+    let end = farthest(s, wave);
+    let (first, count, step) = match wave {
+        Some(wave) => (wave.min(end - s), STEPS_AT_EDGE, wave / STEPS_PER_WAVE),
+        None => (end - s, STEPS_WITHOUT_WAVES, end),
+    };
+    let graded = std::iter::successors(Some(0.0), |j| Some(j + 1.0))
+        .take_while(|j| *j <= count)
+        .map(|j| s + first * (j / count).powi(2));
+    let even = std::iter::successors(Some(s + first + step), |r| Some(r + step)).take_while(|r| *r <= end);
+    graded.chain(even).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Problem, Shape};
+    use crate::ritz::{Rings, Spectral};
+    use crate::theory::Exact;
+    use crate::theory::quadrature::integrate;
+    use std::f64::consts::FRAC_2_PI;
+    use std::sync::Arc;
+
+    fn wavy(amplitude: f64, wavelength: f64, gamma: f64) -> Problem {
+        let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength };
+        Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }
+    }
+
+    fn at(problem: &Reduced, basis: &dyn Basis, s: f64) -> Admissibility {
+        Admissibility::of(problem, basis, s, basis.equilibrium(problem, s).unwrap().approach)
+    }
+
+    /// The least gap from `s` to far outside among many radii, from the exact solution by quadrature.
+    fn exact_least(problem: &Problem, s: f64) -> f64 {
+        let exact = Exact::of(problem);
+        let delta = exact.approach(s);
+        let gap = |r: f64| {
+            let wave = exact.wave().map(|wave| wave / r);
+            let transform = |psi: f64| [delta - exact.transform(r * psi.sin()).value];
+            let [sum] = integrate(0.0, (s / r).asin(), wave, transform).values;
+            problem.shape.jet(r).value + FRAC_2_PI * sum - delta
+        };
+        (1..=400).map(|j| s + 0.2 * (f64::from(j) / 400.0).powi(2)).map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn counts_of_inadmissible_states() {
+        for (amplitude, wavelength, gamma, count) in [
+            (0.001, 0.1, 0.05 / TAU, 0),
+            (0.0025, 0.05, 0.025 / TAU, 0),
+            (0.0025, 0.05, 1e-4, 26),
+            (0.01, 0.1, 2e-3, 12),
+            (0.01, 0.1, 1e-4, 54),
+        ] {
+            let problem = wavy(amplitude, wavelength, gamma).reduced();
+            let spectral = Spectral::resolving(&problem, 0.5).unwrap();
+            let rings = Rings::shared(100).unwrap();
+            for (basis, slack) in [(&spectral as &dyn Basis, 0), (rings.as_ref(), 2)] {
+                let radii = (0..97).map(|i| 0.02 + 0.005 * f64::from(i));
+                let found = radii.filter(|&s| !at(&problem, basis, s).holds).count();
+                assert!(found.abs_diff(count) <= slack, "{amplitude} {wavelength} {gamma}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_exact_gap_agrees() {
+        for (problem, step) in [(wavy(0.0025, 0.05, 1e-4), 7), (wavy(0.01, 0.1, 2e-3), 5)] {
+            let reduced = problem.reduced();
+            let spectral = Spectral::resolving(&reduced, 0.5).unwrap();
+            let mut seen = [0, 0];
+            for i in (0..97).step_by(step) {
+                let s = 0.02 + 0.005 * f64::from(i);
+                let (ours, exact) = (at(&reduced, &spectral, s), exact_least(&problem, s));
+                assert_eq!(ours.holds, exact >= 0.0, "{s}: {ours:?} {exact}");
+                seen[usize::from(ours.holds)] += 1;
+                if exact < 0.0 {
+                    // Ours is the minimum itself, the other the least of some radii near it.
+                    let gap = ours.nearest.unwrap().gap;
+                    assert!(gap <= exact + 1e-12 && exact - gap < 1e-5, "{s}: {gap} {exact}");
+                }
+            }
+            assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_curve_says_where_it_is_inadmissible_and_at_which_crest() {
+        let problem = wavy(0.0025, 0.05, 1e-4).reduced();
+        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, 0.5).unwrap());
+        let curve = Curve::swept(problem.clone(), Arc::clone(&basis), 0.5, 0.04, || true).unwrap();
+        let found = overlaps(&curve);
+        // One below each crest from the tenth to the second: the edge is between it and the last trough.
+        let crests: Vec<u64> = found.iter().filter_map(|overlap| overlap.crest?.wave).collect();
+        assert_eq!(crests, [10, 9, 8, 7, 6, 5, 4, 3, 2]);
+        for overlap in &found {
+            let holds = |s: f64| at(&problem, basis.as_ref(), s).holds;
+            let (out, inward) = (1.0 + 2e-6, 1.0 - 2e-6);
+            assert!(holds(overlap.from * out) && !holds(overlap.from * inward), "{overlap:?}");
+            assert!(!holds(overlap.to * out) && holds(overlap.to * inward), "{overlap:?}");
+        }
+        // Every state of the figures of the paper is possible.
+        let problem = wavy(0.0025, 0.05, 0.025 / TAU).reduced();
+        let curve = Curve::swept(problem, basis, 0.5, 0.02, || true).unwrap();
+        assert_eq!(overlaps(&curve), []);
+    }
+
+    #[test]
+    fn without_adhesion_the_gap_must_rise() {
+        // λ²/(AR) below and above 8.5761: a connected disc of every radius, or not.
+        for (amplitude, possible) in [(0.0, true), (0.0002, true), (0.0025, false)] {
+            let problem = wavy(amplitude, 0.05, 0.0).reduced();
+            let spectral = Spectral::resolving(&problem, 0.5).unwrap();
+            for i in 0..40 {
+                let s = 0.021 + 0.01 * f64::from(i);
+                let found = at(&problem, &spectral, s);
+                assert_eq!(found.holds, possible, "{amplitude} {s}: {found:?}");
+                assert!(found.least_pressure.is_some());
+            }
+        }
+        assert_eq!(
+            at(&wavy(0.0, 0.05, 0.004).reduced(), &Spectral::new(8).unwrap(), 0.2).least_pressure,
+            None
+        );
+    }
+}
