@@ -72,6 +72,15 @@ impl Nodes {
         self.land(curve, inside - 1, inside, value, &mut Work::default())
     }
 
+    /// All states at which the control takes `value`, from the outermost inward.
+    pub fn crossings(&self, curve: &Curve, value: f64) -> Vec<Point> {
+        let above = |k: usize| self.value(k) > value;
+        (1..self.points.len())
+            .filter(|&k| above(k - 1) != above(k))
+            .filter_map(|k| self.land(curve, k - 1, k, value, &mut Work::default()))
+            .collect()
+    }
+
     /// The state between two nodes at which the control takes `value`.
     fn land(&self, curve: &Curve, from: usize, to: usize, value: f64, work: &mut Work) -> Option<Point> {
         let settings = super::curve::settings(&curve.equilibrium);

@@ -7,6 +7,7 @@
 //! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
 //! | [`jump`] | where the edge lands when it runs at constant control |
 //! | [`energy`] | what a jump dissipates, computed twice |
+//! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
 //! | [`profile`] | one state across the radius: pressure inside, deformed gap outside |
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
 //! | [`unload`] | the whole unloading: snaps, pull-off, losses |
@@ -18,6 +19,7 @@ pub mod curve;
 pub mod energy;
 pub mod equilibrium;
 pub mod jump;
+pub mod landscape;
 pub mod profile;
 pub mod start;
 pub mod unload;
@@ -25,6 +27,7 @@ pub mod unload;
 pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Limit, Turn};
 pub use equilibrium::{Equilibrium, Scales, Stability, State};
+pub use landscape::Landscape;
 pub use profile::Profile;
 pub use start::StartError;
 pub use unload::{Event, EventKind, PathStop, Unloading};
