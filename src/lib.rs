@@ -14,7 +14,8 @@
 //! | 6 | [`cli`] | the door: command line, one file per subcommand, exit codes |
 //! | 5 | `tui` | the terminal: guard, keys, layout, charts, one file per screen region (feature `tui`) |
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers |
-//! | 4 | [`report`] | the one serializable form of a trace and an unloading: JSON, CSV, table |
+//! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |
+//! | 4 | [`verify`] | our numbers against theory: convergence, extreme values, instabilities, losses, work |
 //! | 3 | [`case`] | a preset made ready for the engine |
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, losses, the unloading; profiles, landscapes, admissibility |
@@ -32,7 +33,7 @@
 //! | (11), (18) coefficients W, (13)-(15) the scaled mesh | [`ritz::rings`] |
 //! | (20), (23) gaps | [`contact::shape`] |
 //! | (21) Hertz, (22) JKR | [`theory::hertz`], [`theory::jkr`] |
-//! | the exact solution for (23) and any other gap | [`theory::guduru`], [`theory::sneddon`], [`theory::disc`] |
+//! | the exact solution for (23) and any other gap | [`theory::guduru`], [`theory::sneddon`], [`theory::disc`], [`theory::unloading`] |
 //! | spherical arc length | [`continuation::corrector`], [`continuation::step`] |
 //! | Fig. 10, jumps and dissipation | [`quasistatic::jump`], [`quasistatic::energy`] |
 //!
@@ -62,3 +63,4 @@ pub mod ritz;
 pub mod theory;
 #[cfg(feature = "tui")]
 pub mod tui;
+pub mod verify;

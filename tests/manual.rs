@@ -63,7 +63,7 @@ fn the_generated_parts_of_the_readme_are_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
     let readme = std::fs::read_to_string(&path).unwrap();
     let mut current = replaced(&readme, "key table", "key table", &key_table());
-    for command in ["unload wavy-sphere", "presets list"] {
+    for command in ["unload wavy-sphere", "verify --only uniform", "presets list"] {
         let text = fenced(&output(&command.split(' ').collect::<Vec<_>>()));
         current = replaced(&current, &format!("output: {command}"), "output", &text);
     }

@@ -37,6 +37,9 @@ pub enum Failure {
     /// A computation that stopped before its end; what it has was written.
     #[error("{0}")]
     Incomplete(String),
+    /// Numbers that are not what theory says; the comparison was written.
+    #[error("{0}")]
+    Disagreement(String),
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),

@@ -15,6 +15,7 @@ mod output;
 mod presets;
 mod trace;
 mod unload;
+mod verify;
 
 pub use failure::Failure;
 
@@ -41,6 +42,8 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Check this program's numbers against theory
+    Verify(verify::Arguments),
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
@@ -93,6 +96,7 @@ pub fn run() -> ExitCode {
         None => explore::run(cli.preset.as_ref()),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Presets(command)) => presets::run(command),
     };
     match result {

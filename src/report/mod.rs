@@ -1,13 +1,14 @@
-//! What is reported: the one serializable form of a trace and of an unloading.
+//! What is reported: the one serializable form of a trace, of an unloading and of a verification.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`number`] | how numbers are written for people |
-//! | [`problem`] | the problem both documents carry |
+//! | [`problem`] | the problem that a trace and an unloading carry |
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`unload`] | the unloading as a document |
+//! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
-//! | [`table`] | the unloading as text for a terminal |
+//! | [`table`] | an unloading and a verification as text for a terminal |
 //!
 //! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
 //! read the same documents.
@@ -18,12 +19,14 @@ pub mod rows;
 pub mod table;
 pub mod trace;
 pub mod unload;
+pub mod verify;
 
 pub use problem::ProblemReport;
 pub use trace::TraceReport;
 pub use unload::UnloadReport;
+pub use verify::VerifyReport;
 
-/// The version of both documents.
+/// The version of all documents.
 pub const SCHEMA: u32 = 1;
 
 /// A document as indented JSON with a line end.

@@ -1,11 +1,12 @@
-//! The unloading as text for a terminal.
+//! An unloading and a verification as text for a terminal.
 
-use super::number::{loss, short, significant};
+use super::number::{difference, loss, short, significant};
 use super::unload::{EventReport, UnloadReport};
+use super::verify::{RowReport, VerifyReport};
 use std::fmt::Write;
 
-/// Aligns cells in columns, the first left and the others right.
-fn aligned(rows: &[Vec<String>]) -> String {
+/// Aligns cells in columns, the first `left` of them left and the others right; a line for each row.
+fn aligned(rows: &[Vec<String>], left: usize) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width =
         |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();
@@ -16,8 +17,11 @@ fn aligned(rows: &[Vec<String>]) -> String {
         for (column, cell) in row.iter().enumerate() {
             let width = widths[column];
             // Writing to a String cannot fail.
-            let _ =
-                if column < 2 { write!(line, "{cell:<width$}  ") } else { write!(line, "{cell:>width$}  ") };
+            let _ = if column < left {
+                write!(line, "{cell:<width$}  ")
+            } else {
+                write!(line, "{cell:>width$}  ")
+            };
         }
         text.push_str(line.trim_end());
         text.push('\n');
@@ -45,7 +49,7 @@ pub fn unload(report: &UnloadReport) -> String {
     let heads = ["#", "event", "delta", "> delta", "P", "> P", "s", "> s", "crest", "lost", "by area"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     rows.extend(report.events.iter().enumerate().map(|(i, event)| row(i + 1, event)));
-    text.push_str(&aligned(&rows));
+    text.push_str(&aligned(&rows, 2));
     let _ = writeln!(
         text,
         "\nsmallest force on the path: {}{}",
@@ -89,5 +93,41 @@ fn row(number: usize, event: &EventReport) -> Vec<String> {
         format!("{}>{}", crest(before.wave), crest(after.and_then(|a| a.wave))),
         event.dissipated.map_or_else(dash, loss),
         agreement,
+    ]
+}
+
+/// The verification as lines of text, its rows under the headings of their groups; the last line counts them.
+pub fn verify(report: &VerifyReport) -> String {
+    let heads = ["", "ours", "exact", "difference", "bound", ""];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    rows.extend(report.rows.iter().map(verified));
+    let lines = aligned(&rows, 1);
+    let mut lines = lines.lines();
+    let mut text = lines.next().unwrap_or_default().to_owned();
+    text.push('\n');
+    let mut group = None;
+    for (row, line) in report.rows.iter().zip(lines) {
+        if group != Some(&row.group) {
+            let _ = writeln!(text, "\n{} ({})", row.group, row.measure);
+            group = Some(&row.group);
+        }
+        let _ = writeln!(text, "{line}");
+    }
+    let _ = writeln!(text, "\n{}", report.verdict());
+    text
+}
+
+fn verified(row: &RowReport) -> Vec<String> {
+    let dash = || "-".to_owned();
+    // Counts and orders are whole numbers: no decimals that say nothing.
+    let number = |x: f64| if x.fract() == 0.0 { short(x, 8) } else { significant(x, 8) };
+    let off = |x: f64| if x == 0.0 { short(x, 1) } else { difference(x) };
+    vec![
+        format!("  {}", row.what),
+        row.ours.map_or_else(dash, number),
+        row.exact.map_or_else(dash, number),
+        row.difference.map_or_else(dash, off),
+        short(row.bound, 2),
+        if row.passes { "pass" } else { "FAIL" }.to_owned(),
     ]
 }

@@ -1,0 +1,58 @@
+//! `pulloff verify`: our numbers against theory.
+
+use super::{Failure, output};
+use crate::case::CaseError;
+use crate::report::{VerifyReport, json, table};
+use crate::verify::{Settings, verify};
+use clap::Args;
+use std::process::ExitCode;
+
+/// The arguments of `pulloff verify`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Write JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Only the rows whose heading or name contains this
+    #[arg(long, value_name = "PATTERN")]
+    only: Option<String>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let groups = verify(&Settings::default()).map_err(CaseError::from)?;
+    let report = VerifyReport::new(&groups, arguments.only.as_deref());
+    if report.total == 0 {
+        let headings: Vec<&str> = groups.iter().map(|group| group.title.as_str()).collect();
+        return Err(Failure::Usage(format!(
+            "--only: no row contains that text; the headings are\n  {}",
+            headings.join("\n  ")
+        )));
+    }
+    let text = if arguments.json { json(&report)? } else { table::verify(&report) };
+    output::write(&text, None)?;
+    verdict(&report)
+}
+
+/// Success only when every row passes.
+fn verdict(report: &VerifyReport) -> Result<ExitCode, Failure> {
+    if report.passed == report.total {
+        return Ok(ExitCode::SUCCESS);
+    }
+    Err(Failure::Disagreement(format!("not as theory says: only {}", report.verdict())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_row_that_fails_is_exit_status_one() {
+        // Too few eigenfunctions for the waves of Fig. 9: they cannot follow its curve.
+        let groups = verify(&Settings { functions: Some(16), ..Settings::default() }).unwrap();
+        let report = VerifyReport::new(&groups, None);
+        assert!(report.passed < report.total);
+        let failure = verdict(&report).unwrap_err();
+        assert_eq!(failure.exit_code(), ExitCode::from(1));
+        assert!(failure.text().unwrap().contains(&report.verdict()));
+    }
+}

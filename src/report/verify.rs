@@ -1,0 +1,87 @@
+//! Our numbers against theory as a document.
+
+use super::SCHEMA;
+use crate::verify::{Group, Row};
+use serde::Serialize;
+
+/// A verification: one row per number.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerifyReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// How many rows pass.
+    pub passed: usize,
+    /// How many rows there are.
+    pub total: usize,
+    /// The rows, those of a group together.
+    pub rows: Vec<RowReport>,
+}
+
+/// One number against theory.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RowReport {
+    /// What is compared, with the basis.
+    pub group: String,
+    /// By what the difference is divided.
+    pub measure: &'static str,
+    /// What the number is.
+    pub what: String,
+    /// The engine's; null where it could not be computed.
+    pub ours: Option<f64>,
+    /// The exact one.
+    pub exact: Option<f64>,
+    /// The difference, divided as `measure` says.
+    pub difference: Option<f64>,
+    /// The largest difference, without its sign, that passes.
+    pub bound: f64,
+    /// Whether it passes.
+    pub passes: bool,
+}
+
+impl VerifyReport {
+    /// The document of `groups`, or of the rows of which the group or the name contains `only`, in any case of letters.
+    pub fn new(groups: &[Group], only: Option<&str>) -> Self {
+        let wanted = only.map(str::to_lowercase);
+        let is_wanted = |group: &Group, row: &Row| {
+            wanted.as_ref().is_none_or(|wanted| {
+                [&group.title, &row.what].into_iter().any(|text| text.to_lowercase().contains(wanted))
+            })
+        };
+        let rows: Vec<RowReport> = groups
+            .iter()
+            .flat_map(|group| group.rows.iter().map(move |row| (group, row)))
+            .filter(|(group, row)| is_wanted(group, row))
+            .map(|(group, row)| RowReport::new(group, row))
+            .collect();
+        Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            passed: rows.iter().filter(|row| row.passes).count(),
+            total: rows.len(),
+            rows,
+        }
+    }
+
+    /// The count in words.
+    pub fn verdict(&self) -> String {
+        format!("{} of {} pass", self.passed, self.total)
+    }
+}
+
+impl RowReport {
+    fn new(group: &Group, row: &Row) -> Self {
+        let finite = |x: f64| x.is_finite().then_some(x);
+        Self {
+            group: group.title.clone(),
+            measure: group.measure,
+            what: row.what.clone(),
+            ours: finite(row.ours),
+            exact: finite(row.exact),
+            difference: finite(row.difference),
+            bound: row.bound,
+            passes: row.passes(),
+        }
+    }
+}

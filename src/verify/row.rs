@@ -1,0 +1,77 @@
+//! One comparison: a number of ours beside the exact one.
+
+/// One number against theory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// What the number is.
+    pub what: String,
+    /// The engine's; not a number where it could not be computed.
+    pub ours: f64,
+    /// The exact one.
+    pub exact: f64,
+    /// (ours − exact)/scale, the scale being what the group says.
+    pub difference: f64,
+    /// The largest difference, without its sign, that passes.
+    pub bound: f64,
+}
+
+/// Rows that belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// What is compared, with the basis.
+    pub title: String,
+    /// By what its differences are divided.
+    pub measure: &'static str,
+    /// The comparisons.
+    pub rows: Vec<Row>,
+}
+
+impl Row {
+    /// `ours` beside `exact`, the difference divided by `scale > 0`.
+    pub fn new(what: impl Into<String>, ours: f64, exact: f64, scale: f64, bound: f64) -> Self {
+        Self { what: what.into(), ours, exact, difference: (ours - exact) / scale, bound }
+    }
+
+    /// `ours` beside `exact`, the difference divided by the exact number.
+    pub fn relative(what: impl Into<String>, ours: f64, exact: f64, bound: f64) -> Self {
+        Self::new(what, ours, exact, exact.abs(), bound)
+    }
+
+    /// The pair of `(ours, exact)` that differs most, the difference divided by `scale`; one that is no number counts
+    /// as the worst, and no pair at all fails.
+    pub fn worst(
+        what: impl Into<String>,
+        pairs: impl IntoIterator<Item = (f64, f64)>,
+        scale: f64,
+        bound: f64,
+    ) -> Self {
+        let off = |&(ours, exact): &(f64, f64)| (ours - exact).abs();
+        let worst = pairs.into_iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+        let (ours, exact) = worst.unwrap_or((f64::NAN, f64::NAN));
+        Self::new(what, ours, exact, scale, bound)
+    }
+
+    /// Whether the difference is within its bound; not a number is not.
+    pub fn passes(&self) -> bool {
+        self.difference.abs() <= self.bound
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Row;
+
+    #[test]
+    fn within_the_bound_passes_and_what_is_no_number_fails() {
+        assert!(Row::relative("", 1.01, 1.0, 0.02).passes());
+        assert!(Row::new("", 8.0, 8.0, 1.0, 0.0).passes());
+        assert!(!Row::relative("", 0.97, 1.0, 0.02).passes());
+        assert!(!Row::relative("", f64::NAN, 1.0, 0.02).passes());
+        assert!(!Row::worst("", [], 1.0, 1.0).passes());
+        let worst = Row::worst("", [(1.0, 1.1), (3.0, 2.8), (2.0, 2.0)], 2.0, 0.05);
+        assert!(
+            (worst.ours - 3.0).abs() < 1e-15 && (worst.difference - 0.1).abs() < 1e-15 && !worst.passes()
+        );
+        assert!(!Row::worst("", [(1.0, 1.0), (f64::NAN, 2.0)], 1.0, 1.0).passes());
+    }
+}

@@ -1,0 +1,54 @@
+//! Hertz and JKR in eigenfunctions, of which four are exact for a sphere.
+//!
+//! At a given contact radius, so that nothing but the basis is compared:
+//!
+//! ```text
+//! δ = s²/R − √(2πγs/E*),   P = 4E*s³/(3R) − √(8πγE*s³),   U = E*∫₀^s (δ − a²/R)² da − πγs²
+//! ```
+//!
+//! Eqs. (21), (22) of the paper with their misprints corrected; H. Hertz, doi:10.1515/crll.1882.92.156; K. L. Johnson,
+//! K. Kendall and A. D. Roberts, doi:10.1098/rspa.1971.0141.
+
+use super::cases::{smooth, sphere};
+use super::row::{Group, Row};
+use super::settings::Settings;
+use crate::ritz::BasisError;
+use crate::theory::Disc;
+
+/// s/R of the comparison.
+const RADIUS: f64 = 0.3;
+
+/// γ/(E*R) without adhesion and with it.
+const WORKS: [(&str, f64); 2] = [("Hertz", 0.0), ("JKR", 0.01)];
+
+/// Rounding, with room for the sums.
+const BOUND: f64 = 1e-12;
+
+/// δ, P and U of the smooth sphere without adhesion and with it.
+///
+/// # Errors
+/// [`BasisError`] when the basis cannot be made.
+pub fn group(settings: &Settings) -> Result<Group, BasisError> {
+    let mut rows = Vec::new();
+    let mut functions = 0;
+    for (theory, gamma) in WORKS {
+        let (problem, exact) = (sphere(gamma), smooth(gamma).curve(&[RADIUS]));
+        let basis = settings.spectral(&problem, RADIUS)?;
+        functions = basis.size();
+        let problem = problem.reduced();
+        let ours = basis.equilibrium(&problem, RADIUS);
+        let energy = ours.map(|e| basis.energy(&problem, RADIUS, e.approach));
+        for exact in exact {
+            for (quantity, ours, exact) in [
+                ("approach", ours.map(|e| e.approach), exact.approach),
+                ("force", ours.map(|e| e.force), exact.force),
+                ("energy", energy, exact.energy),
+            ] {
+                let what = format!("{theory}: {quantity}");
+                rows.push(Row::relative(what, ours.unwrap_or(f64::NAN), exact, BOUND));
+            }
+        }
+    }
+    let title = format!("Smooth sphere at s = 0.3 R, {functions} eigenfunctions");
+    Ok(Group { title, measure: "relative", rows })
+}

@@ -1,0 +1,178 @@
+//! The program's numbers against theory, as `pulloff verify` tells them.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
+use pulloff::report::{VerifyReport, table};
+use pulloff::verify::{Group, Row, Settings, verify};
+use serde_json::Value;
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+
+/// The rows as the program computes them, once for all tests.
+static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| verify(&Settings::default()).unwrap());
+
+/// Status, standard output and standard error of the program.
+fn run(arguments: &[&str]) -> (i32, String, String) {
+    let home = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+    command.env_clear().env("HOME", home.path()).env("XDG_CONFIG_HOME", home.path());
+    let output = command.arg("verify").args(arguments).stdin(Stdio::null()).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn every_row_passes() {
+    let report = VerifyReport::new(&GROUPS, None);
+    let text = table::verify(&report);
+    println!("{text}");
+    let failed: Vec<_> = report.rows.iter().filter(|row| !row.passes).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    assert_eq!(report.total, GROUPS.iter().map(|group| group.rows.len()).sum::<usize>());
+    assert_eq!(text.lines().last(), Some(format!("{0} of {0} pass", report.total).as_str()));
+}
+
+/// What the rows are about, in their order, without a digit that a machine could change.
+#[test]
+fn the_groups_are_these() {
+    let titles: Vec<&str> = GROUPS.iter().map(|group| group.title.as_str()).collect();
+    insta::assert_snapshot!(titles.join("\n"), @r"
+    Smooth sphere at s = 0.3 R, 4 eigenfunctions
+    Hertz at approach 0.1 R, uniform rings
+    JKR at approach 0.1 R, uniform rings
+    Fig. 9 at s = 0.5 R by the number of eigenfunctions
+    Newton-Raphson from a threefold contact radius, JKR sphere
+    Fig. 8, extreme values, 38 eigenfunctions
+    Fig. 8, extreme values, 200 rings
+    Fig. 9, extreme values, 55 eigenfunctions
+    Fig. 9, extreme values, 200 rings
+    Fig. 9 under displacement control, 55 eigenfunctions
+    Fig. 9 under force control, 55 eigenfunctions
+    Fig. 9 under stiffness=0.15 control, 55 eigenfunctions
+    Fig. 9 under displacement control, 200 rings
+    Fig. 9 under force control, 200 rings
+    Fig. 9 under stiffness=0.15 control, 200 rings
+    ");
+    for group in GROUPS.iter() {
+        let heading = group.title.chars().count() + group.measure.chars().count() + 3;
+        assert!(heading <= 100, "{}", group.title);
+        assert!(group.rows.iter().all(|row| row.bound.is_finite() && row.bound >= 0.0), "{}", group.title);
+    }
+    let text = table::verify(&VerifyReport::new(&GROUPS, None));
+    assert!(text.lines().all(|line| line.chars().count() <= 100));
+}
+
+/// The numbers of the method's papers, where rows have them: nothing here is computed twice by the same hand.
+#[test]
+fn the_exact_column_has_the_known_values() {
+    let exact = |group: &str, what: &str| {
+        let is_it = |g: &&Group| g.title.starts_with(group) && g.title.ends_with("eigenfunctions");
+        let rows = &GROUPS.iter().find(is_it).unwrap().rows;
+        rows.iter().find(|row| row.what == what).unwrap().exact
+    };
+    for (group, what, known, digits) in [
+        ("Fig. 8, extreme", "smallest force over P_c", -1.076_356_8, 5e-8),
+        ("Fig. 8, extreme", "smallest force over P_c: its contact radius", 0.290_07, 5e-6),
+        ("Fig. 8, extreme", "smallest approach", -0.065_247_2, 5e-8),
+        ("Fig. 8, extreme", "smallest approach: its contact radius", 0.182_10, 6e-6),
+        ("Fig. 9, extreme", "smallest force over P_c", -1.479_672_9, 5e-8),
+        ("Fig. 9, extreme", "smallest force over P_c: its contact radius", 0.293_389, 5e-7),
+        ("Fig. 9, extreme", "smallest approach", -0.050_106_6, 5e-8),
+        ("Fig. 9, extreme", "smallest approach: its contact radius", 0.143_65, 5e-6),
+        ("Fig. 9 under displacement", "snaps", 7.0, 0.0),
+        ("Fig. 9 under displacement", "pull-offs", 1.0, 0.0),
+        ("Fig. 9 under force", "snaps", 4.0, 0.0),
+    ] {
+        let ours = exact(group, what);
+        assert!((ours - known).abs() <= digits, "{group} {what}: {ours} {known}");
+    }
+}
+
+#[test]
+fn too_coarse_a_basis_fails() {
+    let failing = |settings: Settings| {
+        let report = VerifyReport::new(&verify(&settings).unwrap(), None);
+        let failed: Vec<String> =
+            report.rows.iter().filter(|row| !row.passes).map(|row| row.group.clone()).collect();
+        assert_eq!(report.passed + failed.len(), report.total);
+        assert!(table::verify(&report).lines().any(|line| line.ends_with("FAIL")));
+        failed
+    };
+    // Forty rings are four per wave: the figures fail, the eigenfunctions do not.
+    let rings = failing(Settings { rings: 40, ..Settings::default() });
+    assert!(rings.iter().any(|group| group.starts_with("Fig. 9")), "{rings:?}");
+    assert!(rings.iter().all(|group| !group.ends_with("eigenfunctions")), "{rings:?}");
+    let functions = failing(Settings { functions: Some(16), ..Settings::default() });
+    assert!(functions.iter().any(|group| group.starts_with("Fig. 9 under")), "{functions:?}");
+    assert!(functions.iter().all(|group| !group.ends_with("rings")), "{functions:?}");
+    // A basis that cannot be made is an error, not a row.
+    assert!(verify(&Settings { rings: 3, ..Settings::default() }).is_err());
+}
+
+#[test]
+fn a_number_that_is_wrong_is_counted_and_written_as_null_where_there_is_none() {
+    let groups = [
+        Group {
+            title: "Spheres".to_owned(),
+            measure: "relative",
+            rows: vec![
+                Row::relative("approach", 0.102, 0.1, 0.05),
+                Row::relative("force of a sphere", -2.5e-7, -2e-7, 0.05),
+            ],
+        },
+        Group {
+            title: "Counts".to_owned(),
+            measure: "absolute",
+            rows: vec![Row::new("snaps", 7.0, 7.0, 1.0, 0.0), Row::worst("limit points", [], 1.0, 1e-10)],
+        },
+    ];
+    let report = VerifyReport::new(&groups, None);
+    assert_eq!((report.passed, report.total), (2, 4));
+    insta::assert_snapshot!(table::verify(&report), @r"
+                               ours       exact  difference  bound
+
+    Spheres (relative)
+      approach           0.10200000  0.10000000     +2.0e-2   0.05  pass
+      force of a sphere     -2.5e-7       -2e-7     -2.5e-1   0.05  FAIL
+
+    Counts (absolute)
+      snaps                       7           7           0      0  pass
+      limit points                -           -           -  1e-10  FAIL
+
+    2 of 4 pass
+    ");
+    let json = serde_json::to_value(&report).unwrap();
+    assert!(json["rows"][3]["ours"].is_null() && json["rows"][3]["passes"] == false);
+    // By heading or by name, in any case of letters.
+    for (only, total) in [("spheres", 2), ("SPHERE", 2), ("of a", 1), ("count", 2), ("nothing", 0)] {
+        assert_eq!(VerifyReport::new(&groups, Some(only)).total, total, "{only}");
+    }
+}
+
+#[test]
+fn the_program_writes_a_table_or_json_and_nothing_else() {
+    let (status, table, error) = run(&[]);
+    assert_eq!((status, error.as_str()), (0, ""));
+    let rows = GROUPS.iter().map(|group| group.rows.len()).sum::<usize>();
+    assert_eq!(table.lines().last(), Some(format!("{rows} of {rows} pass").as_str()));
+
+    let (status, text, error) = run(&["--json", "--only", "smooth sphere"]);
+    assert_eq!((status, error.as_str()), (0, ""));
+    let json: Value = serde_json::from_str(&text).unwrap();
+    let keys = |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
+    assert_eq!(keys(&json), ["schema", "program_version", "passed", "total", "rows"]);
+    assert_eq!((json["schema"].as_u64(), json["passed"].as_u64()), (Some(1), Some(6)));
+    for row in json["rows"].as_array().unwrap() {
+        let fields = ["group", "measure", "what", "ours", "exact", "difference", "bound", "passes"];
+        assert_eq!(keys(row), fields);
+        assert!(row["group"].as_str().unwrap().starts_with("Smooth sphere"));
+        assert!(row["ours"].is_number() && row["bound"].is_number() && row["passes"] == true);
+    }
+}
+
+#[test]
+fn a_pattern_that_no_row_has_is_bad_usage_that_lists_the_headings() {
+    let (status, out, error) = run(&["--only", "quantum"]);
+    assert_eq!((status, out.as_str()), (2, ""));
+    assert!(error.contains("--only") && error.contains(&GROUPS[0].title), "{error}");
+}
