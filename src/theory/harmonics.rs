@@ -58,6 +58,7 @@ impl Disc for Harmonics {
             value: a * a / radius,
             slope: 2.0 * a / radius,
             moment: 2.0 * a.powi(3) / (3.0 * radius),
+            resolved: true,
         };
         for wave in self.gap.waves().iter().filter(|wave| wave.amplitude != 0.0) {
             let q = TAU / wave.wavelength;

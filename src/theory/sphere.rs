@@ -52,7 +52,7 @@ impl Disc for Sphere {
         let radius = self.radius;
         let x = a / radius;
         if x >= 1.0 {
-            return Transform { value: f64::NAN, slope: f64::NAN, moment: f64::NAN };
+            return Transform { value: f64::NAN, slope: f64::NAN, moment: f64::NAN, resolved: true };
         }
         let artanh = x.atanh();
         let moment = if x < SUM_BELOW {
@@ -66,7 +66,7 @@ impl Disc for Sphere {
         } else {
             0.5 * ((radius * radius + a * a) * artanh - a * radius)
         };
-        Transform { value: a * artanh, slope: artanh + x / ((1.0 - x) * (1.0 + x)), moment }
+        Transform { value: a * artanh, slope: artanh + x / ((1.0 - x) * (1.0 + x)), moment, resolved: true }
     }
 }
 
