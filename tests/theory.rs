@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
+use pulloff::contact::shapes::{ExactSphere, PowerLaw};
 use pulloff::contact::{Control, Gap, Jet, Problem, Shape};
 use pulloff::theory::guduru::Guduru;
 use pulloff::theory::jkr::Jkr;
@@ -183,61 +184,8 @@ fn the_reference_curves_of_figures_8_and_9() {
     assert!(worst.iter().all(|error| *error <= 1e-12), "{worst:?}");
 }
 
-/// h = c rⁿ: g = G aⁿ with G = c n (√π/2) Γ(n/2)/Γ((n+1)/2), from ∫₀^{π/2} sinⁿ⁻¹θ dθ. n = 1 is the cone.
-#[derive(Debug)]
-struct Power {
-    c: f64,
-    n: f64,
-}
-
-impl Gap for Power {
-    fn jet(&self, r: f64) -> Jet {
-        let Self { c, n } = *self;
-        let term = |factor: f64, order: f64| if factor == 0.0 { 0.0 } else { c * factor * r.powf(n - order) };
-        Jet {
-            value: term(1.0, 0.0),
-            first: term(n, 1.0),
-            second: term(n * (n - 1.0), 2.0),
-            third: term(n * (n - 1.0) * (n - 2.0), 3.0),
-        }
-    }
-
-    fn feature_length(&self) -> Option<f64> {
-        None
-    }
-
-    fn reference_length(&self) -> f64 {
-        1.0
-    }
-}
-
-/// h = R − √(R² − r²): g = a artanh(a/R) = (a/2) ln((R+a)/(R−a)).
-#[derive(Debug)]
-struct TrueSphere(f64);
-
-impl Gap for TrueSphere {
-    fn jet(&self, r: f64) -> Jet {
-        let radius = self.0;
-        let root = ((radius - r) * (radius + r)).sqrt();
-        Jet {
-            value: r * r / (radius + root),
-            first: r / root,
-            second: radius * radius / root.powi(3),
-            third: 3.0 * radius * radius * r / root.powi(5),
-        }
-    }
-
-    fn feature_length(&self) -> Option<f64> {
-        None
-    }
-
-    fn reference_length(&self) -> f64 {
-        self.0
-    }
-}
-
 #[test]
-fn power_laws_and_the_true_sphere_by_quadrature() {
+fn power_laws_and_the_exact_sphere_by_quadrature() {
     // g, g', M₁ and M₂ in closed form at one radius.
     let check = |gap: Arc<dyn Gap>, a: f64, [g, slope, moment, square]: [f64; 4]| {
         let (modulus, gamma) = (0.7, 0.004);
@@ -259,6 +207,7 @@ fn power_laws_and_the_true_sphere_by_quadrature() {
             assert!((ours - theory).abs() <= 1e-12 * size, "{gap:?} at {a}: {ours} {theory}");
         }
     };
+    // h = c rⁿ: g = G aⁿ, G = c n (√π/2) Γ(n/2)/Γ((n+1)/2), from ∫₀^{π/2} sinⁿ⁻¹θ dθ; n = 1 is the cone.
     for n in [1.0_f64, 1.5, 2.0, 3.0, 6.0] {
         for a in [1e-3_f64, 0.2, 3.0] {
             let c = 0.3;
@@ -266,12 +215,13 @@ fn power_laws_and_the_true_sphere_by_quadrature() {
             let g = unit * a.powf(n);
             let moment = n / (n + 1.0) * g * a;
             let square = 2.0 * n * n / ((n + 1.0) * (2.0 * n + 1.0)) * g * g * a;
-            check(Arc::new(Power { c, n }), a, [g, n * g / a, moment, square]);
+            check(Arc::new(PowerLaw { factor: c, exponent: n }), a, [g, n * g / a, moment, square]);
             if n == 1.0 {
                 assert!((g - 0.5 * PI * c * a).abs() <= 1e-15 * g, "the cone");
             }
         }
     }
+    // h = R − √(R² − r²): g = a artanh(a/R) = (a/2) ln((R+a)/(R−a)).
     let radius = 1.3_f64;
     for a in [0.01_f64, 0.4, 1.2] {
         let angle = (a / radius).atanh();
@@ -286,9 +236,13 @@ fn power_laws_and_the_true_sphere_by_quadrature() {
         .values;
         // Small discs lose digits of M₁ in its closed form, not in the quadrature.
         if a > 0.1 {
-            check(Arc::new(TrueSphere(radius)), a, [g, slope, moment, a * g * g - 2.0 * g * first + second]);
+            check(
+                Arc::new(ExactSphere { radius }),
+                a,
+                [g, slope, moment, a * g * g - 2.0 * g * first + second],
+            );
         } else {
-            let exact = Exact::by_quadrature(1.0, 0.0, Arc::new(TrueSphere(radius)));
+            let exact = Exact::by_quadrature(1.0, 0.0, Arc::new(ExactSphere { radius }));
             assert!((exact.transform(a).value / g - 1.0).abs() < 1e-13);
             assert!((exact.transform(a).slope / slope - 1.0).abs() < 1e-13);
         }
@@ -299,7 +253,7 @@ fn power_laws_and_the_true_sphere_by_quadrature() {
 fn the_pressure_under_a_cone() {
     // p = (E* c/2) arcosh(s/r), infinite on the axis.
     let (modulus, c, s) = (0.7, 0.3, 0.2_f64);
-    let cone = Exact::by_quadrature(modulus, 0.0, Arc::new(Power { c, n: 1.0 }));
+    let cone = Exact::by_quadrature(modulus, 0.0, Arc::new(PowerLaw::cone(c)));
     for r in [1e-4, 0.05, 0.19] {
         let p = 0.5 * modulus * c * (s / r).acosh();
         assert!((cone.pressure(s, r) / p - 1.0).abs() < 1e-12, "{r}");
