@@ -72,13 +72,13 @@ fn the_exact_column_has_the_known_values() {
     };
     for (group, what, known, digits) in [
         ("Fig. 8, extreme", "smallest force over P_c", -1.076_356_8, 5e-8),
-        ("Fig. 8, extreme", "smallest force over P_c: its contact radius", 0.290_07, 5e-6),
+        ("Fig. 8, extreme", "contact radius of smallest force", 0.290_07, 5e-6),
         ("Fig. 8, extreme", "smallest approach", -0.065_247_2, 5e-8),
-        ("Fig. 8, extreme", "smallest approach: its contact radius", 0.182_10, 6e-6),
+        ("Fig. 8, extreme", "contact radius of smallest approach", 0.182_10, 6e-6),
         ("Fig. 9, extreme", "smallest force over P_c", -1.479_672_9, 5e-8),
-        ("Fig. 9, extreme", "smallest force over P_c: its contact radius", 0.293_389, 5e-7),
+        ("Fig. 9, extreme", "contact radius of smallest force", 0.293_389, 5e-7),
         ("Fig. 9, extreme", "smallest approach", -0.050_106_6, 5e-8),
-        ("Fig. 9, extreme", "smallest approach: its contact radius", 0.143_65, 5e-6),
+        ("Fig. 9, extreme", "contact radius of smallest approach", 0.143_65, 5e-6),
         ("Fig. 9 under displacement", "snaps", 7.0, 0.0),
         ("Fig. 9 under displacement", "pull-offs", 1.0, 0.0),
         ("Fig. 9 under force", "snaps", 4.0, 0.0),

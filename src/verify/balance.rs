@@ -29,7 +29,7 @@ const BOUND: f64 = 1e-9;
 
 /// Work against storage and loss along `ours`, the unloading of `curve`.
 pub fn row(curve: &Curve, ours: &Unloading) -> Row {
-    const WHAT: &str = "work of the device against stored and lost";
+    const WHAT: &str = "device's work against stored and lost";
     let Some(work) = work(&curve.equilibrium, ours) else { return Row::worst(WHAT, [], 1.0, BOUND) };
     let lost = ours.total_dissipated();
     let at_start = stored(ours.control, &ours.start);

@@ -101,7 +101,7 @@ fn group(study: &Study, finest: usize) -> Result<Group, BasisError> {
             let [(coarse, before), (fine, after)] = pair else { continue };
             let ratio = ((before[k] - exact) / (after[k] - exact)).abs();
             let observed = ratio.ln() / (fine / coarse).ln();
-            let what = format!("{quantity}, order from N = {coarse} to {fine}");
+            let what = format!("{quantity}, order N = {coarse} to {fine}");
             rows.push(Row::new(what, observed, law.order, 1.0, law.spread));
         }
     }

@@ -41,14 +41,14 @@ pub fn group(figure: &Figure, candidate: &Candidate) -> Group {
     let critical = smooth(figure.problem.work_of_adhesion).pull_off_force();
     let bound = candidate.bounds.extreme;
     let mut rows = Vec::new();
-    for (control, what, unit) in [
-        (Control::Force, "smallest force over P_c", critical),
-        (Control::Displacement, "smallest approach", 1.0),
+    for (control, what, place, unit) in [
+        (Control::Force, "smallest force over P_c", "contact radius of smallest force", critical),
+        (Control::Displacement, "smallest approach", "contact radius of smallest approach", 1.0),
     ] {
         let (s, value) = curve.as_ref().and_then(|curve| ours(curve, control)).unwrap_or(NONE);
         let (exact_s, exact_value) = exact(&*disc, control, figure.start).unwrap_or(NONE);
         rows.push(Row::relative(what, value / unit, exact_value / unit, bound));
-        rows.push(Row::relative(format!("{what}: its contact radius"), s, exact_s, bound));
+        rows.push(Row::relative(place, s, exact_s, bound));
     }
     Group { title: format!("{}, extreme values, {}", figure.name, candidate.name), measure: "relative", rows }
 }

@@ -29,15 +29,14 @@ pub fn group(settings: &Settings) -> Result<Group, BasisError> {
     let problem = problem.reduced();
     let mut rows = Vec::new();
     for (name, basis) in [("eigenfunctions", spectral), ("rings", rings)] {
-        for (place, delta) in
-            [("0.9 of the smallest", 0.9 * smallest), ("0", 0.0), ("0.1 R", 0.1), ("0.5 R", 0.5)]
+        for (place, delta) in [("0.9 delta_min", 0.9 * smallest), ("0", 0.0), ("0.1 R", 0.1), ("0.5 R", 0.5)]
         {
             let from = 3.0 * radius_at(&exact, delta);
             let control = Control::Displacement;
             let solved = solve(&*basis, &problem, control, delta, from, NewtonSettings::default());
             // At most 40 rounds.
             let rounds = solved.map_or(f64::NAN, |solved| solved.rounds as f64);
-            rows.push(Row::new(format!("{name}: approach {place}"), rounds, ROUNDS.0, 1.0, ROUNDS.1));
+            rows.push(Row::new(format!("{name}: delta = {place}"), rounds, ROUNDS.0, 1.0, ROUNDS.1));
         }
     }
     let title = "Newton-Raphson from a threefold contact radius, JKR sphere".to_owned();

@@ -105,7 +105,7 @@ fn limits(
         .iter()
         .map(|limit| limit.state.contact_radius)
         .collect();
-    let what = format!("contact radius, worst of {} limit points", exact.len());
+    let what = format!("contact radius, worst of {}", exact.len());
     vec![
         Row::new("limit points on the curve", ours.len() as f64, exact.len() as f64, 1.0, 0.0),
         Row::worst(what, ours.into_iter().zip(exact), ranges[0], candidate.bounds.state),
