@@ -15,7 +15,7 @@
 //! that and a margin for the waves.
 
 use super::curve::Curve;
-use super::equilibrium::wave_index;
+use super::equilibrium::{Equilibrium, wave_index};
 use crate::contact::{Gap, Reduced};
 use crate::ritz::Basis;
 use std::f64::consts::TAU;
@@ -27,17 +27,17 @@ const FARTHEST_WAVES: f64 = 3.0;
 /// Steps per wave: a parabola through three of them sees every crest.
 const STEPS_PER_WAVE: f64 = 8.0;
 /// Steps in the first wave outside the edge, where the gap has a root at the edge: even in √(r − s).
-const STEPS_AT_EDGE: f64 = 16.0;
+const STEPS_AT_EDGE: f64 = 12.0;
 /// Steps from the edge to the end of the search for a gap without waves.
 const STEPS_WITHOUT_WAVES: f64 = 24.0;
 /// Crests are searched while h is not above δ by this many times √(2πγs) and this share of g(s): for the waves of g.
 const MARGIN: [f64; 2] = [2.0, 0.5];
 /// A gap counts as negative below this share of the lengths whose difference it is: rounding and truncation.
 const ROUNDING: f64 = 1e-9;
-/// A pressure counts as negative below this share of the largest: the truncation of a basis at the free edge.
-const PRESSURE_ROUNDING: f64 = 1e-6;
-/// Halvings for the ends of an interval: 1e-6 of a step and better.
-const HALVINGS: usize = 20;
+/// Rounds for the ends of an interval, in which halving alone comes to 1e-6 of a step; false position needs a third.
+const ROUNDS: usize = 20;
+/// An end is located when its bracket is this small relative to it.
+const LOCATED: f64 = 2e-7;
 
 /// A place outside the contact at which the bodies come near.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,7 +85,9 @@ impl Admissibility {
         let pressure = basis.pressure_profile(problem, s, delta);
         let most = pressure.iter().fold(0.0_f64, |most, (_, p)| most.max(p.abs()));
         let least = pressure.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        let pressed = least.is_none_or(|(_, p)| p >= -PRESSURE_ROUNDING * most);
+        // The pressure falls like √(s − r) to the free edge: an edge that is off by ε s is a pressure off by √(2ε).
+        let edge_error = 10f64.powf(-basis.trusted_digits(problem, s));
+        let pressed = least.is_none_or(|(_, p)| p >= -(2.0 * edge_error).sqrt() * most);
         Self { nearest, least_pressure: least, holds: apart && pressed }
     }
 }
@@ -95,25 +97,12 @@ fn opening(problem: &Reduced, s: f64) -> f64 {
     (TAU * problem.work_of_adhesion * s).sqrt()
 }
 
-/// The states of `curve` that are not admissible, from its start inward, their ends located on the curve.
+/// The states of `curve` that are not admissible, from its start inward, their ends located on the curve to about 1e-6.
+///
+/// Every point of the curve is looked at: an interval that fits between two of them is not seen.
 pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
     let equilibrium = &curve.equilibrium;
     let (problem, basis) = (&equilibrium.problem, equilibrium.basis.as_ref());
-    let explicit = |s: f64| {
-        let delta = basis.equilibrium(problem, s)?.approach;
-        Some(Admissibility::of(problem, basis, s, delta))
-    };
-    // The end of an interval between an admissible radius and one that is not.
-    let end = |mut good: f64, mut bad: f64| {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (good + bad);
-            match explicit(middle) {
-                Some(found) if found.holds => good = middle,
-                _ => bad = middle,
-            }
-        }
-        bad
-    };
     let mut found: Vec<Overlap> = Vec::new();
     let mut open = false;
     let mut last: Option<f64> = None;
@@ -121,7 +110,7 @@ pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
         let [delta, _, s] = equilibrium.quantities(&point.y);
         let here = Admissibility::of(problem, basis, s, delta);
         match (here.holds, found.last_mut().filter(|_| open)) {
-            (true, Some(overlap)) => overlap.to = end(s, overlap.to),
+            (true, Some(overlap)) => overlap.to = end(equilibrium, s, overlap.to),
             (false, Some(overlap)) => {
                 overlap.to = s;
                 let gap = |crest: Option<Crest>| crest.map_or(f64::INFINITY, |crest| crest.gap);
@@ -130,7 +119,7 @@ pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
                 }
             }
             (false, None) => {
-                let from = last.map_or(s, |good| end(good, s));
+                let from = last.map_or(s, |good| end(equilibrium, good, s));
                 found.push(Overlap { from, to: s, crest: here.nearest.filter(|crest| crest.gap < 0.0) });
             }
             (true, None) => {}
@@ -139,6 +128,38 @@ pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
         last = Some(s);
     }
     found
+}
+
+/// The end of an interval between an admissible radius and one that is not: the last that is not.
+fn end(equilibrium: &Equilibrium, mut good: f64, mut bad: f64) -> f64 {
+    let Equilibrium { problem, basis, .. } = equilibrium;
+    // The nearest gap by the straight line between its values on both sides, where it has them.
+    let mut gaps = [None; 2];
+    for round in 0..ROUNDS {
+        if (good - bad).abs() <= LOCATED * bad {
+            break;
+        }
+        let share = match gaps {
+            // Every third round halves, so that neither side can stay.
+            [Some(above), Some(below)] if round % 3 != 2 && above > below => {
+                // A little beyond the zero closes the bracket from the other side.
+                let zero: f64 = above / (above - below);
+                (zero + if zero < 0.5 { 1e-4 } else { -1e-4 }).clamp(1e-4, 1.0 - 1e-4)
+            }
+            _ => 0.5,
+        };
+        let middle = good + share * (bad - good);
+        let found = basis
+            .equilibrium(problem, middle)
+            .map(|e| Admissibility::of(problem, basis.as_ref(), middle, e.approach));
+        let gap = found.and_then(|found| found.nearest).map(|crest| crest.gap);
+        if found.is_some_and(|found| found.holds) {
+            (good, gaps[0]) = (middle, gap);
+        } else {
+            (bad, gaps[1]) = (middle, gap);
+        }
+    }
+    bad
 }
 
 /// The minimum of the deformed gap outside that is smallest; `None` where the gap only grows.

@@ -26,8 +26,8 @@
 use ellip::elliprd;
 use std::f64::consts::{FRAC_2_PI, PI};
 
-/// Degree times η, with `q_n ~ e^{−nη}`, up to which the recurrence runs upwards: rounding grows by e² at most.
-const UPWARDS_BELOW: f64 = 1.0;
+/// Degree times η, with `q_n ~ e^{−nη}`, up to which the recurrence runs upwards: rounding grows by e⁴ at most.
+const UPWARDS_BELOW: f64 = 2.0;
 
 /// The exponent below which a term counts for nothing: e⁻⁴⁰ is far below rounding.
 const NEGLIGIBLE: f64 = 40.0;
