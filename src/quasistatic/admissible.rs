@@ -166,11 +166,12 @@ fn end(equilibrium: &Equilibrium, mut good: f64, mut bad: f64) -> f64 {
 pub fn nearest_crest(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Option<Crest> {
     let wave = problem.gap.feature_length();
     let mut radii = radii(s, wave);
-    let h: Vec<f64> = radii.iter().map(|&r| problem.gap.jet(r).value).collect();
+    // A measured gap ends, and is no number beyond.
+    let h: Vec<f64> = radii.iter().map(|&r| problem.gap.jet(r).value).take_while(|h| h.is_finite()).collect();
     let opening = opening(problem, s);
     let reach = delta + MARGIN[0] * opening + MARGIN[1] * (delta + opening).abs();
     // One step more, so that a minimum at the last radius within reach has two neighbours.
-    let within = h.iter().rposition(|&h| h < reach).map_or(0, |at| at + 2).min(radii.len());
+    let within = h.iter().rposition(|&h| h < reach).map_or(0, |at| at + 2).min(h.len());
     radii.truncate(within);
     let gaps = |radii: &[f64]| -> Vec<f64> {
         let u = basis.outside_displacement(problem, s, delta, radii);
@@ -317,6 +318,40 @@ mod tests {
         let problem = wavy(0.0025, 0.05, 0.025 / TAU).reduced();
         let curve = Curve::swept(problem, basis, 0.5, 0.02, || true).unwrap();
         assert_eq!(overlaps(&curve), []);
+    }
+
+    #[test]
+    fn where_the_gap_ends_the_search_ends() {
+        /// The wavy sphere up to r = 0.43, at which a crest near 0.445 is not known.
+        #[derive(Debug)]
+        struct Measured(Shape);
+
+        impl Gap for Measured {
+            fn jet(&self, r: f64) -> crate::contact::Jet {
+                let unknown = crate::contact::Jet { value: f64::NAN, ..Default::default() };
+                if r <= 0.43 { self.0.jet(r) } else { unknown }
+            }
+
+            fn feature_length(&self) -> Option<f64> {
+                self.0.feature_length()
+            }
+
+            fn reference_length(&self) -> f64 {
+                1.0
+            }
+        }
+
+        let problem = wavy(0.0025, 0.05, 1e-4);
+        let known = problem.reduced();
+        let measured = Reduced { gap: Arc::new(Measured(problem.shape)), ..known.clone() };
+        let spectral = Spectral::resolving(&known, 0.5).unwrap();
+        for (s, seen) in [(0.42, false), (0.372, true)] {
+            assert!(!at(&known, &spectral, s).holds);
+            assert_eq!(!at(&measured, &spectral, s).holds, seen, "{s}");
+        }
+        let delta = spectral.equilibrium(&measured, 0.42).unwrap().approach;
+        let drawn = crate::quasistatic::Profile::of(&measured, &spectral, 0.42, delta).outside;
+        assert!(drawn.iter().all(|at| at.gap.is_finite() && at.radius <= 0.43) && drawn.len() > 10);
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub struct Profile {
     pub approach: f64,
     /// The pressure, finite and dense towards the edge. Rings give their values at mid-ring: theirs is a step function.
     pub inside: Vec<Inside>,
-    /// The gap from the edge outward.
+    /// The gap from the edge outward, as far as it is known.
     pub outside: Vec<Outside>,
     /// The crest outside at which the bodies come nearest; `None` where the gap only grows.
     pub nearest: Option<Crest>,
@@ -60,15 +60,17 @@ impl Profile {
     pub fn of(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Self {
         let pressure = basis.pressure_profile(problem, s, delta);
         let inside = pressure.into_iter().map(|(radius, pressure)| Inside { radius, pressure }).collect();
-        let radii = radii(s, problem.gap.feature_length());
+        let known = |r: f64| (r, problem.gap.jet(r).value);
+        // A measured gap ends, and is no number beyond.
+        let (radii, gap): (Vec<f64>, Vec<f64>) = radii(s, problem.gap.feature_length())
+            .into_iter()
+            .map(known)
+            .take_while(|(_, undeformed)| undeformed.is_finite())
+            .unzip();
         let displacement = basis.outside_displacement(problem, s, delta, &radii);
-        let outside = radii
-            .iter()
-            .zip(displacement)
-            .map(|(&radius, u)| {
-                let undeformed = problem.gap.jet(radius).value;
-                Outside { radius, gap: undeformed - delta + u, undeformed }
-            })
+        let outside = radii.iter().zip(gap).zip(displacement);
+        let outside = outside
+            .map(|((&radius, undeformed), u)| Outside { radius, gap: undeformed - delta + u, undeformed })
             .collect();
         let nearest = admissible::nearest_crest(problem, basis, s, delta);
         Self { contact_radius: s, approach: delta, inside, outside, nearest }
