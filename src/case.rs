@@ -8,7 +8,8 @@ use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload};
 use crate::quasistatic::{Curve, Unloading};
-use crate::ritz::{Basis, BasisError, Rings, Spectral};
+use crate::ritz::parallel::Progress;
+use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
 use crate::theory::jkr::Jkr;
 use std::sync::Arc;
 
@@ -65,6 +66,15 @@ impl Case {
     /// # Errors
     /// [`CaseError`] when the basis or the start state cannot be had.
     pub fn new(preset: &Preset) -> Result<Self, CaseError> {
+        Self::prepare(preset, &mut |_| true)
+    }
+
+    /// The same for a basis that takes long: `progress` is told the share of it that is built, and stops it by
+    /// answering no.
+    ///
+    /// # Errors
+    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said no.
+    pub fn prepare(preset: &Preset, progress: Progress<'_>) -> Result<Self, CaseError> {
         let problem = preset.problem();
         let reduced = problem.reduced();
         let units = reduced.units;
@@ -73,7 +83,7 @@ impl Case {
             Start::Approach(delta) => Start::Approach(delta / units.length),
             Start::Force(p) => Start::Force(p / units.force),
         };
-        let (basis, start) = start(&reduced, preset.basis, wanted)?;
+        let (basis, start) = start(&reduced, preset.basis, wanted, progress)?;
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
             return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
@@ -172,12 +182,22 @@ impl Case {
 ///
 /// An automatic number of functions follows from the largest contact, the start; where the start is an approach or
 /// a force, the two are found in turn.
-fn start(reduced: &Reduced, spec: BasisSpec, wanted: Start) -> Result<(Arc<dyn Basis>, f64), CaseError> {
+fn start(
+    reduced: &Reduced,
+    spec: BasisSpec,
+    wanted: Start,
+    progress: Progress<'_>,
+) -> Result<(Arc<dyn Basis>, f64), CaseError> {
     let radius = |basis: &Arc<dyn Basis>| {
         contact_radius(reduced, basis, wanted).map_err(|e| e.in_units(&reduced.units))
     };
     let basis: Arc<dyn Basis> = match spec {
-        BasisSpec::Rings { rings } => Rings::shared(rings).map_err(BasisError::from)?,
+        BasisSpec::Rings { rings, grading } => {
+            Rings::shared_with(rings, grading, progress).map_err(|error| match error {
+                RingsError::Cancelled => CaseError::Cancelled,
+                error => BasisError::from(error).into(),
+            })?
+        }
         BasisSpec::Spectral { functions: Functions::Count(n) } => {
             Arc::new(Spectral::new(n).map_err(BasisError::from)?)
         }

@@ -199,7 +199,7 @@ fn both_documents_carry_the_resolved_problem() {
         );
         let preset = &problem["preset"];
         assert_eq!(keys(preset), ["format", "title", "material", "gap", "basis", "path"]);
-        assert_eq!(preset["basis"], serde_json::json!({"kind": "rings", "rings": 60}));
+        assert_eq!(preset["basis"], serde_json::json!({"kind": "rings", "rings": 60, "grading": "uniform"}));
         assert_eq!(preset["path"]["control"], serde_json::json!({"stiffness": 0.15}));
         assert!((number(problem, "/critical_force") - 0.01875).abs() < 1e-15);
         assert!((number(problem, "/groups/adhesion") - 0.025).abs() < 1e-15);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::ritz::{Basis, NewtonSettings, Rings, Solved, Spectral, solve};
+use pulloff::ritz::{Basis, Grading, NewtonSettings, Rings, Solved, Spectral, solve};
 use pulloff::theory::{hertz, jkr::Jkr};
 
 /// The smooth sphere E* = R = 1.
@@ -22,9 +22,21 @@ fn jkr_radius(jkr: &Jkr, delta: f64) -> f64 {
     lo
 }
 
-/// Newton from three times the true radius.
+/// Newton in uniform rings from three times the true radius.
 fn from_threefold(gamma: f64, rings: usize, control: Control, value: f64, exact: f64) -> Solved {
-    let basis = Rings::shared(rings).unwrap();
+    with_grading(Grading::Uniform, gamma, rings, control, value, exact)
+}
+
+/// Newton from three times the true radius.
+fn with_grading(
+    grading: Grading,
+    gamma: f64,
+    rings: usize,
+    control: Control,
+    value: f64,
+    exact: f64,
+) -> Solved {
+    let basis = Rings::shared_with(rings, grading, &mut |_| true).unwrap();
     solve(basis.as_ref(), &sphere(gamma), control, value, 3.0 * exact, NewtonSettings::default())
         .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
 }
@@ -50,6 +62,54 @@ fn jkr_converges_linearly_in_force_and_radius() {
     // The constants documented for the rings.
     assert!((radius[1].abs() * 160.0 - 0.16).abs() < 0.02, "{radius:?}");
     assert!((force[1].abs() * 160.0 - 1.4).abs() < 0.1, "{force:?}");
+}
+
+#[test]
+fn rings_crowded_towards_the_edge_converge_quadratically_to_jkr() {
+    let delta = 0.1;
+    for gamma in [1e-4, 0.01, 0.1] {
+        let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+        let exact = jkr_radius(&jkr, delta);
+        let (mut radius, mut force) = (Vec::new(), Vec::new());
+        for rings in [50, 100, 200, 400] {
+            let found =
+                with_grading(Grading::Edge, gamma, rings, Control::Displacement, delta, exact).evaluation;
+            radius.push(found.contact_radius / exact - 1.0);
+            force.push(found.force / jkr.force(exact) - 1.0);
+        }
+        println!("γ={gamma}: {radius:?} {:?}, {force:?} {:?}", orders(&radius), orders(&force));
+        for order in orders(&radius).into_iter().chain(orders(&force)) {
+            assert!((1.8..=2.2).contains(&order), "γ={gamma}: {radius:?} {force:?}");
+        }
+        // The constants documented for the rings, at γ = 0.01.
+        if (gamma - 0.01).abs() < 1e-9 {
+            assert!((radius[2].abs() * 4e4 / 0.34 - 1.0).abs() < 0.1, "{radius:?}");
+            assert!((force[2].abs() * 4e4 / 9.4 - 1.0).abs() < 0.1, "{force:?}");
+        }
+    }
+}
+
+#[test]
+fn rings_crowded_towards_the_edge_without_adhesion_and_with_little() {
+    let delta = 0.1;
+    let exact = hertz::contact_radius(1.0, delta);
+    for rings in [25, 50, 100, 200, 400] {
+        let found = with_grading(Grading::Edge, 0.0, rings, Control::Displacement, delta, exact).evaluation;
+        let (radius, force) =
+            (found.contact_radius / exact - 1.0, found.force / hertz::force(1.0, 1.0, delta) - 1.0);
+        println!("Hertz {rings}: {radius:.2e} {force:.2e}");
+        assert!(radius.abs() < 0.4 / rings as f64 && force.abs() < 0.35 / (rings * rings) as f64);
+    }
+    // At the weakest adhesion that passes without a caution its part of the approach is still there.
+    let (gamma, s) = (1e-6, 0.3);
+    let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
+    let [uniform, edge] = Grading::ALL.map(|grading| {
+        let basis = Rings::shared_with(200, grading, &mut |_| true).unwrap();
+        let adhesion = basis.equilibrium(&sphere(gamma), s).unwrap().approach - s * s;
+        (adhesion / (jkr.approach(s) - s * s) - 1.0).abs()
+    });
+    println!("γ={gamma}: {uniform:.1e}, {edge:.1e} of the adhesion's part");
+    assert!(edge < 0.04 && edge < uniform && uniform < 0.15);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use pulloff::contact::{Control, Gap, Shape, Start};
 use pulloff::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff::report::unload::{EventReport, StateReport};
 use pulloff::report::{TraceReport, UnloadReport, json};
+use pulloff::ritz::Grading;
 
 /// Steps of the independent walk per wave.
 const STEPS_PER_WAVE: f64 = 400.0;
@@ -49,7 +50,10 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
         title: String::new(),
         material: Material { effective_modulus: modulus, work_of_adhesion: gamma * modulus * radius },
         gap: shape,
-        basis: BasisSpec::Rings { rings: any(random, if wild { WILD_RINGS } else { RINGS }) },
+        basis: BasisSpec::Rings {
+            rings: any(random, if wild { WILD_RINGS } else { RINGS }),
+            grading: any(random, &Grading::ALL),
+        },
         path: PathSpec {
             control: control.in_units(1.0 / (modulus * radius)),
             start,
@@ -299,7 +303,7 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
         title: String::new(),
         material: Material { effective_modulus: 1.0, work_of_adhesion: gamma },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
-        basis: BasisSpec::Rings { rings: 100 },
+        basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
         path: PathSpec { control, start: Start::ContactRadius(start), end_contact_radius: None },
     }
 }

@@ -8,6 +8,7 @@
 use pulloff::case::Case;
 use pulloff::contact::Control;
 use pulloff::preset::{BasisSpec, Store};
+use pulloff::ritz::Grading;
 
 /// Points, rejected steps, evaluations of the equations; limit points under displacement and under force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ fn counts(name: &str) -> Counts {
     // A folder that need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let mut preset = store.load(&store.resolve(name).unwrap(), &[] as &[&str]).unwrap().preset;
-    preset.basis = BasisSpec::Rings { rings: 200 };
+    preset.basis = BasisSpec::Rings { rings: 200, grading: Grading::Uniform };
     let curve = Case::new(&preset).unwrap().trace().unwrap();
     Counts {
         points: curve.branch.points.len(),

@@ -11,6 +11,7 @@ use super::schema::{
 use super::value::Value;
 use crate::contact::Start;
 use crate::contact::{Control, Shape};
+use crate::ritz::Grading;
 use std::collections::BTreeMap;
 
 /// Values by dotted key. A part of a value (`path.control.stiffness`) is not a key here.
@@ -80,6 +81,11 @@ fn across(preset: &Preset) -> Vec<Invalid> {
             faults.push(Invalid::Wide { key, value, radius });
         }
     }
+    if let BasisSpec::Rings { rings, grading } = preset.basis
+        && !grading.ring_range().contains(&rings)
+    {
+        faults.push(Invalid::Rings { key: "basis.rings", rings, grading });
+    }
     if let (Some(start), Some(end)) = (start, end)
         && end >= start
     {
@@ -148,7 +154,14 @@ impl Given<'_> {
                 },
             },
             // An unknown word is among the faults already.
-            _ => BasisSpec::Rings { rings: count(self.integer("basis.rings")) },
+            _ => BasisSpec::Rings {
+                rings: count(self.integer("basis.rings")),
+                grading: if self.text("basis.grading") == Grading::Edge.name() {
+                    Grading::Edge
+                } else {
+                    Grading::Uniform
+                },
+            },
         }
     }
 
@@ -251,8 +264,9 @@ mod tests {
         ];
         let with =
             |key, value: Value| build(&values(&[&sphere[..], &[(key, value)]].concat())).map(|p| p.basis);
-        assert_eq!(with("basis.rings", 70.into()), Ok(BasisSpec::Rings { rings: 70 }));
-        assert_eq!(with("basis.kind", "rings".into()), Ok(BasisSpec::Rings { rings: 200 }));
+        let rings = |rings| BasisSpec::Rings { rings, grading: Grading::Uniform };
+        assert_eq!(with("basis.rings", 70.into()), Ok(rings(70)));
+        assert_eq!(with("basis.kind", "rings".into()), Ok(rings(200)));
         let functions = Functions::Count(48);
         assert_eq!(with("basis.functions", 48.into()), Ok(BasisSpec::Spectral { functions }));
     }

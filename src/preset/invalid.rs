@@ -1,6 +1,7 @@
 //! What can be wrong with a key or a value, in one line each.
 
 use super::schema::{FORMAT, RADIUS_OVER_CURVATURE};
+use crate::ritz::Grading;
 use thiserror::Error;
 
 /// A key or a value that a preset cannot have. Foreign text in it is already safe to show.
@@ -125,6 +126,19 @@ pub enum Invalid {
         /// The contact radius at the start.
         start: f64,
     },
+    /// A number of rings that their grading does not take.
+    #[error(
+        "{key} = {rings} is out of range: with basis.grading = \"{word}\" it must be from {lo} to {hi}",
+        word = grading.name(), lo = grading.ring_range().start(), hi = grading.ring_range().end()
+    )]
+    Rings {
+        /// `basis.rings`.
+        key: &'static str,
+        /// The number.
+        rings: usize,
+        /// The grading.
+        grading: Grading,
+    },
     /// A contact radius far beyond the radius of curvature.
     #[error(
         "{key} = {value:?} is out of range: it must be at most {RADIUS_OVER_CURVATURE} x the radius of \
@@ -157,6 +171,7 @@ impl Invalid {
             | Self::OtherChoice { key, .. }
             | Self::Starts { second: key, .. }
             | Self::EndBeyondStart { key, .. }
+            | Self::Rings { key, .. }
             | Self::Wide { key, .. } => Some(key),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }

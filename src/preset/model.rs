@@ -9,6 +9,7 @@ use super::suggest::closest_key;
 use super::text::quote;
 use super::value::Value;
 use crate::contact::{Control, Problem, Shape, Start};
+use crate::ritz::Grading;
 
 /// What a preset file says, complete and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +40,10 @@ pub struct Material {
 pub enum BasisSpec {
     /// Ring elements of constant pressure.
     Rings {
-        /// Their number N, from 4 to 2000.
+        /// Their number N, from 4 to 2000; with edge grading to 400.
         rings: usize,
+        /// How they are spaced.
+        grading: Grading,
     },
     /// Eigenfunctions of the half-space operator.
     Spectral {
@@ -117,12 +120,16 @@ impl Preset {
                 BasisSpec::Spectral { .. } => "spectral".into(),
             },
             "basis.rings" | "basis.functions" => match (key, *basis) {
-                ("basis.rings", BasisSpec::Rings { rings: n })
+                ("basis.rings", BasisSpec::Rings { rings: n, .. })
                 | ("basis.functions", BasisSpec::Spectral { functions: Functions::Count(n) }) => {
                     i64::try_from(n).ok()?.into()
                 }
                 ("basis.functions", BasisSpec::Spectral { functions: Functions::Auto }) => AUTO.into(),
                 _ => return None,
+            },
+            "basis.grading" => match basis {
+                BasisSpec::Rings { grading, .. } => grading.name().into(),
+                BasisSpec::Spectral { .. } => return None,
             },
             "path.control" => path.control.into(),
             "path.control.stiffness" => match path.control {
@@ -231,7 +238,7 @@ pub(super) mod tests {
             title: "a wave".to_owned(),
             material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004 },
             gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
-            basis: BasisSpec::Rings { rings: 200 },
+            basis: BasisSpec::Rings { rings: 200, grading: Grading::Uniform },
             path: PathSpec {
                 control: Control::Displacement,
                 start: Start::ContactRadius(0.5),
@@ -256,7 +263,8 @@ pub(super) mod tests {
             ),
         ];
         let basis = prop_oneof![
-            (4usize..=2000).prop_map(|rings| BasisSpec::Rings { rings }),
+            (4usize..=2000).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Uniform }),
+            (4usize..=400).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Edge }),
             (4usize..=4096).prop_map(|n| BasisSpec::Spectral { functions: Functions::Count(n) }),
             Just(BasisSpec::Spectral { functions: Functions::Auto }),
         ];
@@ -298,7 +306,7 @@ pub(super) mod tests {
         let Preset { title: _, material, gap, basis, path } = wavy();
         let Material { effective_modulus: _, work_of_adhesion: _ } = material;
         match basis {
-            BasisSpec::Rings { rings: _ } | BasisSpec::Spectral { functions: _ } => {}
+            BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Spectral { functions: _ } => {}
         }
         let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
         match gap {
@@ -316,6 +324,7 @@ pub(super) mod tests {
             "gap.wavelength",
             "basis.kind",
             "basis.rings",
+            "basis.grading",
             "basis.functions",
             "path.control",
             "path.control.stiffness",
@@ -335,6 +344,7 @@ pub(super) mod tests {
                 "gap.shape" => "sphere".into(),
                 "basis.kind" => "spectral".into(),
                 "basis.rings" | "basis.functions" => 77.into(),
+                "basis.grading" => "edge".into(),
                 "path.control" => Control::Force.into(),
                 "path.end_contact_radius" => 0.003.into(),
                 _ => Value::Number(0.75),
@@ -407,6 +417,23 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn graded_rings_have_a_bound_of_their_own() {
+        let mut preset = wavy();
+        preset.set("basis.grading", "edge".into()).unwrap();
+        preset.set("basis.rings", 400.into()).unwrap();
+        assert_eq!(preset.basis, BasisSpec::Rings { rings: 400, grading: Grading::Edge });
+        let many = preset.set("basis.rings", 401.into()).unwrap_err();
+        let words =
+            "basis.rings = 401 is out of range: with basis.grading = \"edge\" it must be from 4 to 400";
+        assert_eq!(many.to_string(), words);
+        preset.reset("basis.grading").unwrap();
+        preset.set("basis.rings", 401.into()).unwrap();
+        assert_eq!(preset.set("basis.grading", "edge".into()).unwrap_err().to_string(), words);
+        preset.set("basis.kind", "spectral".into()).unwrap();
+        assert_eq!(preset.get("basis.grading"), None);
+    }
+
+    #[test]
     fn a_refused_value_changes_nothing() {
         for (key, value, words) in [
             ("gap.amplitude", Value::Number(f64::NAN), "out of range"),
@@ -435,7 +462,7 @@ pub(super) mod tests {
     fn a_preset_made_in_code_is_checked() {
         let mut preset = wavy();
         preset.material.effective_modulus = f64::INFINITY;
-        preset.basis = BasisSpec::Rings { rings: 3 };
+        preset.basis = BasisSpec::Rings { rings: 3, grading: Grading::Uniform };
         assert_eq!(preset.check().unwrap_err().len(), 2);
     }
 }

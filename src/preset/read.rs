@@ -348,6 +348,7 @@ mod tests {
     use crate::contact::Start;
     use crate::contact::{Control, Shape};
     use crate::preset::model::{BasisSpec, Functions};
+    use crate::ritz::Grading;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
@@ -528,8 +529,14 @@ end_contact_radius = 0.002
 
     #[test]
     fn assignments_are_laid_over_the_file_in_order() {
-        assert_eq!(set(&["basis.rings=400"]).basis, BasisSpec::Rings { rings: 400 });
-        assert_eq!(set(&["basis.rings=400", "basis.rings = 50"]).basis, BasisSpec::Rings { rings: 50 });
+        assert_eq!(
+            set(&["basis.rings=400"]).basis,
+            BasisSpec::Rings { rings: 400, grading: Grading::Uniform }
+        );
+        assert_eq!(
+            set(&["basis.rings=400", "basis.rings = 50"]).basis,
+            BasisSpec::Rings { rings: 50, grading: Grading::Uniform }
+        );
         assert_eq!(set(&["title=a = b"]).title, "a = b");
         for spring in [
             "path.control=stiffness=0.15",
@@ -585,7 +592,7 @@ end_contact_radius = 0.002
         let text = WAVY.replace("= 200", "= 1");
         assert_eq!(
             read_with("w.toml", &text, &["basis.rings=9"]).unwrap().basis,
-            BasisSpec::Rings { rings: 9 }
+            BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
         );
     }
 

@@ -204,6 +204,15 @@ pub static PARAMETERS: &[Parameter] = &[
         applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
     },
     Parameter {
+        key: "basis.grading",
+        label: "grading",
+        meaning: "spacing of the rings: uniform as in the paper, edge crowds at most 400 towards the edge",
+        dimension: "",
+        kind: Kind::Choice(&["uniform", "edge"]),
+        fallback: Fallback::Text("uniform"),
+        applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
+    },
+    Parameter {
         key: "basis.functions",
         label: "functions",
         meaning: "number of eigenfunctions; auto takes enough for the waves in the largest contact",

@@ -324,6 +324,7 @@ mod tests {
     use super::*;
     use crate::preset::model::BasisSpec;
     use crate::preset::model::tests::wavy;
+    use crate::ritz::Grading;
     use rustix::fs::{CWD, FileType, Mode, mknodat};
     use std::os::unix::fs::{PermissionsExt, symlink};
 
@@ -337,7 +338,7 @@ mod tests {
     }
 
     fn with_rings(rings: usize) -> Preset {
-        Preset { basis: BasisSpec::Rings { rings }, ..wavy() }
+        Preset { basis: BasisSpec::Rings { rings, grading: Grading::Uniform }, ..wavy() }
     }
 
     #[test]

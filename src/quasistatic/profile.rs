@@ -133,8 +133,8 @@ mod tests {
     fn points_are_finite_in_order_and_dense_at_the_edge() {
         let (problem, s) = (problem(0.0025, 1e-4), 0.37);
         let spectral = Spectral::resolving(&problem, 0.5).unwrap();
-        let rings = Rings::uniform(50).unwrap();
-        for basis in [&spectral as &dyn Basis, &rings] {
+        let rings = Rings::shared(50).unwrap();
+        for basis in [&spectral as &dyn Basis, rings.as_ref()] {
             let at = basis.equilibrium(&problem, s).unwrap();
             let profile = Profile::of(&problem, basis, s, at.approach);
             assert!(profile.inside.iter().all(|at| at.pressure.is_finite() && at.radius < s));
@@ -151,6 +151,6 @@ mod tests {
         let profile = Profile::of(&problem, &spectral, s, 0.1);
         let [last, before] = [1, 2].map(|k| profile.inside[profile.inside.len() - k].radius);
         assert!(last - before < 1e-3 * s && s - last < 1e-3 * s);
-        assert_eq!(Profile::of(&problem, &rings, s, 0.1).inside.len(), 50);
+        assert_eq!(Profile::of(&problem, rings.as_ref(), s, 0.1).inside.len(), 50);
     }
 }

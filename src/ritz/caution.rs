@@ -1,6 +1,7 @@
 //! What to be careful about in the answers of a basis.
 
-use super::rings::{RING_RANGE, RINGS_PER_WAVE, WEAK_ADHESION};
+use super::mesh::Grading;
+use super::rings::{RINGS_PER_WAVE, WEAK_ADHESION};
 use super::spectral::{DIGITS_WANTED, FUNCTION_RANGE};
 use std::fmt;
 
@@ -13,6 +14,8 @@ pub enum Caution {
         per_wave: f64,
         /// Rings that would be enough.
         wanted: f64,
+        /// How they are spaced.
+        grading: Grading,
     },
     /// The error of ring elements exceeds the adhesion; γ in reduced units.
     WeakAdhesion(f64),
@@ -30,14 +33,17 @@ pub enum Caution {
 impl fmt::Display for Caution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::FewRings { per_wave, wanted } => {
+            Self::FewRings { per_wave, wanted, grading } => {
                 write!(
                     f,
                     "only {per_wave:.1} rings per wave in the largest contact; {RINGS_PER_WAVE} or more are needed: "
                 )?;
-                let most = RING_RANGE.end();
-                if wanted <= *most as f64 {
+                let fits = |grading: Grading| wanted <= *grading.ring_range().end() as f64;
+                let most = *grading.ring_range().end();
+                if fits(grading) {
                     write!(f, "set basis.rings to {wanted} or more")
+                } else if fits(Grading::Uniform) {
+                    write!(f, "even {most} graded rings are too few, set basis.grading to \"uniform\"")
                 } else {
                     write!(f, "even {most} rings are too few, start from a smaller contact")
                 }

@@ -2,11 +2,14 @@
 //!
 //! | file | what lives there |
 //! |---|---|
+//! | [`cholesky`] | the factor of the rings' matrix, by blocks |
 //! | [`caution`] | what to be careful about in a basis' answers |
 //! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
+//! | [`mesh`] | how the rings are spaced |
 //! | [`outside`] | the displacement of the surface outside the contact |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
+//! | [`parallel`] | work on every core, and how far it has come |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
 //! | [`spectral`] | eigenfunctions of the half-space operator, exact to rounding |
 //!
@@ -15,10 +18,13 @@
 //! Everything here is in reduced units (E* = 1).
 
 pub mod caution;
+pub mod cholesky;
 pub mod functional;
 pub mod kernel;
+pub mod mesh;
 pub mod newton;
 pub mod outside;
+pub mod parallel;
 pub mod rings;
 pub mod spectral;
 
@@ -27,6 +33,7 @@ pub(crate) mod examples;
 
 pub use caution::Caution;
 pub use functional::{Evaluation, Forms};
+pub use mesh::Grading;
 pub use newton::{NewtonFailure, NewtonSettings, Solved, solve};
 pub use rings::{Rings, RingsError};
 pub use spectral::{Spectral, SpectralError};

@@ -178,7 +178,7 @@ mod tests {
                 let mut errors = [0.0_f64; 2];
                 for (i, rings) in [100, 400].into_iter().enumerate() {
                     let coarse =
-                        Rings::uniform(rings).unwrap().outside_displacement(&problem, s, delta, &radii);
+                        Rings::shared(rings).unwrap().outside_displacement(&problem, s, delta, &radii);
                     for (a, b) in ours.iter().zip(&coarse).skip(4) {
                         errors[i] = errors[i].max((a - b).abs());
                     }

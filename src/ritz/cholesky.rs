@@ -1,0 +1,143 @@
+//! The Cholesky factor of a symmetric positive definite matrix, by blocks of columns.
+//!
+//! A = LLᵀ. Block k of L follows from those before it ("left-looking"):
+//!
+//! ```text
+//! C   = A[k.., k] − L[k.., ..k] L[k, ..k]ᵀ         one matrix product
+//! L_kk = Cholesky of C's first block,  L[k+1.., k] = C[k+1..] L_kk⁻ᵀ
+//! ```
+//!
+//! and L x = b is solved the same way, x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k]), for many b at once. Nearly all the work is
+//! matrix products, and between blocks the factorization can be asked to stop.
+
+use super::parallel::Progress;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Columns of a block: wide enough for fast products, few enough that stopping comes within milliseconds.
+pub const BLOCK: usize = 64;
+
+/// With fewer right-hand sides than this, products of blocks are slower than plain substitution.
+const MANY: usize = 6;
+
+/// Why there is no factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoFactor {
+    /// The matrix is not positive definite.
+    NotPositiveDefinite,
+    /// It was no longer wanted.
+    Cancelled,
+}
+
+/// L of A = LLᵀ.
+#[derive(Debug)]
+pub struct Factor {
+    lower: DMatrix<f64>,
+    /// `L_kk⁻¹` of every block.
+    inverses: Vec<DMatrix<f64>>,
+}
+
+impl Factor {
+    /// The factor of `a` (n × n, its lower triangle is read); `progress` is told the share of the blocks done.
+    ///
+    /// # Errors
+    /// [`NoFactor`].
+    pub fn new(mut a: DMatrix<f64>, progress: Progress<'_>) -> Result<Self, NoFactor> {
+        let n = a.nrows();
+        let mut inverses = Vec::with_capacity(n.div_ceil(BLOCK));
+        for begin in (0..n).step_by(BLOCK) {
+            if !progress(begin as f64 / n as f64) {
+                return Err(NoFactor::Cancelled);
+            }
+            let end = (begin + BLOCK).min(n);
+            let width = end - begin;
+            let (done, mut panel) = a.columns_range_pair_mut(..begin, begin..end);
+            panel.rows_mut(0, begin).fill(0.0);
+            let mut panel = panel.rows_mut(begin, n - begin);
+            if begin > 0 {
+                let across = done.rows(begin, width).transpose();
+                panel.gemm(-1.0, &done.rows(begin, n - begin), &across, 1.0);
+            }
+            let diagonal = Cholesky::new(panel.rows(0, width).into_owned())
+                .ok_or(NoFactor::NotPositiveDefinite)?
+                .unpack();
+            let mut inverse = DMatrix::identity(width, width);
+            // The diagonal of a Cholesky factor is positive, so a solve cannot meet a zero pivot.
+            diagonal.solve_lower_triangular_unchecked_mut(&mut inverse);
+            let below = panel.rows(width, n - end) * inverse.transpose();
+            panel.rows_mut(0, width).copy_from(&diagonal);
+            panel.rows_mut(width, n - end).copy_from(&below);
+            inverses.push(inverse);
+        }
+        Ok(Self { lower: a, inverses })
+    }
+
+    /// Columns ← L⁻¹ columns, n rows each.
+    pub fn forward(&self, columns: &mut DMatrix<f64>) {
+        if columns.ncols() < MANY {
+            self.lower.solve_lower_triangular_unchecked_mut(columns);
+            return;
+        }
+        let mut begin = 0;
+        for inverse in &self.inverses {
+            let width = inverse.nrows();
+            let (done, mut here) = columns.rows_range_pair_mut(..begin, begin..begin + width);
+            if begin > 0 {
+                here.gemm(-1.0, &self.lower.view((begin, 0), (width, begin)), &done, 1.0);
+            }
+            let solved = inverse * &here;
+            here.copy_from(&solved);
+            begin += width;
+        }
+    }
+
+    /// x ← A⁻¹ x.
+    pub fn solve(&self, x: &mut DVector<f64>) {
+        self.lower.solve_lower_triangular_unchecked_mut(x);
+        self.lower.tr_solve_lower_triangular_unchecked_mut(x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix of this size with condition about 1e3.
+    fn example(n: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(n, n, |i, j| (-(i.abs_diff(j) as f64) / 20.0).exp())
+    }
+
+    #[test]
+    fn factor_and_solutions_are_those_of_the_matrix() {
+        for n in [1, 5, BLOCK, BLOCK + 1, 200] {
+            let a = example(n);
+            let factor = Factor::new(a.clone(), &mut |_| true).unwrap();
+            let back = &factor.lower * factor.lower.transpose();
+            assert!((back - &a).amax() < 1e-14, "{n}");
+            let wanted = DMatrix::from_fn(n, 9, |i, j| ((i * 7 + j * 3) as f64).sin());
+            for columns in [1, 9] {
+                let mut x = &factor.lower * wanted.columns(0, columns);
+                factor.forward(&mut x);
+                assert!((x - wanted.columns(0, columns)).amax() < 1e-12, "{n} {columns}");
+            }
+            let mut x = &a * wanted.column(0);
+            factor.solve(&mut x);
+            assert!((x - wanted.column(0)).amax() < 1e-11, "{n}");
+        }
+    }
+
+    #[test]
+    fn it_stops_when_asked_and_refuses_what_is_not_positive_definite() {
+        let mut told = Vec::new();
+        let stopped = Factor::new(example(4 * BLOCK), &mut |share| {
+            told.push(share);
+            share < 0.5
+        });
+        assert_eq!(stopped.unwrap_err(), NoFactor::Cancelled);
+        assert_eq!(told, [0.0, 0.25, 0.5]);
+        for bad in [-1.0, f64::NAN] {
+            let mut a = example(100);
+            a[(90, 90)] = bad;
+            assert_eq!(Factor::new(a, &mut |_| true).unwrap_err(), NoFactor::NotPositiveDefinite);
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! Work in equal parts on every core, and how far a long one has come.
+
+use std::num::NonZeroUsize;
+use std::thread;
+
+/// Told the share done of a long computation, from 0 to 1; answers whether it is still wanted.
+pub type Progress<'a> = &'a mut dyn FnMut(f64) -> bool;
+
+/// Parts that run at the same time.
+pub fn cores() -> usize {
+    thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
+/// Does `work` on every part at the same time, the first on the caller's thread; returns when all are done.
+pub fn each<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
+    let mut parts = parts.into_iter();
+    let Some(own) = parts.next() else { return };
+    let work = &work;
+    thread::scope(|scope| {
+        for part in parts {
+            scope.spawn(move || work(part));
+        }
+        work(own);
+    });
+}
