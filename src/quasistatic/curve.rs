@@ -122,12 +122,8 @@ impl Curve {
     ) -> Option<Self> {
         let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
         let wanted = steps.len();
-        let evaluations: Vec<Evaluation> = steps
-            .into_iter()
-            .take_while(|_| go_on())
-            .map_while(|s| basis.equilibrium(&problem, s))
-            .filter(|e| e.approach.is_finite() && e.force.is_finite())
-            .collect();
+        let mut evaluations = basis.equilibria(&problem, &steps, &mut go_on);
+        evaluations.retain(|e| e.approach.is_finite() && e.force.is_finite());
         let reached = evaluations.last()?.contact_radius;
         let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
         let branch = branch_through(&equilibrium, &evaluations);
@@ -154,8 +150,7 @@ impl Curve {
         /// Coarse sampling for the ranges only.
         const STEPS_PER_WAVE: f64 = 8.0;
         let steps = radii(from, to, problem.gap.feature_length(), STEPS_PER_WAVE);
-        let evaluations: Vec<Evaluation> =
-            steps.into_iter().map_while(|s| basis.equilibrium(&problem, s)).collect();
+        let evaluations = basis.equilibria(&problem, &steps, &mut go_on);
         let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
         let start = equilibrium.explicit(from)?;
         let mut settings = settings(&equilibrium);
@@ -183,8 +178,7 @@ impl Curve {
         let from = if inward { self.innermost() } else { self.outermost() };
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
         let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let mut evaluations: Vec<Evaluation> =
-            steps.into_iter().skip(1).map_while(|s| basis.equilibrium(problem, s)).collect();
+        let mut evaluations = basis.equilibria(problem, steps.get(1..).unwrap_or_default(), &mut || true);
         if !inward {
             evaluations.reverse();
         }

@@ -14,6 +14,7 @@
 use super::curve::radii;
 use super::equilibrium::{Equilibrium, State};
 use crate::contact::{Control, Gap};
+use crate::ritz::Evaluation;
 use gauss_quad::GaussLegendre;
 
 /// Steps per wave of the area's Gauss rule, four nodes each: the two losses then agree to about 1e-10.
@@ -80,22 +81,22 @@ pub fn area(
         Control::Stiffness(k) => k * (value - delta),
     };
     let rule = GaussLegendre::new(4.try_into().ok()?);
-    let mut area = 0.0;
-    let mut solvable = true;
+    let (mut nodes, mut weights) = (Vec::new(), Vec::new());
     for pair in radii.windows(2) {
         // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
         let (a, b) = (pair[0].sqrt(), pair[1].sqrt());
-        area -= rule.integrate(a, b, |x| {
-            let Some(e) = equilibrium.basis.equilibrium(&equilibrium.problem, x * x) else {
-                solvable = false;
-                return 0.0;
-            };
-            (e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x
-        });
+        for (t, weight) in &rule {
+            let x = 0.5 * (a + b) + 0.5 * (b - a) * t;
+            nodes.push(x * x);
+            weights.push(0.5 * (b - a) * weight * 2.0 * x);
+        }
     }
+    let found = equilibrium.basis.equilibria(&equilibrium.problem, &nodes, &mut || true);
+    let term = |e: &Evaluation, weight: f64| weight * (e.force - line(e.approach)) * e.slopes()[0];
+    let mut area = -found.iter().zip(&weights).map(|(e, weight)| term(e, *weight)).sum::<f64>();
     if let (None, Control::Stiffness(k)) = (after, control) {
         // From δ = 0 along P = 0 to the slack spring at δ = Δ*.
         area += 0.5 * k * value * value;
     }
-    solvable.then_some(area)
+    (found.len() == nodes.len()).then_some(area)
 }
