@@ -16,7 +16,7 @@
 //! Aᵢ²/2 ∝ ∫_band C dq ∝ q₋^(−2H) − q₊^(−2H),   Σ Aᵢ²/2 = rms²
 //! ```
 //!
-//! so rms is the root mean square of the sum of waves over a radius long compared to λ_long. The numbers are drawn in
+//! so rms is the root mean square of the sum of waves over a radius long compared to `λ_long`. The numbers are drawn in
 //! the order wavenumber, phase, from the longest band to the shortest, from [`SplitMix64`] with the seed: bit for bit the
 //! same everywhere. Lengths and exponent only stretch the result, so a knob turned keeps the surface and its
 //! character. exp, ln and pow are those of the crate `libm`, in software, not of the machine's library.
@@ -155,8 +155,8 @@ mod tests {
         let drawn = ROUGH.harmonics().unwrap();
         let waves = drawn.waves();
         for (wave, [amplitude, wavelength, phase]) in [
-            (waves[0], [1.077_514_758_429_702_2e-3, 0.465_021_028_329_047_88, 1.004_746_630_989_579_6]),
-            (waves[39], [5.095_967_198_706_603_5e-5, 0.010_690_113_807_173_642, 3.119_045_197_017_591_1]),
+            (waves[0], [1.077_514_758_429_702_2e-3, 0.465_021_028_329_047_9, 1.004_746_630_989_579_6]),
+            (waves[39], [5.095_967_198_706_604e-5, 0.010_690_113_807_173_642, 3.119_045_197_017_591]),
         ] {
             assert!((wave.amplitude / amplitude - 1.0).abs() < 1e-14, "{wave:?}");
             assert!((wave.wavelength / wavelength - 1.0).abs() < 1e-14, "{wave:?}");
@@ -170,7 +170,7 @@ mod tests {
     fn a_knob_keeps_the_surface() {
         let stretched = RandomWaves { rms: 4e-3, longest: 5.0, shortest: 0.1, ..ROUGH }.harmonics().unwrap();
         for (a, b) in ROUGH.harmonics().unwrap().waves().iter().zip(stretched.waves()) {
-            assert_eq!(a.phase, b.phase);
+            assert!((b.phase - a.phase).abs() < 1e-15);
             assert!((b.amplitude / a.amplitude - 2.0).abs() < 1e-12);
             assert!((b.wavelength / a.wavelength - 10.0).abs() < 1e-12);
         }

@@ -5,7 +5,7 @@
 //! z = s;   z ← (z ⊕ z≫30) · bf58476d1ce4e5b9;   z ← (z ⊕ z≫27) · 94d049bb133111eb;   z ⊕ z≫31
 //! ```
 //!
-//! modulo 2⁶⁴: SplitMix64 of G. L. Steele, D. Lea and C. H. Flood, *Fast splittable pseudorandom number generators*,
+//! modulo 2⁶⁴: the `SplitMix64` of G. L. Steele, D. Lea and C. H. Flood, *Fast splittable pseudorandom number generators*,
 //! OOPSLA 2014, doi:10.1145/2660193.2660195, with the mixing constants of Stafford's variant 13.
 //!
 //! A preset names a surface by its seed, so the stream is part of the file format. This one is fixed by the three
