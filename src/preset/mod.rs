@@ -16,6 +16,7 @@
 //! | [`shipped`] | the presets that come with the program |
 //! | [`name`] | which names a person's preset may have |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
+//! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 //! | [`atomic`] | writing a file whole or not at all |
 //! | [`lock`] | one saver at a time in a folder |
 //! | [`store`] | the folder of a person's presets: resolve, load, list, save |
@@ -30,6 +31,7 @@ pub mod lock;
 pub mod manual;
 pub mod model;
 pub mod name;
+pub mod profile;
 pub mod read;
 pub mod schema;
 pub mod shipped;

@@ -1,0 +1,408 @@
+//! Reading a measured profile: two columns of text, radius and gap, from a file nobody has looked at.
+//!
+//! ```text
+//! # any remark                     lines beginning with #, % or // are remarks, empty lines nothing
+//! r [um], h (nm)                   one header before the first row, with the units in brackets or parentheses
+//! 0.0, 0.00                        cells parted by semicolons, tabs, commas or spaces: what the first row shows,
+//! 0.5, 0.13                        in this order; numbers with a decimal point
+//! ```
+//!
+//! Units are handed on as they are written. Where there is no header, the last remark above the first row serves as one
+//! if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
+//! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
+//!
+//! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
+//! come in runs, and every fault must name its line.
+
+use super::file::{FileError, Fingerprint, read_bytes};
+use super::text::{is_unsafe, quote, show_path};
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use thiserror::Error;
+
+/// The largest file, in bytes.
+pub const LARGEST: u64 = 64 << 20;
+/// The allowed numbers of rows: fewer are no profile, more belong in a mean before.
+pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
+/// How many faults a message lists.
+pub const FAULTS_SHOWN: usize = 20;
+/// The longest line, in bytes; two numbers need far less.
+pub const LONGEST_LINE: usize = 1024;
+/// The largest number, as in presets.
+pub const LARGEST_NUMBER: f64 = 1e30;
+
+/// A profile as read: radii ascending from the axis, each once, and their gaps, in the units of the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Columns {
+    /// r.
+    pub radii: Vec<f64>,
+    /// h.
+    pub gaps: Vec<f64>,
+    /// The units of r and h as written in the header, without their brackets.
+    pub units: [Option<String>; 2],
+    /// What was put right, in words.
+    pub notes: Vec<String>,
+}
+
+/// What is wrong with one line.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Fault {
+    /// The line is far too long.
+    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
+    Long(usize),
+    /// Characters that are not for the eye.
+    #[error("holds control or invisible characters")]
+    Unprintable,
+    /// Not two cells.
+    #[error("has {0} cells, and a row has two: radius and gap")]
+    Cells(usize),
+    /// An empty cell.
+    #[error("the {0} is missing")]
+    Missing(&'static str),
+    /// Not a number.
+    #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
+    Number {
+        /// Which cell.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// Not finite, or absurdly large.
+    #[error("the {what} \"{text}\" is out of range: it must be at most {LARGEST_NUMBER:e} in size")]
+    Range {
+        /// Which cell.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// A negative radius.
+    #[error("the radius {0:?} is negative: radii count from the axis")]
+    Negative(f64),
+    /// A radius that an earlier line gives another gap.
+    #[error("the radius {radius:?} has another gap in line {line}")]
+    Twice {
+        /// The radius.
+        radius: f64,
+        /// The earlier line.
+        line: usize,
+    },
+}
+
+/// The faults of a file, in the order of their lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Faults {
+    /// The line of each, from 1, and what is wrong; the first [`FAULTS_SHOWN`].
+    pub shown: Vec<(usize, Fault)>,
+    /// How many there are.
+    pub total: usize,
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (line, fault)) in self.shown.iter().enumerate() {
+            write!(f, "{}line {line}: {fault}", if i > 0 { "\n" } else { "" })?;
+        }
+        match self.total - self.shown.len() {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+/// Why a file gives no profile.
+#[derive(Debug, Error)]
+pub enum ProfileError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The text of the file is no profile.
+    #[error("{path}: {cause}")]
+    Text {
+        /// The file, safe to show.
+        path: String,
+        /// What is wrong.
+        cause: TextError,
+    },
+}
+
+/// Why a text gives no profile.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TextError {
+    /// Bytes that are no text.
+    #[error("line {0}: is not UTF-8 text")]
+    NotText(usize),
+    /// Lines with faults.
+    #[error("{0}")]
+    Faults(Faults),
+    /// Too few or too many rows.
+    #[error("has {0} rows, and a profile has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
+    Rows(usize),
+    /// A unit that is not known.
+    #[error("the unit \"{unit}\" of the {what} is not known")]
+    Unit {
+        /// Which column.
+        what: &'static str,
+        /// The unit, safe to show.
+        unit: String,
+    },
+}
+
+/// The two columns, as messages call them.
+const COLUMNS: [&str; 2] = ["radius", "gap"];
+
+/// Reads the profile in the file `path`.
+///
+/// # Errors
+/// [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
+pub fn read_profile(path: &Path) -> Result<(Columns, Fingerprint), ProfileError> {
+    let (bytes, fingerprint) = read_bytes(path, LARGEST)?;
+    let columns = parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })?;
+    Ok((columns, fingerprint))
+}
+
+impl Columns {
+    /// The same in the units that `factor` makes of unit names; a column without one is left as it is.
+    ///
+    /// # Errors
+    /// [`TextError::Unit`] when `factor` does not know a unit.
+    pub fn in_units(mut self, factor: impl Fn(&str) -> Option<f64>) -> Result<Self, TextError> {
+        for ((unit, numbers), what) in self.units.iter().zip([&mut self.radii, &mut self.gaps]).zip(COLUMNS) {
+            let Some(unit) = unit else { continue };
+            let factor = factor(unit).ok_or_else(|| TextError::Unit { what, unit: quote(unit) })?;
+            for number in numbers {
+                *number *= factor;
+            }
+        }
+        Ok(self)
+    }
+}
+
+/// What parts the cells of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Separator {
+    Character(char),
+    Spaces,
+}
+
+impl Separator {
+    /// What a line shows.
+    fn of(line: &str) -> Self {
+        [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
+    }
+
+    /// The cells of a row.
+    fn cells(self, line: &str) -> Vec<&str> {
+        match self {
+            Self::Character(c) => line.split(c).map(bare).collect(),
+            Self::Spaces => line.split_whitespace().map(bare).collect(),
+        }
+    }
+}
+
+/// A cell without the space and the quotation marks around it.
+fn bare(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
+}
+
+/// The units of a header in two cells, or `None` when it has another number of cells.
+///
+/// What stands in brackets is not parted, and belongs to the cell before it.
+fn header_units(line: &str, separator: Separator) -> Option<[Option<String>; 2]> {
+    let mut cells: Vec<(String, Option<String>)> = vec![Default::default()];
+    let mut open: Option<(char, String)> = None;
+    for c in line.chars() {
+        match (&mut open, separator) {
+            (Some((close, unit)), _) if c == *close => {
+                let unit = unit.trim().to_owned();
+                open = None;
+                // Spaces between a name and its unit have opened a cell too many.
+                if separator == Separator::Spaces && cells.len() > 1 && cells.last()?.0.is_empty() {
+                    cells.pop();
+                }
+                cells.last_mut()?.1 = (!unit.is_empty()).then_some(unit);
+            }
+            (Some((_, unit)), _) => unit.push(c),
+            (None, _) if c == '[' || c == '(' => {
+                open = Some((if c == '[' { ']' } else { ')' }, String::new()));
+            }
+            (None, Separator::Character(parting)) if c == parting => cells.push(Default::default()),
+            (None, Separator::Spaces) if c.is_whitespace() => {
+                let (name, unit) = cells.last()?;
+                if !(name.is_empty() && unit.is_none()) {
+                    cells.push(Default::default());
+                }
+            }
+            (None, _) => cells.last_mut()?.0.push(c),
+        }
+    }
+    if separator == Separator::Spaces {
+        cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
+    }
+    let [(_, first), (_, second)] = <[_; 2]>::try_from(cells).ok()?;
+    Some([first, second])
+}
+
+/// The text of a remark.
+fn remark(line: &str) -> Option<&str> {
+    ["#", "%", "//"].into_iter().find_map(|mark| line.strip_prefix(mark))
+}
+
+/// A row with its line.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    line: usize,
+    radius: f64,
+    gap: f64,
+}
+
+/// Reads the profile in `bytes`, the content of a file.
+///
+/// # Errors
+/// [`TextError`] with the lines that are wrong.
+pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = bytes.get(..error.valid_up_to()).unwrap_or_default();
+        TextError::NotText(before.split(|byte| *byte == b'\n').count())
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut faults = Faults { shown: Vec::new(), total: 0 };
+    let mut rows: Vec<Row> = Vec::new();
+    let mut separator = None;
+    // The header, or a remark that may be one.
+    let (mut header, mut candidate) = (None, None);
+    for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
+        if text.chars().any(|c| c != '\t' && is_unsafe(c)) {
+            faults.add(line, Fault::Unprintable);
+            continue;
+        }
+        if text.is_empty() {
+            continue;
+        }
+        if let Some(remark) = remark(text) {
+            if separator.is_none() {
+                candidate = Some(remark);
+            }
+            continue;
+        }
+        if text.len() > LONGEST_LINE {
+            faults.add(line, Fault::Long(text.len()));
+            continue;
+        }
+        if separator.is_none() && header.is_none() && is_header(text) {
+            header = Some(text);
+            continue;
+        }
+        let separator = *separator.get_or_insert_with(|| Separator::of(text));
+        match row(text, separator) {
+            Ok((radius, gap)) => rows.push(Row { line, radius, gap }),
+            Err(fault) => faults.add(line, fault),
+        }
+    }
+    let mut columns = Columns::default();
+    if let Some(separator) = separator {
+        columns.units = units(header, candidate, separator);
+    }
+    gather(rows, &mut columns, &mut faults);
+    if faults.total > 0 {
+        return Err(TextError::Faults(faults));
+    }
+    if !ROW_RANGE.contains(&columns.radii.len()) {
+        return Err(TextError::Rows(columns.radii.len()));
+    }
+    Ok(columns)
+}
+
+impl Faults {
+    fn add(&mut self, line: usize, fault: Fault) {
+        if self.shown.len() < FAULTS_SHOWN {
+            self.shown.push((line, fault));
+        }
+        self.total += 1;
+    }
+}
+
+/// A line before the first row of which no cell begins a number.
+fn is_header(line: &str) -> bool {
+    let cells = Separator::of(line).cells(line);
+    cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
+        && cells.iter().all(|cell| cell.parse::<f64>().is_err())
+        && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
+/// The units of the header; of a remark only if it names both.
+fn units(header: Option<&str>, remark: Option<&str>, separator: Separator) -> [Option<String>; 2] {
+    // A header may be parted otherwise than the rows below it.
+    let read = |line: &str| header_units(line, separator).or_else(|| header_units(line, Separator::of(line)));
+    if let Some(header) = header {
+        return read(header).unwrap_or_default();
+    }
+    remark
+        .and_then(|line| read(line.trim()))
+        .filter(|units| units.iter().all(Option::is_some))
+        .unwrap_or_default()
+}
+
+/// The radius and the gap of a row.
+fn row(text: &str, separator: Separator) -> Result<(f64, f64), Fault> {
+    let cells = separator.cells(text);
+    let &[radius, gap] = cells.as_slice() else {
+        return Err(match cells.len() {
+            1 => Fault::Missing(COLUMNS[1]),
+            many => Fault::Cells(many),
+        });
+    };
+    let (radius, gap) = (number(radius, COLUMNS[0])?, number(gap, COLUMNS[1])?);
+    if radius < 0.0 { Err(Fault::Negative(radius)) } else { Ok((radius, gap)) }
+}
+
+fn number(text: &str, what: &'static str) -> Result<f64, Fault> {
+    if text.is_empty() {
+        return Err(Fault::Missing(what));
+    }
+    let number: f64 = text.parse().map_err(|_| Fault::Number { what, text: quote(text) })?;
+    if number.abs() <= LARGEST_NUMBER {
+        // −0 is 0, so that rows are compared as numbers.
+        Ok(number + 0.0)
+    } else {
+        Err(Fault::Range { what, text: quote(text) })
+    }
+}
+
+/// Sorts the rows and takes each radius once.
+fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
+    if !rows.is_sorted_by(|a, b| a.radius <= b.radius) {
+        columns.notes.push("the rows were not in the order of their radii and have been sorted".to_owned());
+        // Stable: of equal radii the earlier line stays first.
+        rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    }
+    let mut last: Option<Row> = None;
+    let (mut repeated, mut twice) = (0, Vec::new());
+    for row in rows {
+        match last {
+            Some(Row { line, radius, gap }) if radius.total_cmp(&row.radius).is_eq() => {
+                if gap.total_cmp(&row.gap).is_eq() {
+                    repeated += 1;
+                } else {
+                    twice.push((row.line, Fault::Twice { radius, line }));
+                }
+            }
+            _ => {
+                columns.radii.push(row.radius);
+                columns.gaps.push(row.gap);
+                last = Some(row);
+            }
+        }
+    }
+    if repeated > 0 {
+        columns.notes.push(format!("{repeated} rows were there twice and count once"));
+    }
+    faults.total += twice.len();
+    faults.shown.append(&mut twice);
+    faults.shown.sort_by_key(|(line, _)| *line);
+    faults.shown.truncate(FAULTS_SHOWN);
+}
+
+#[cfg(test)]
+mod tests;
