@@ -31,9 +31,10 @@
 //! | (1), (2) functional, (16) its discretization, (19) stationarity | [`ritz::functional`], [`ritz::newton`] |
 //! | (10), (17) coefficients B | [`ritz::kernel`], [`ritz::rings`] |
 //! | (11), (18) coefficients W, (13)-(15) the scaled mesh | [`ritz::rings`] |
-//! | (20), (23) gaps | [`contact::shape`] |
+//! | (20), (23) gaps; further ones, each in its file | [`contact::shape`], [`contact::shapes`] |
 //! | (21) Hertz, (22) JKR | [`theory::hertz`], [`theory::jkr`] |
 //! | the exact solution for (23) and any other gap | [`theory::guduru`], [`theory::sneddon`], [`theory::disc`], [`theory::unloading`] |
+//! | the same for spheres, power laws, sums of waves | [`theory::sphere`], [`theory::power_law`], [`theory::harmonics`] |
 //! | spherical arc length | [`continuation::corrector`], [`continuation::step`] |
 //! | Fig. 10, jumps and dissipation | [`quasistatic::jump`], [`quasistatic::energy`] |
 //!
