@@ -5,6 +5,8 @@
 use pulloff::case::Case;
 use pulloff::contact::Control;
 use pulloff::preset::{Preset, Store};
+use pulloff::ritz::{NewtonSettings, solve};
+use pulloff::theory::Exact;
 
 /// A shipped preset in eigenfunctions.
 fn preset(name: &str, assignments: &[&str]) -> Preset {
@@ -50,4 +52,60 @@ fn too_few_functions_are_a_warning_and_too_many_waves_an_error_with_numbers() {
     assert!(warning.contains("set basis.functions to"), "{warning}");
     let error = Case::new(&preset("fig-9", &["gap.wavelength=1e-5"])).unwrap_err().to_string();
     assert!(error.contains("50001 waves") && error.contains("4096 functions"), "{error}");
+}
+
+/// Hertz: δ = s²/R and P = 4E*s³/(3R), with E* = R = 1.
+#[test]
+fn without_adhesion_every_way_gives_hertz_to_rounding() {
+    let case = Case::new(&preset("fig-3-jkr", &["material.work_of_adhesion=0"])).unwrap();
+    let check = |way: &str, [approach, force, s]: [f64; 3]| {
+        assert!((approach / (s * s) - 1.0).abs() < 1e-12, "{way}: s = {s}, approach {approach}");
+        assert!((force / (4.0 / 3.0 * s.powi(3)) - 1.0).abs() < 1e-12, "{way}: s = {s}, force {force}");
+    };
+    let curve = case.sweep(|| true).unwrap();
+    assert!(curve.branch.points.len() > 100);
+    for point in &curve.branch.points {
+        check("sweep", curve.equilibrium.quantities(&point.y));
+    }
+    for s in [0.01_f64, 0.1, 0.4] {
+        for (control, value) in [(Control::Displacement, s * s), (Control::Force, 4.0 / 3.0 * s.powi(3))] {
+            let found =
+                solve(case.basis.as_ref(), &case.reduced, control, value, 3.0 * s, NewtonSettings::default());
+            let at = found.unwrap().evaluation;
+            assert!((at.contact_radius / s - 1.0).abs() < 1e-12, "{control}: {} for {s}", at.contact_radius);
+            check(&control.to_string(), [at.approach, at.force, at.contact_radius]);
+        }
+    }
+}
+
+#[test]
+fn a_dense_curve_is_the_exact_one() {
+    let case = Case::new(&preset("fig-9", &[])).unwrap();
+    let radii: Vec<f64> = (0..2000).map(|i| 0.5 - 0.498 * f64::from(i) / 1999.0).collect();
+    let ours = case.basis.equilibria(&case.reduced, &radii, &mut || true);
+    assert_eq!(ours.len(), radii.len());
+    let exact = Exact::of(&case.problem);
+    let units = case.units();
+    let mut columns = [[f64::INFINITY, f64::NEG_INFINITY, 0.0]; 2];
+    for (e, s) in ours.iter().zip(&radii) {
+        let s = s * units.length;
+        let truth = [exact.approach(s), exact.force(s)];
+        for ((column, ours), exact) in
+            columns.iter_mut().zip([e.approach * units.length, e.force * units.force]).zip(truth)
+        {
+            let [lo, hi, worst] = *column;
+            *column = [lo.min(exact), hi.max(exact), worst.max((ours - exact).abs())];
+        }
+    }
+    for [lo, hi, worst] in columns {
+        println!("off by {:.1e} of the range", worst / (hi - lo));
+        assert!(worst < 1e-12 * (hi - lo), "off by {:.1e} of the range", worst / (hi - lo));
+    }
+    // It is made in one piece of work that can be given up between points.
+    let mut asked = 0;
+    let few = case.basis.equilibria(&case.reduced, &radii, &mut || {
+        asked += 1;
+        asked <= 7
+    });
+    assert_eq!(few, ours[..7]);
 }

@@ -27,10 +27,34 @@ pub trait Gap: Debug + Send + Sync {
     /// The gap and its derivatives at the radius `r ≥ 0`.
     fn jet(&self, r: f64) -> Jet;
 
+    /// h at the radii s·x for every x of `nodes`, into a slice as long as they are.
+    ///
+    /// Sums over the gap ask for many radii at once: a gap that answers them together says so here.
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        for (value, x) in values.iter_mut().zip(nodes) {
+            *value = self.jet(s * x).value;
+        }
+    }
+
+    /// h', h'' and h''' at the radii s·x for every x of `nodes`, each into a slice as long as they are.
+    fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
+        for (((first, second), third), x) in first.iter_mut().zip(second).zip(third).zip(nodes) {
+            let jet = self.jet(s * x);
+            (*first, *second, *third) = (jet.first, jet.second, jet.third);
+        }
+    }
+
     /// The shortest wave of the gap, or `None` when it has none.
     ///
     /// Step lengths, mesh warnings and the crest index are measured by it.
     fn feature_length(&self) -> Option<f64>;
+
+    /// The shortest wave of a gap that is smooth apart from its waves, or `None` where nothing is promised.
+    ///
+    /// Sums over such a gap take no more nodes than its waves need.
+    fn band_limit(&self) -> Option<f64> {
+        None
+    }
 
     /// The length by which the problem is reduced (the radius of curvature, where there is one).
     fn reference_length(&self) -> f64;
@@ -64,8 +88,28 @@ impl<G: Gap> Gap for Scaled<G> {
         Jet { value: jet.value / l, first: jet.first, second: jet.second * l, third: jet.third * l * l }
     }
 
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        self.gap.values(self.length * s, nodes, values);
+        for value in values {
+            *value /= self.length;
+        }
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
+        let l = self.length;
+        self.gap.derivatives(l * s, nodes, [first, &mut *second, &mut *third]);
+        for (second, third) in second.iter_mut().zip(third) {
+            *second *= l;
+            *third *= l * l;
+        }
+    }
+
     fn feature_length(&self) -> Option<f64> {
         self.gap.feature_length().map(|f| f / self.length)
+    }
+
+    fn band_limit(&self) -> Option<f64> {
+        self.gap.band_limit().map(|f| f / self.length)
     }
 
     fn reference_length(&self) -> f64 {
@@ -82,8 +126,20 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
         (**self).jet(r)
     }
 
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        (**self).values(s, nodes, values);
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], derivatives: [&mut [f64]; 3]) {
+        (**self).derivatives(s, nodes, derivatives);
+    }
+
     fn feature_length(&self) -> Option<f64> {
         (**self).feature_length()
+    }
+
+    fn band_limit(&self) -> Option<f64> {
+        (**self).band_limit()
     }
 
     fn reference_length(&self) -> f64 {

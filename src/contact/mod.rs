@@ -3,6 +3,7 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`gap`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
+//! | `lanes` | functions of many radii, four at a time |
 //! | [`shape`] | the gap shapes a person can choose |
 //! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
 //! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
@@ -13,6 +14,7 @@
 pub mod control;
 pub mod gap;
 pub mod groups;
+mod lanes;
 pub mod problem;
 pub mod shape;
 pub mod shapes;

@@ -1,7 +1,9 @@
 //! The gap shapes a person can choose.
 
 use super::gap::{Gap, Jet};
-use std::f64::consts::TAU;
+use super::lanes::map_lanes;
+use std::f64::consts::{PI, TAU};
+use wide::f64x4;
 
 /// A gap shape with its parameters, in any consistent units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,9 +69,40 @@ impl Gap for Shape {
         jet
     }
 
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        let curvature = 1.0 / self.radius_of_curvature();
+        let (amplitude, wavelength) = self.wave().unwrap_or((0.0, f64::INFINITY));
+        let half = f64x4::splat(PI / wavelength);
+        map_lanes(nodes, [values], |x| {
+            let r = x * f64x4::splat(s);
+            let sin = (half * r).sin();
+            [r * r * f64x4::splat(0.5 * curvature) + sin * sin * f64x4::splat(2.0 * amplitude)]
+        });
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], derivatives: [&mut [f64]; 3]) {
+        let (s, curvature) = (f64x4::splat(s), f64x4::splat(1.0 / self.radius_of_curvature()));
+        let Some((amplitude, wavelength)) = self.wave() else {
+            return map_lanes(nodes, derivatives, |x| [s * x * curvature, curvature, f64x4::ZERO]);
+        };
+        let q = TAU / wavelength;
+        let [first, second, third] =
+            [amplitude * q, amplitude * q * q, -amplitude * q * q * q].map(f64x4::splat);
+        let q = f64x4::splat(q);
+        map_lanes(nodes, derivatives, |x| {
+            let r = s * x;
+            let (sin, cos) = (q * r).sin_cos();
+            [r * curvature + first * sin, curvature + second * cos, third * sin]
+        });
+    }
+
     fn feature_length(&self) -> Option<f64> {
         // A wave without amplitude is no feature: the mesh and the steps need not resolve it.
         self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
+    }
+
+    fn band_limit(&self) -> Option<f64> {
+        self.feature_length()
     }
 
     fn reference_length(&self) -> f64 {
@@ -80,6 +113,7 @@ impl Gap for Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::gap::Scaled;
 
     #[test]
     fn derivatives_agree_with_central_differences() {
@@ -104,6 +138,34 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn many_radii_at_once_are_the_same_as_one_by_one() {
+        let nodes: Vec<f64> = (0..23).map(|i| f64::from(i) / 22.0).collect();
+        let wave = Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 };
+        for shape in [Shape::Sphere { radius_of_curvature: 1.7 }, wave] {
+            // In another unit of length as well.
+            let gap = Scaled::new(shape, 0.3);
+            let s = 4.1;
+            let mut found = [(); 4].map(|()| vec![f64::NAN; nodes.len()]);
+            let [value, first, second, third] = &mut found;
+            gap.values(s, &nodes, value);
+            gap.derivatives(s, &nodes, [first, second, third]);
+            let jets: Vec<Jet> = nodes.iter().map(|x| gap.jet(s * x)).collect();
+            let columns = [|j: &Jet| j.value, |j: &Jet| j.first, |j: &Jet| j.second, |j: &Jet| j.third];
+            for (k, (column, found)) in columns.iter().zip(&found).enumerate() {
+                let size = jets.iter().map(|jet| column(jet).abs()).fold(0.0, f64::max);
+                for ((jet, found), x) in jets.iter().zip(found).zip(&nodes) {
+                    let off = (column(jet) - found).abs();
+                    // A wave of phase 110 has lost two digits of its argument either way.
+                    assert!(off <= 1e-13 * size, "{gap:?} x={x} derivative {k}: off by {off:e}");
+                }
+            }
+            // Near the axis the gap keeps its digits.
+            let (value, exact) = (found[0][1], jets[1].value);
+            assert!((value / exact - 1.0).abs() < 1e-13, "{gap:?}: {value} {exact}");
         }
     }
 

@@ -7,6 +7,7 @@
 //! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
 //! | [`mesh`] | how the rings are spaced |
+//! | [`moments`] | sums over the gap for force and edge coefficient |
 //! | [`outside`] | the displacement of the surface outside the contact |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
 //! | [`parallel`] | work on every core, and how far it has come |
@@ -22,6 +23,7 @@ pub mod cholesky;
 pub mod functional;
 pub mod kernel;
 pub mod mesh;
+pub mod moments;
 pub mod newton;
 pub mod outside;
 pub mod parallel;
