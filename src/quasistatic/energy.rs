@@ -11,21 +11,18 @@
 //! curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is no such
 //! place: the load falls for ever and no loss is reported.
 
-use super::curve::radii;
 use super::equilibrium::{Equilibrium, State};
 use crate::contact::{Control, Gap};
-use crate::ritz::Evaluation;
 use gauss_quad::GaussLegendre;
 
-/// Steps per wave of the area's Gauss rule, four nodes each: the two losses then agree to about 1e-10.
-const STEPS_PER_WAVE: f64 = 20.0;
+/// Nodes of Gauss's rule in each piece of the area. 12: on half a wave the two losses agree to rounding.
+const NODES: usize = 12;
 
-/// Steps of the area at least in one jump: a short jump encloses a lens so thin that steps by the wave alone leave
-/// 1e-6 of it.
-const STEPS_PER_JUMP: f64 = 8.0;
+/// Pieces of the area per wave of the gap.
+const PIECES_PER_WAVE: f64 = 2.0;
 
-/// Below this share of the radius, and one step of a wave, a pull-off's area is one last piece to s = 0.
-const LAST_PIECE: f64 = 0.02;
+/// Most pieces: a thousand waves.
+const MOST_PIECES: f64 = 2000.0;
 
 /// The potential of bodies and device at `state`, the control held at `value`.
 pub fn potential(control: Control, value: f64, state: &State) -> f64 {
@@ -66,37 +63,38 @@ pub fn area(
     if after.is_none() && control == Control::Force {
         return None;
     }
-    let feature = equilibrium.problem.gap.feature_length();
-    let last_piece = feature.map_or(f64::INFINITY, |wave| wave / STEPS_PER_WAVE).min(LAST_PIECE * before);
-    let to = after.unwrap_or(last_piece);
-    let by_jump = (before - to) / STEPS_PER_JUMP * STEPS_PER_WAVE;
-    let mut radii =
-        radii(before, to, Some(feature.map_or(by_jump, |wave| wave.min(by_jump))), STEPS_PER_WAVE);
-    if after.is_none() {
-        radii.push(0.0);
+    let to = after.unwrap_or(0.0);
+    let waves = equilibrium.problem.gap.feature_length().map_or(0.0, |wave| (before - to) / wave);
+    let pieces = (PIECES_PER_WAVE * waves).ceil().clamp(1.0, MOST_PIECES);
+    // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
+    let edge = |piece: f64| (before + (to - before) * (piece / pieces).min(1.0)).sqrt();
+    let rule = GaussLegendre::new(NODES.try_into().ok()?);
+    let (mut nodes, mut weights) = (Vec::new(), Vec::new());
+    let mut piece = 0.0;
+    while piece < pieces {
+        let (a, b) = (edge(piece), edge(piece + 1.0));
+        nodes.extend(rule.iter().map(|(x, _)| 0.5 * ((a + b) + (b - a) * x)));
+        weights.extend(rule.iter().map(|(_, weight)| 0.5 * (b - a) * weight));
+        piece += 1.0;
+    }
+    let radii: Vec<f64> = nodes.iter().map(|x| x * x).collect();
+    let solved = equilibrium.basis.equilibria(&equilibrium.problem, &radii, &mut || true);
+    if solved.len() < radii.len() {
+        return None;
     }
     let line = |delta: f64| match control {
         Control::Displacement => 0.0,
         Control::Force => value,
         Control::Stiffness(k) => k * (value - delta),
     };
-    let rule = GaussLegendre::new(4.try_into().ok()?);
-    let (mut nodes, mut weights) = (Vec::new(), Vec::new());
-    for pair in radii.windows(2) {
-        // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
-        let (a, b) = (pair[0].sqrt(), pair[1].sqrt());
-        for (t, weight) in &rule {
-            let x = 0.5 * (a + b) + 0.5 * (b - a) * t;
-            nodes.push(x * x);
-            weights.push(0.5 * (b - a) * weight * 2.0 * x);
-        }
-    }
-    let found = equilibrium.basis.equilibria(&equilibrium.problem, &nodes, &mut || true);
-    let term = |e: &Evaluation, weight: f64| weight * (e.force - line(e.approach)) * e.slopes()[0];
-    let mut area = -found.iter().zip(&weights).map(|(e, weight)| term(e, *weight)).sum::<f64>();
+    let mut area: f64 = solved
+        .iter()
+        .zip(nodes.iter().zip(&weights))
+        .map(|(e, (x, weight))| -(e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x * weight)
+        .sum();
     if let (None, Control::Stiffness(k)) = (after, control) {
         // From δ = 0 along P = 0 to the slack spring at δ = Δ*.
         area += 0.5 * k * value * value;
     }
-    (found.len() == nodes.len()).then_some(area)
+    Some(area)
 }

@@ -209,7 +209,8 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
             Some(landing) => here = landing,
         }
     };
-    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
+    let least =
+        |of| least(curve, &nodes, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked_state.filter(|_| unstable_start);
     Ok(Unloading { control, start, asked, events, stop, min_force, min_approach })
@@ -231,10 +232,14 @@ fn landing_inward(curve: &mut Curve, nodes: &mut Nodes, limit: usize) -> Option<
 
 /// The point of a path at which the quantity that `of` controls is smallest: one of its own, or a limit point of
 /// that quantity between them.
-fn least(curve: &Curve, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
+///
+/// Those of the unloading's own control are among its nodes already.
+fn least(curve: &Curve, nodes: &Nodes, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
     let row = curve.equilibrium.control_row(of);
-    let limits = curve.limit_points(of);
-    let between = limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, path, events, p));
+    let others = if of == nodes.control { Vec::new() } else { curve.limit_points(of) };
+    let own = nodes.limit_points().filter(|_| of == nodes.control);
+    let between =
+        own.chain(others.iter().map(|l| &l.point)).filter(|p| is_on(&curve.equilibrium, path, events, p));
     path.iter().chain(between).min_by(|a, b| row.dot(&a.y).total_cmp(&row.dot(&b.y))).cloned()
 }
 
