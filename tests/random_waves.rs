@@ -1,14 +1,14 @@
 //! Every limit point of sixty random wavy spheres is found by the arc-length trace.
 //!
 //! The truth is the explicit curve δ(s), P(s) of the same discretization: sign changes of its exact slopes on
-//! a grid of a hundredth of a wave.
+//! a grid of a hundredth of a wave. With eigenfunctions that is the exact solution.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
 use pulloff::continuation::trace::Stop;
 use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Limit};
-use pulloff::ritz::{Basis, Rings};
+use pulloff::ritz::{Basis, Rings, Spectral};
 use std::sync::Arc;
 
 const FROM: f64 = 1.0;
@@ -50,12 +50,23 @@ fn radii(equilibrium: &Equilibrium, limits: &[Limit]) -> Vec<f64> {
 }
 
 #[test]
-fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres() {
+fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_rings() {
+    every_limit_point_is_found("400 rings", |_| Rings::shared(400).unwrap());
+}
+
+#[test]
+fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_eigenfunctions() {
+    every_limit_point_is_found("eigenfunctions", |problem| {
+        Arc::new(Spectral::resolving(problem, FROM).unwrap())
+    });
+}
+
+fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Basis>) {
     let mut random = fastrand::Rng::with_seed(20_260_611);
-    let basis: Arc<dyn Basis> = Rings::shared(400).unwrap();
     let (mut points, mut evaluations, mut rejections, mut total) = (Vec::new(), 0, 0, 0);
     for problem_number in 0..60 {
         let (problem, wavelength) = draw(&mut random);
+        let basis = basis(&problem);
         let truth = sign_changes(&problem, &basis, wavelength);
         let traced = Curve::traced(problem.clone(), basis.clone(), FROM, TO, |_| {}, || true).unwrap();
         assert_eq!(traced.stop, CurveStop::End, "{problem_number}");
@@ -85,7 +96,7 @@ fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres() {
     points.sort_unstable();
     let median = points[30];
     println!(
-        "median {median} points (from {} to {}), {} evaluations and {} rejections a trace, {total} limit points",
+        "{name}: median {median} points (from {} to {}), {} evaluations and {} rejections a trace, {total} limit points",
         points[0],
         points[59],
         evaluations / 60,
