@@ -8,7 +8,8 @@ use divan::{Bencher, black_box};
 use pulloff::case::Case;
 use pulloff::contact::Control;
 use pulloff::preset::{BasisSpec, Functions, Store};
-use pulloff::ritz::{Grading, Rings};
+use pulloff::ritz::moments::EdgeRules;
+use pulloff::ritz::{Evaluation, Grading, Rings};
 
 /// The ring numbers.
 const SIZES: [usize; 3] = [50, 200, 800];
@@ -87,6 +88,54 @@ fn unload_by_force(bencher: Bencher, rings: usize) {
 #[divan::bench(args = SIZES, max_time = 5)]
 fn unload_by_spring(bencher: Bencher, rings: usize) {
     unload(bencher, &fig_9(rings), Control::Stiffness(0.15));
+}
+
+/// Radii of the dense curve.
+const DENSE: usize = 2000;
+
+fn dense_radii() -> Vec<f64> {
+    (0..DENSE).map(|i| 0.5 + (0.002 - 0.5) * i as f64 / (DENSE - 1) as f64).collect()
+}
+
+fn dense(case: &Case, radii: &[f64]) -> Vec<Evaluation> {
+    case.basis.equilibria(&case.reduced, radii, &mut || true)
+}
+
+/// 2000 explicit points.
+#[divan::bench(args = TRACED, max_time = 5)]
+fn dense_curve(bencher: Bencher, rings: usize) {
+    let (case, radii) = (fig_9(rings), dense_radii());
+    bencher.bench_local(|| dense(&case, black_box(&radii)));
+}
+
+#[divan::bench]
+fn spectral_dense_curve(bencher: Bencher) {
+    let (case, radii) = (fig_9_spectral(), dense_radii());
+    bencher.bench_local(|| dense(&case, black_box(&radii)));
+}
+
+/// The gap alone, sampled where the dense curve samples it: what no basis can go below.
+#[divan::bench]
+fn spectral_dense_curve_floor(bencher: Bencher) {
+    let (case, radii) = (fig_9_spectral(), dense_radii());
+    let rules = EdgeRules::new(case.basis.size());
+    let gap = case.reduced.gap.as_ref();
+    let mut values = vec![0.0; case.basis.size() + 16];
+    bencher.bench_local(|| {
+        for &s in black_box(&radii) {
+            let nodes = rules.nodes(gap, s);
+            gap.values(s, nodes, &mut values[..nodes.len()]);
+            black_box(&mut values);
+        }
+    });
+}
+
+/// The limit points under displacement, force and a spring, on a curve that is there.
+#[divan::bench(max_time = 5)]
+fn spectral_limit_points(bencher: Bencher) {
+    let curve = fig_9_spectral().sweep(|| true).unwrap();
+    let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
+    bencher.bench_local(|| controls.map(|control| curve.limit_points(control).len()));
 }
 
 /// The smallest automatic number of functions, its tail checked.
