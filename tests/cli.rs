@@ -104,7 +104,8 @@ fn records(text: &str) -> Vec<Vec<String>> {
 }
 
 const TRACE_HEADER: &str = "step,contact_radius,approach,force,energy,newton_iterations,\
-                            stable_displacement,stable_force,stable_chosen";
+                            stable_displacement,stable_force,stable_chosen,\
+                            contact_stiffness,tangent_stiffness,area_slope";
 const UNLOAD_HEADER: &str = "kind,control_value,before_contact_radius,before_approach,before_force,before_wave,\
                              after_contact_radius,after_approach,after_force,after_wave,dissipated,\
                              dissipated_by_area,reason";
@@ -118,6 +119,36 @@ fn short<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 // ---- trace ----
 
 #[test]
+fn trace_says_how_force_and_area_answer_to_the_approach() {
+    let home = Home::new();
+    let (modulus, end) = (3.0, 0.05);
+    let changed = ["material.effective_modulus=3", "path.end_contact_radius=0.05"];
+    let document = home.json(&["trace", "wavy-sphere", "--set", changed[0], "--set", changed[1]]);
+    let points = document["points"].as_array().unwrap();
+    let of = |point: &Value, name: &str| point[name].as_f64().unwrap();
+    assert!(of(points.last().unwrap(), "contact_radius") <= end);
+    let mut signs = [false, false];
+    let mut agree = Vec::new();
+    for window in points.windows(3) {
+        let [before, here, after] = window else { panic!() };
+        // A disc pressed by δ with its radius held answers like a flat punch.
+        let punch = 2.0 * modulus * of(here, "contact_radius");
+        assert!((of(here, "contact_stiffness") / punch - 1.0).abs() < 1e-9);
+        let between = |name: &str| of(after, name) - of(before, name);
+        let delta = between("approach");
+        let Some(tangent) = here["tangent_stiffness"].as_f64() else { continue };
+        signs[usize::from(tangent > 0.0)] = true;
+        let area = 2.0 * std::f64::consts::PI * of(here, "contact_radius") * between("contact_radius");
+        let near = |chord: f64, slope: f64| (chord / slope - 1.0).abs() < 0.1;
+        agree.push(near(between("force") / delta, tangent) && near(area / delta, of(here, "area_slope")));
+    }
+    // Chords see the slopes of the curve except where it turns within them.
+    let agreeing = agree.iter().filter(|agrees| **agrees).count();
+    assert!(10 * agreeing > 7 * agree.len(), "{agreeing} of {}", agree.len());
+    assert_eq!(signs, [true, true]);
+}
+
+#[test]
 fn trace_writes_one_csv_row_per_point() {
     let home = Home::new();
     let text = home.quiet(&short("trace", &[]));
@@ -128,7 +159,8 @@ fn trace_writes_one_csv_row_per_point() {
         assert_eq!(row[0], step.to_string());
         assert!(row[1..5].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
         assert!(row[5].parse::<u32>().is_ok());
-        assert!(row[6..].iter().all(|cell| cell == "true" || cell == "false"), "{row:?}");
+        assert!(row[6..9].iter().all(|cell| cell == "true" || cell == "false"), "{row:?}");
+        assert!(row[9..].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
     }
     // From the start to exactly the end.
     assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.25f64.to_bits());
@@ -160,7 +192,18 @@ fn trace_json_has_the_fields_of_the_contract() {
     let first = &document["points"][0];
     assert_eq!(
         keys(first),
-        ["step", "contact_radius", "approach", "force", "energy", "newton_iterations", "stable"]
+        [
+            "step",
+            "contact_radius",
+            "approach",
+            "force",
+            "energy",
+            "newton_iterations",
+            "stable",
+            "contact_stiffness",
+            "tangent_stiffness",
+            "area_slope"
+        ]
     );
     assert_eq!(keys(&first["stable"]), ["displacement", "force", "chosen"]);
 
@@ -237,7 +280,7 @@ fn theory_adds_the_exact_columns_behind_the_others() {
     }
     for (row, point) in records(&text).iter().zip(points) {
         let members = ["approach", "force", "energy", "relative_difference"];
-        for (cell, key) in row[9..].iter().zip(members) {
+        for (cell, key) in row[12..].iter().zip(members) {
             assert_eq!(
                 cell.parse::<f64>().unwrap().to_bits(),
                 number(point, &format!("/exact/{key}")).to_bits()
@@ -250,7 +293,7 @@ fn theory_adds_the_exact_columns_behind_the_others() {
     assert!(home.json(&short("trace", &[]))["points"][0].get("exact").is_none());
     for preset in ["fig-1-hertz", "fig-3-jkr"] {
         let rows = records(&home.quiet(&["trace", preset, "--theory"]));
-        assert!(rows.iter().all(|row| row[12].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
+        assert!(rows.iter().all(|row| row[15].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
     }
 }
 

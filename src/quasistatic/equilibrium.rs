@@ -10,11 +10,20 @@
 //! Stability follows from the curve: with tension at the edge `P_s < 0`, and the condition
 //! `−F_s (P_δ + k) − P_s² > 0` is the same as d(δ + P/k)/ds > 0 along the curve. Under displacement control
 //! that is dδ/ds > 0, under force control dP/ds > 0.
+//!
+//! In stiffnesses: along the curve dP/dδ = `P_δ + P_s/(dδ/ds)`, which is below the contact's own stiffness `P_δ` where
+//! displacement control is stable and above it where not. So a state with tension at the edge is stable under a device
+//! of stiffness k exactly when
+//!
+//! ```text
+//! −k < dP/dδ < P_δ
+//! ```
 
 use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::system::Matrix;
 use crate::continuation::{Linearization, Point, System, Vector};
 use crate::ritz::{Basis, Evaluation};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The unit of each unknown: the ranges of δ, P and s over the curve.
@@ -92,6 +101,31 @@ impl Stability {
     }
 }
 
+/// How the force and the contact area answer to the approach at a state.
+///
+/// Units: a force per length, and a length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiffness {
+    /// `P_δ` = ∂P/∂δ at a contact radius held fast: the stiffness of the contact itself.
+    pub contact: f64,
+    /// dP/dδ along the curve; infinite at a limit point of the approach, its sign that of the side the rounding left.
+    pub tangent: f64,
+    /// dA/dδ along the curve, A = πs² the contact area; infinite where `tangent` is.
+    pub area_slope: f64,
+}
+
+impl Stiffness {
+    /// The same in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        Self {
+            contact: self.contact * units.stiffness,
+            tangent: self.tangent * units.stiffness,
+            area_slope: self.area_slope * units.length,
+        }
+    }
+}
+
 /// The crest at which an edge of radius `s` sits: floor(s/λ + ½); crests are at r = mλ.
 pub fn wave_index(s: f64, feature_length: Option<f64>) -> Option<u64> {
     // s/λ is positive and far below 2^53.
@@ -159,6 +193,24 @@ impl Equilibrium {
     pub fn stability(&self, point: &Point) -> Stability {
         let [delta, force, s] = self.quantities(&point.frame.tangent);
         Stability { approach: delta / s, force: force / s }
+    }
+
+    /// The stiffnesses at a point, its `P_δ` evaluated there.
+    pub fn stiffness(&self, point: &Point) -> Stiffness {
+        /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
+        const ROUNDING: f64 = 1e-10;
+        let [delta, _, s] = self.quantities(&point.y);
+        let [along_delta, along_force, along_s] = self.quantities(&point.frame.tangent);
+        let turns = point.frame.tangent[unknown::APPROACH].abs() <= ROUNDING;
+        let per_approach = |slope: f64| {
+            let ratio = slope / along_delta;
+            if turns { f64::INFINITY.copysign(ratio) } else { ratio }
+        };
+        Stiffness {
+            contact: self.basis.evaluate(&self.problem, s, delta).force_gradient[0],
+            tangent: per_approach(along_force),
+            area_slope: per_approach(2.0 * PI * s * along_s),
+        }
     }
 
     /// The state of radius `s` from the explicit root, as a point whose tangent runs inward.
@@ -237,5 +289,80 @@ impl System for Equilibrium {
             return None;
         }
         Some(self.linearization(&self.basis.evaluate(&self.problem, s, delta), force))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Case;
+    use crate::preset::{read, shipped};
+    use crate::quasistatic::Curve;
+
+    /// Fig. 9 by eigenfunctions, whose energy has the digits that second differences need.
+    fn swept() -> Curve {
+        let mut preset = read("t", shipped::find("fig-9").unwrap().text).unwrap();
+        preset.set("basis.kind", "spectral".into()).unwrap();
+        Case::new(&preset).unwrap().sweep(|| true).unwrap()
+    }
+
+    /// U_ss, U_sδ and U_δδ by central differences.
+    fn hessian(equilibrium: &Equilibrium, s: f64, delta: f64) -> [f64; 3] {
+        let (h, d) = (1e-4 * s, 1e-4 * s);
+        let u = |i: f64, j: f64| equilibrium.basis.energy(&equilibrium.problem, s + i * h, delta + j * d);
+        let ss = (u(1.0, 0.0) - 2.0 * u(0.0, 0.0) + u(-1.0, 0.0)) / (h * h);
+        let sd = (u(1.0, 1.0) - u(1.0, -1.0) - u(-1.0, 1.0) + u(-1.0, -1.0)) / (4.0 * h * d);
+        let dd = (u(0.0, 1.0) - 2.0 * u(0.0, 0.0) + u(0.0, -1.0)) / (d * d);
+        [ss, sd, dd]
+    }
+
+    #[test]
+    fn stability_is_the_curvature_of_the_potential_and_the_stiffness_between_its_bounds() {
+        let curve = swept();
+        let equilibrium = &curve.equilibrium;
+        let mut judged = [0, 0];
+        for point in curve.branch.points.iter().step_by(7) {
+            let [delta, _, s] = equilibrium.quantities(&point.y);
+            let [ss, sd, dd] = hessian(equilibrium, s, delta);
+            let stiffness = equilibrium.stiffness(point);
+            assert!((stiffness.contact / dd - 1.0).abs() < 1e-5, "{} {dd}", stiffness.contact);
+            for k in [0.01, 0.15, 1.0, 20.0] {
+                // The potential of bodies and device: its second derivatives are those of U and k on U_δδ.
+                let determinant = ss * (dd + k) - sd * sd;
+                if determinant.abs() < 1e-4 * (ss.abs() * (dd + k) + sd * sd) {
+                    continue;
+                }
+                let stable = equilibrium.stability(point).under(Control::Stiffness(k));
+                assert_eq!(stable, determinant > 0.0 && ss > 0.0, "s {s} k {k}");
+                let between = -k < stiffness.tangent && stiffness.tangent < stiffness.contact;
+                assert_eq!(stable, between, "s {s} k {k}: {stiffness:?}");
+                judged[usize::from(stable)] += 1;
+            }
+        }
+        assert!(judged[0] > 50 && judged[1] > 50, "{judged:?}");
+    }
+
+    #[test]
+    fn the_slopes_are_those_of_neighbouring_states_and_infinite_at_a_limit_point() {
+        let curve = swept();
+        let equilibrium = &curve.equilibrium;
+        for s in [0.48, 0.3, 0.2, 0.05] {
+            let [before, after] = [s * (1.0 - 1e-5), s * (1.0 + 1e-5)].map(|s| {
+                let y = equilibrium.explicit(s).unwrap().y;
+                equilibrium.quantities(&y)
+            });
+            let delta = after[0] - before[0];
+            let stiffness = equilibrium.stiffness(&equilibrium.explicit(s).unwrap());
+            let area = PI * (after[2] * after[2] - before[2] * before[2]);
+            assert!((stiffness.tangent * delta / (after[1] - before[1]) - 1.0).abs() < 1e-5, "{s}");
+            assert!((stiffness.area_slope * delta / area - 1.0).abs() < 1e-5, "{s}");
+        }
+        let limits = curve.limit_points(Control::Displacement);
+        assert!(limits.len() > 10);
+        for limit in limits {
+            let stiffness = equilibrium.stiffness(&limit.point);
+            assert!(stiffness.tangent.is_infinite() && stiffness.area_slope.is_infinite(), "{stiffness:?}");
+            assert!(stiffness.contact.is_finite());
+        }
     }
 }

@@ -26,7 +26,7 @@ pub mod unload;
 
 pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Limit, Turn};
-pub use equilibrium::{Equilibrium, Scales, Stability, State};
+pub use equilibrium::{Equilibrium, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
 pub use profile::Profile;
 pub use start::StartError;

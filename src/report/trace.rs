@@ -49,6 +49,12 @@ pub struct PointReport {
     pub newton_iterations: usize,
     /// Its stability under each control.
     pub stable: StableReport,
+    /// ∂P/∂δ at the contact radius held fast, a force per length.
+    pub contact_stiffness: f64,
+    /// dP/dδ along the curve, a force per length; null where it is infinite, at a limit point of displacement.
+    pub tangent_stiffness: Option<f64>,
+    /// dA/dδ along the curve, A = πs², a length; null where it is infinite.
+    pub area_slope: Option<f64>,
     /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExactReport>,
@@ -118,6 +124,9 @@ pub const COLUMNS: &[&str] = &[
     "stable_displacement",
     "stable_force",
     "stable_chosen",
+    "contact_stiffness",
+    "tangent_stiffness",
+    "area_slope",
 ];
 
 /// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
@@ -166,6 +175,8 @@ impl TraceReport {
             .map(|(step, point)| {
                 let state = equilibrium.state(point).in_units(units);
                 let stability = equilibrium.stability(point);
+                let stiffness = equilibrium.stiffness(point).in_units(units);
+                let finite = |x: f64| Some(x).filter(|x| x.is_finite());
                 PointReport {
                     step,
                     contact_radius: state.contact_radius,
@@ -178,6 +189,9 @@ impl TraceReport {
                         force: stability.under(Control::Force),
                         chosen: stability.under(case.control),
                     },
+                    contact_stiffness: stiffness.contact,
+                    tangent_stiffness: finite(stiffness.tangent),
+                    area_slope: finite(stiffness.area_slope),
                     exact: None,
                 }
             })
