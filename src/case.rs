@@ -6,7 +6,7 @@
 use crate::contact::{Control, Gap, Problem, Reduced, Start, Units};
 use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::start::{StartError, contact_radius};
-use crate::quasistatic::unload::{UnloadError, unload};
+use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
@@ -148,7 +148,23 @@ impl Case {
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
     pub fn unload(&self, curve: &mut Curve, control: Control) -> Result<Unloading, CaseError> {
-        unload(curve, control).map_err(|e| CaseError::Unload(e.in_units(self.units())))
+        self.unload_while(curve, control, || true)
+    }
+
+    /// The same as [`Case::unload`]; `go_on` is asked before each event.
+    ///
+    /// # Errors
+    /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn unload_while(
+        &self,
+        curve: &mut Curve,
+        control: Control,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Unloading, CaseError> {
+        unload_while(curve, control, go_on).map_err(|e| match e {
+            UnloadError::Cancelled => CaseError::Cancelled,
+            other @ UnloadError::UnstableStart { .. } => CaseError::Unload(other.in_units(self.units())),
+        })
     }
 
     /// The smooth sphere of the same curvature and adhesion.

@@ -117,13 +117,16 @@ pub enum UnloadError {
         /// The largest radius searched.
         searched: f64,
     },
+    /// It was no longer wanted.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl UnloadError {
     /// The same error with its numbers in the user's units.
     #[must_use]
     pub fn in_units(self, units: &Units) -> Self {
-        let Self::UnstableStart { contact_radius, control, searched } = self;
+        let Self::UnstableStart { contact_radius, control, searched } = self else { return self };
         Self::UnstableStart {
             contact_radius: contact_radius * units.length,
             control: control.in_units(1.0 / units.stiffness),
@@ -152,6 +155,18 @@ impl Unloading {
 /// # Errors
 /// [`UnloadError`] when the start is unstable and no stable state lies outward.
 pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadError> {
+    unload_while(curve, control, || true)
+}
+
+/// As [`unload`]; `go_on` is asked before each event, whose losses cost most.
+///
+/// # Errors
+/// [`UnloadError::Cancelled`] when `go_on` said no, and as [`unload`].
+pub fn unload_while(
+    curve: &mut Curve,
+    control: Control,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Unloading, UnloadError> {
     let asked_radius = curve.outermost();
     let end_radius = curve.innermost();
     let asked_state = curve.branch.points.first().map(|p| curve.equilibrium.state(p));
@@ -185,6 +200,9 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
                 stop => PathStop::Curve(stop),
             };
         };
+        if !go_on() {
+            return Err(UnloadError::Cancelled);
+        }
         let value = nodes.value(limit);
         let before_point = nodes.points()[limit].clone();
         let landing = landing_inward(curve, &mut nodes, limit);
