@@ -1,57 +1,14 @@
 //! The explorer without a terminal: commands in, model out, every effect done inline.
 
+#[path = "support/session.rs"]
+mod session;
+
 use pulloff::explorer::files::Document;
 use pulloff::explorer::model::Level;
-use pulloff::explorer::{Axes, Command, EventSource, Id, Inline, Model, NodeKind, Panel, open, update};
-use pulloff::preset::{Source, Store};
+use pulloff::explorer::{Axes, Command, EventSource, Id, NodeKind, Panel, update};
+use pulloff::preset::Source;
 use pulloff::quasistatic::EventKind;
-
-struct Session {
-    model: Model,
-    driver: Inline,
-    folder: tempfile::TempDir,
-}
-
-impl Session {
-    fn new(preset: &str) -> Self {
-        let folder = tempfile::tempdir().expect("a session");
-        let store = Store::at(folder.path().join("presets"), &["trace"]);
-        let source = store.resolve(preset).expect("a session");
-        let (mut model, effects) = open(store.load(&source, &[] as &[&str]).expect("a session"));
-        let driver = Inline::new(store);
-        driver.settle(&mut model, effects);
-        Self { model, driver, folder }
-    }
-
-    fn does(&mut self, command: impl Into<Command>) -> &mut Self {
-        let effects = update(&mut self.model, command.into());
-        self.driver.settle(&mut self.model, effects);
-        self
-    }
-
-    fn all(&mut self, commands: &[Id]) -> &mut Self {
-        for command in commands {
-            self.does(*command);
-        }
-        self
-    }
-
-    fn set(&mut self, key: &'static str, text: &str) -> &mut Self {
-        self.does(Command::Set { key, text: text.to_owned() })
-    }
-
-    fn status(&self) -> String {
-        self.model.status().1
-    }
-
-    fn kind(&self) -> NodeKind {
-        self.model.history.current().expect("a session").kind.clone()
-    }
-
-    fn radius(&self) -> f64 {
-        self.model.history.current().expect("a session").state.contact_radius
-    }
-}
+use session::Session;
 
 #[test]
 fn the_walk_meets_the_events_of_the_curve() {

@@ -23,6 +23,17 @@ fn line(pty: &Pty, text: &str) -> String {
     found.unwrap_or_default().to_owned()
 }
 
+/// Goes down the parameters to the one of this label.
+fn select(pty: &mut Pty, label: &str) {
+    let selected = format!(">{label}");
+    while !pty.screen().contains(&selected) {
+        let before = pty.screen();
+        pty.keys("j");
+        // At the last parameter nothing moves, and this fails.
+        pty.wait_for(|screen| screen != before, "another parameter");
+    }
+}
+
 #[test]
 fn a_session_from_opening_to_finding_the_preset_again() {
     let home = tempfile::tempdir().unwrap();
@@ -116,4 +127,55 @@ fn a_bad_preset_is_an_error_before_the_screen_is_taken() {
     assert_eq!(pty.exit_code(), 2);
     assert!(pty.screen().contains("did you mean wavy-sphere"), "{}", pty.screen());
     assert!(!pty.raw().contains(&0x1b));
+}
+
+#[test]
+fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
+    let mut pty = Pty::spawn(program(), &[], &[], 120, 40);
+    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve");
+    pty.keys("n");
+    pty.wait_for(|screen| screen.contains("Limit point 1/"), "a limit point of the displacement");
+    select(&mut pty, "control");
+    pty.keys("<");
+    pty.wait_for(
+        |screen| screen.contains("STIFFNESS=") && screen.contains("of the contact's"),
+        "a stiff device",
+    );
+    // The walker stays, and is past the limit point of the softer device.
+    pty.keys("{{{{{{{{{{{{{{{{{{{{{{{{{{");
+    pty.wait_for(|screen| screen.contains("Unstable under stiffness control"), "the flags of the walker");
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("stiffness = k"), "the prompt");
+    pty.keys("\x150.31\r");
+    pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "a bare number");
+    pty.keys("c");
+    pty.wait_for(|screen| screen.contains("control DISPLACEMENT"), "round");
+    pty.wait_for(|screen| screen.contains("Limit point 1/"), "the limit point again");
+    pty.keys("cc");
+    pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "the last stiffness");
+    pty.keys("q");
+    pty.wait_for(|screen| screen.contains("y quits without saving"), "the question");
+    pty.keys("y");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn a_curve_that_takes_long_can_be_given_up() {
+    let mut pty = Pty::spawn(program(), &["fig-9"], &[], 100, 30);
+    pty.wait_for(|screen| screen.contains("Events: on curve 8"), "the curve");
+    select(&mut pty, "N ");
+    // Two thousand rings take seconds to factorize.
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("from 4 to 2000"), "the prompt");
+    pty.keys("\x152000\r");
+    pty.wait_for(|screen| screen.contains("computing"), "the new curve under way");
+    pty.keys("\x1b");
+    pty.wait_for(|screen| screen.contains("cancelled: the curve shown is of the values before"), "given up");
+    assert!(pty.screen().contains("Events: on curve 8") && pty.screen().contains("unsaved"));
+    pty.keys("u");
+    pty.wait_for(|screen| !screen.contains("unsaved") && !screen.contains("computing"), "the values back");
+    pty.keys("n");
+    pty.wait_for(|screen| screen.contains("Limit point 1/"), "the walk goes on");
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
 }

@@ -58,6 +58,8 @@ pub enum Id {
     Events,
     /// The smooth sphere as a reference.
     Smooth,
+    /// The line of the loading device through the walker.
+    Device,
     /// Open a preset.
     Open,
     /// Save the preset.
@@ -278,6 +280,14 @@ pub static ROWS: &[Row] = &[
     row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", always),
     row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", always),
     row(Id::Smooth, "smooth", VIEW, "JKR", "show or hide the smooth sphere (JKR)", always),
+    row(
+        Id::Device,
+        "device-line",
+        VIEW,
+        "device",
+        "show or hide the line of the loading device through the walker",
+        always,
+    ),
     taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
     row(Id::Save, "save", FILES, "save", "save the preset", always),
     taking(
@@ -296,7 +306,7 @@ pub static ROWS: &[Row] = &[
         ),
     ),
     row(Id::Help, "help", PROGRAM, "help", "this help", always),
-    row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run", always),
+    row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run or a curve", always),
     row(Id::Quit, "quit", PROGRAM, "quit", "quit; asks only if the preset has unsaved changes", always),
 ];
 

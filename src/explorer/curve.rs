@@ -1,10 +1,15 @@
-//! The background curve: everything the screen shows of a preset, computed whole.
+//! The background curve: everything the screen shows of a preset.
+//!
+//! It comes in two parts. A [`Sweep`] belongs to the problem: the curve itself does not know what is controlled. A
+//! [`CurveData`] adds what belongs to the control: limit points, stability, events. Another control, or another
+//! stiffness of the device, needs the second part only.
 
 use super::history::Setting;
+use super::model::same_curve;
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
-use crate::quasistatic::{Curve, Limit, Unloading};
+use crate::quasistatic::{Curve, Limit, Stiffness, Unloading};
 use crate::report::UnloadReport;
 use std::sync::Arc;
 
@@ -21,14 +26,39 @@ pub struct CurvePoint {
     pub stable: bool,
 }
 
-/// What the screen shows of a preset.
+/// What belongs to the problem, whatever is controlled: the curve, swept once, and all that follows from it alone.
 #[derive(Debug, Clone)]
-pub struct CurveData {
-    /// The problem, shared with the nodes walked on it.
-    pub setting: Arc<Setting>,
+pub struct Sweep {
+    /// The preset it was swept for; its control does not matter here.
+    pub preset: Preset,
+    /// The same made ready.
+    pub case: Case,
     /// The curve between start and end, reduced.
     pub curve: Curve,
-    /// The curve in the user's units.
+    /// The limit points of displacement and of force, which are shown under every control.
+    held: [(Control, Vec<Limit>); 2],
+    /// The smooth sphere over the same radii: (δ, P, s); empty without adhesion or waves to differ from.
+    pub smooth: Vec<CurvePoint>,
+    /// The dimensionless groups.
+    pub groups: Groups,
+    /// Decimal digits the basis can be trusted for at the start.
+    pub digits: f64,
+    /// How force and area answer to the approach at the start, reduced; `None` for an empty curve.
+    pub stiffness: Option<Stiffness>,
+    /// `P_c`; 0 without adhesion.
+    pub critical_force: f64,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+}
+
+/// What the screen shows of a preset: the sweep of its problem, and what belongs to its control.
+#[derive(Debug, Clone)]
+pub struct CurveData {
+    /// What belongs to the problem, shared with the curves of the same problem under other controls.
+    pub sweep: Arc<Sweep>,
+    /// The problem and its control, shared with the nodes walked on it.
+    pub setting: Arc<Setting>,
+    /// The curve in the user's units, with its stability under the chosen control.
     pub points: Vec<CurvePoint>,
     /// The limit points under the chosen control, reduced, from the start inward.
     pub limits: Vec<Limit>,
@@ -38,30 +68,67 @@ pub struct CurveData {
     pub unloading: Result<Unloading, String>,
     /// The same as a document.
     pub report: Option<UnloadReport>,
-    /// The smooth sphere over the same radii: (δ, P, s); empty without adhesion or waves to differ from.
-    pub smooth: Vec<CurvePoint>,
-    /// The dimensionless groups.
-    pub groups: Groups,
-    /// Decimal digits the basis can be trusted for at the start.
-    pub digits: f64,
-    /// `P_c`; 0 without adhesion.
-    pub critical_force: f64,
-    /// What to be careful about.
-    pub warnings: Vec<String>,
 }
 
 /// Points of the reference curve of the smooth sphere.
 const SMOOTH_POINTS: u32 = 200;
 
-impl CurveData {
-    /// Computes `preset`; `go_on` is asked between points.
+impl Sweep {
+    /// Sweeps the curve of `preset`; `go_on` is asked between points.
     ///
     /// # Errors
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
         let case = Case::new(preset)?;
         let curve = case.sweep(go_on)?;
-        let units = *case.units();
+        let held =
+            [Control::Displacement, Control::Force].map(|control| (control, curve.limit_points(control)));
+        Ok(Self {
+            preset: preset.clone(),
+            held,
+            smooth: smooth(&case),
+            groups: Groups::of(&case.problem),
+            digits: case.basis.trusted_digits(&case.reduced, case.start),
+            stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
+            critical_force: case.smooth().pull_off_force(),
+            warnings: case.warnings(curve.outermost()),
+            curve,
+            case,
+        })
+    }
+
+    /// Whether it is the sweep of `preset`, whose control may be another.
+    pub fn is_of(&self, preset: &Preset) -> bool {
+        same_curve(&self.preset, preset)
+    }
+
+    /// The limit points of `control` (reduced), from the start inward.
+    fn limits(&self, control: Control) -> Vec<Limit> {
+        let known = self.held.iter().find(|(held, _)| *held == control);
+        known.map_or_else(|| self.curve.limit_points(control), |(_, limits)| limits.clone())
+    }
+}
+
+impl CurveData {
+    /// Computes `preset` whole; `go_on` is asked between points.
+    ///
+    /// # Errors
+    /// [`CaseError`], [`CaseError::Cancelled`] among them.
+    pub fn compute(preset: &Preset, mut go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+        Self::under(Arc::new(Sweep::compute(preset, &mut go_on)?), preset, go_on)
+    }
+
+    /// The curve of `sweep` under the control of `preset`, whose problem must be the sweep's: nothing is swept again.
+    ///
+    /// `go_on` is asked between events.
+    ///
+    /// # Errors
+    /// [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn under(sweep: Arc<Sweep>, preset: &Preset, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+        let curve = &sweep.curve;
+        let units = *sweep.case.units();
+        let control = preset.path.control.in_units(units.stiffness);
+        let case = Case { control, ..sweep.case.clone() };
         let shown = |point: &crate::continuation::Point, control: Control| {
             let [delta, force, s] = curve.equilibrium.quantities(&point.y);
             CurvePoint {
@@ -71,37 +138,23 @@ impl CurveData {
                 stable: curve.equilibrium.stability(point).under(control),
             }
         };
-        let points = curve.branch.points.iter().map(|p| shown(p, case.control)).collect();
-        let limits = curve.limit_points(case.control);
-        let other_limits = [Control::Displacement, Control::Force]
-            .into_iter()
-            .filter(|control| *control != case.control)
-            .flat_map(|control| curve.limit_points(control))
-            .map(|limit| (limit.control, shown(&limit.point, limit.control)))
+        let points = curve.branch.points.iter().map(|p| shown(p, control)).collect();
+        let limits = sweep.limits(control);
+        let other_limits = sweep
+            .held
+            .iter()
+            .filter(|(held, _)| *held != control)
+            .flat_map(|(held, limits)| limits.iter().map(|limit| (*held, shown(&limit.point, *held))))
             .collect();
         // The unloading may extend its curve to find a landing; the one on the screen ends where asked.
-        let mut path = curve.clone();
-        let unloading = case.unload(&mut path, case.control).map_err(|e| e.to_string());
+        let unloading = match case.unload_while(&mut curve.clone(), control, go_on) {
+            Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
+            unloading => unloading.map_err(|e| e.to_string()),
+        };
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
-        let smooth = smooth(&case);
-        let warnings = case.warnings(curve.outermost());
-        let setting =
-            Arc::new(Setting { preset: preset.clone(), equilibrium: curve.equilibrium.clone(), case });
-        let case = &setting.case;
-        Ok(Self {
-            digits: case.basis.trusted_digits(&case.reduced, case.start),
-            groups: Groups::of(&case.problem),
-            critical_force: case.smooth().pull_off_force(),
-            setting: Arc::clone(&setting),
-            curve,
-            points,
-            limits,
-            other_limits,
-            unloading,
-            report,
-            smooth,
-            warnings,
-        })
+        let equilibrium = curve.equilibrium.clone();
+        let setting = Arc::new(Setting { preset: preset.clone(), equilibrium, case });
+        Ok(Self { sweep, setting, points, limits, other_limits, unloading, report })
     }
 }
 

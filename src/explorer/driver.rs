@@ -4,7 +4,7 @@
 //! threads for the screen: the newest curve wins, walks are done in order and stream their states, files have a
 //! lane of their own, and none of them waits for another.
 
-use super::curve::CurveData;
+use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};
 use super::model::Model;
 use super::update::answer;
@@ -22,18 +22,26 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Clone)]
 pub enum Effect {
     /// Compute the curve of a preset; an older one still waiting is forgotten.
-    Curve {
-        /// Its number.
-        id: u64,
-        /// The preset.
-        preset: Box<Preset>,
-    },
+    Curve(Box<Wish>),
+    /// Give up the curves up to this number.
+    StopCurve(u64),
     /// Walk.
     Walk(Box<Request>),
     /// End the walk of this number; its states so far stay.
     StopWalk(u64),
     /// Work on files.
     File(Box<Job>),
+}
+
+/// A curve that is wanted.
+#[derive(Debug, Clone)]
+pub struct Wish {
+    /// Its number.
+    pub id: u64,
+    /// The preset.
+    pub preset: Preset,
+    /// The sweep of the same problem, where it is known: then only what belongs to the control is computed.
+    pub sweep: Option<Arc<Sweep>>,
 }
 
 /// What came of it.
@@ -81,10 +89,10 @@ impl Inline {
         }
     }
 
-    /// Does one effect; the walk is over when it returns, so there is nothing to stop.
+    /// Does one effect; it is over when this returns, so there is nothing to stop.
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
-            Effect::Curve { id, preset } => compute(id, &preset, || true),
+            Effect::Curve(wish) => compute(&wish, || true),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
                 let outcome = walk::walk(&request, &mut |state| {
@@ -93,16 +101,20 @@ impl Inline {
                 });
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
-            Effect::StopWalk(_) => None,
+            Effect::StopWalk(_) | Effect::StopCurve(_) => None,
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
     }
 }
 
-fn compute(id: u64, preset: &Preset, go_on: impl FnMut() -> bool) -> Option<Reply> {
-    match CurveData::compute(preset, go_on) {
+fn compute(wish: &Wish, go_on: impl FnMut() -> bool) -> Option<Reply> {
+    let result = match &wish.sweep {
+        Some(sweep) => CurveData::under(Arc::clone(sweep), &wish.preset, go_on),
+        None => CurveData::compute(&wish.preset, go_on),
+    };
+    match result {
         Err(CaseError::Cancelled) => None,
-        result => Some(Reply::Curve { id, result: result.map(Arc::new).map_err(|e| e.to_string()) }),
+        result => Some(Reply::Curve { id: wish.id, result: result.map(Arc::new).map_err(|e| e.to_string()) }),
     }
 }
 
@@ -119,28 +131,29 @@ pub struct Workers {
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     stopped: Arc<AtomicU64>,
+    given_up: Arc<AtomicU64>,
 }
 
 /// One place for the newest wish.
 #[derive(Debug, Default)]
 struct Slot {
-    wish: Mutex<Option<(u64, Box<Preset>)>>,
+    wish: Mutex<Option<Box<Wish>>>,
     filled: Condvar,
     waiting: AtomicBool,
 }
 
 impl Slot {
-    fn lock(&self) -> MutexGuard<'_, Option<(u64, Box<Preset>)>> {
+    fn lock(&self) -> MutexGuard<'_, Option<Box<Wish>>> {
         self.wish.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn put(&self, id: u64, preset: Box<Preset>) {
-        *self.lock() = Some((id, preset));
+    fn put(&self, wish: Box<Wish>) {
+        *self.lock() = Some(wish);
         self.waiting.store(true, Ordering::Release);
         self.filled.notify_one();
     }
 
-    fn take(&self) -> (u64, Box<Preset>) {
+    fn take(&self) -> Box<Wish> {
         let mut wish = self.lock();
         loop {
             if let Some(taken) = wish.take() {
@@ -162,15 +175,15 @@ impl Workers {
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
         let curve = Arc::new(Slot::default());
-        let stopped = Arc::new(AtomicU64::new(0));
+        let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
-        let (slot, send) = (Arc::clone(&curve), reply.clone());
-        thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &send))?;
+        let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), reply.clone());
+        thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, walks, files, stopped })
+        Ok(Self { curve, walks, files, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -184,7 +197,8 @@ impl Workers {
     pub fn submit(&self, effect: Effect) {
         // A lane that has ended took the process with it: there is nobody to tell.
         match effect {
-            Effect::Curve { id, preset } => self.curve.put(id, preset),
+            Effect::Curve(wish) => self.curve.put(wish),
+            Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::File(job) => drop(self.files.send(job)),
@@ -192,12 +206,22 @@ impl Workers {
     }
 }
 
-fn curves(slot: &Slot, reply: &dyn Fn(Reply)) {
+fn curves(slot: &Slot, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
+    let mut last: Option<Arc<Sweep>> = None;
     loop {
-        let (id, preset) = slot.take();
+        let mut wish = slot.take();
+        // A control changed while its problem was swept: the sweep is here, though nobody could know.
+        let known = last.take_if(|sweep| wish.sweep.is_none() && sweep.is_of(&wish.preset));
+        wish.sweep = wish.sweep.or(known);
         let begun = Instant::now();
-        let go_on = || !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
-        if let Some(answer) = compute(id, &preset, go_on) {
+        let go_on = || {
+            let newest = !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
+            newest && given_up.load(Ordering::Acquire) < wish.id
+        };
+        if let Some(answer) = compute(&wish, go_on) {
+            if let Reply::Curve { result: Ok(curve), .. } = &answer {
+                last = Some(Arc::clone(&curve.sweep));
+            }
             reply(answer);
         }
     }

@@ -298,14 +298,14 @@ fn text(
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(&setting.preset, &setting.case),
-            warnings: &curve.warnings,
+            warnings: &curve.sweep.warnings,
             points,
             events,
         })
     };
     Ok(match what {
         Document::Curve => {
-            let report = TraceReport::new(&setting.preset, &setting.case, &curve.curve);
+            let report = TraceReport::new(&setting.preset, &setting.case, &curve.sweep.curve);
             if as_json { json(&report)? } else { report.csv()? }
         }
         Document::Walk => {

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::contact::Control;
 use crate::continuation::Point;
 use crate::preset::Preset;
-use crate::quasistatic::{Equilibrium, Event, Stability, State};
+use crate::quasistatic::{Equilibrium, Event, Stability, State, Stiffness};
 use std::sync::Arc;
 
 /// The problem a node was solved in: the parameters may change from node to node.
@@ -37,6 +37,15 @@ pub enum NodeKind {
     Stale(String),
 }
 
+/// Where the edge would land from a limit point, and what it would cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ahead {
+    /// The landing, reduced; `None` where the bodies come apart.
+    pub after: Option<State>,
+    /// Energy lost, reduced; `None` for a pull-off under a dead load.
+    pub dissipated: Option<f64>,
+}
+
 /// One state of the walk.
 #[derive(Debug, Clone)]
 pub struct Node {
@@ -54,6 +63,10 @@ pub struct Node {
     pub state: State,
     /// Steps since the start.
     pub step: usize,
+    /// How force and area answer to the approach here, reduced.
+    pub stiffness: Stiffness,
+    /// At a limit point of the control: where the jump leads, if that is known.
+    pub ahead: Option<Ahead>,
     /// Decimal digits the basis can be trusted for here.
     pub digits: f64,
     /// The relative difference of P from the exact solution at the same contact radius.

@@ -87,12 +87,16 @@ pub struct Model {
     pub fingerprint: Option<Fingerprint>,
     /// The curve on the screen; it can be older than the preset while a new one is computed.
     pub curve: Option<Arc<CurveData>>,
-    /// Why the preset as it is now has no curve.
+    /// That the preset as it is now has no curve, and why, in words.
     pub curve_error: Option<String>,
     /// The number of the newest curve asked for.
     pub curve_wanted: u64,
-    /// The number of the newest curve that came, or failed.
+    /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
+    /// The last stiffness of the device, in the user's units.
+    pub stiffness: Option<f64>,
+    /// Whether the line of the device is drawn; `None` where only that of a spring is.
+    pub device: Option<bool>,
     /// The walk.
     pub history: History,
     /// Whether steps shrink the contact.
@@ -138,7 +142,7 @@ pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 const NO_KNOB: &str = "format";
 
 /// Whether two presets have the same curve: everything but the title and the control is equal.
-fn same_curve(a: &Preset, b: &Preset) -> bool {
+pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
     (a.material, a.gap, a.basis, a.path.start, a.path.end_contact_radius)
         == (b.material, b.gap, b.basis, b.path.start, b.path.end_contact_radius)
 }
@@ -155,6 +159,8 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
+            stiffness: None,
+            device: None,
             history: History::default(),
             inward: true,
             length: FIRST_LENGTH,
@@ -181,6 +187,11 @@ impl Model {
     /// Whether the preset differs from its file.
     pub fn is_unsaved(&self) -> bool {
         self.preset != self.saved
+    }
+
+    /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
+    pub fn shows_device(&self) -> bool {
+        self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
     }
 
     /// Whether a newer curve is being computed.
@@ -238,10 +249,9 @@ impl Model {
             return None;
         }
         let s = node.state.contact_radius;
-        curve
-            .limits
-            .iter()
-            .position(|limit| (curve.curve.equilibrium.contact_radius(&limit.point) - s).abs() <= 1e-7 * s)
+        curve.limits.iter().position(|limit| {
+            (curve.sweep.curve.equilibrium.contact_radius(&limit.point) - s).abs() <= 1e-7 * s
+        })
     }
 
     /// Whether the edge can run from here: at a limit point of the control, or in an unstable state.

@@ -1,23 +1,34 @@
 //! A parameter changed by a little: logarithmic where a quantity is positive.
+//!
+//! The control is one knob: the stiffness k of the loading device, with force control (k → 0) and displacement control
+//! (k → ∞) as its ends.
 
 use crate::contact::Control;
 use crate::preset::schema::Kind;
 use crate::preset::{Parameter, Preset, Value};
+use std::ops::RangeInclusive;
 
 /// How far one key press goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// 1 %.
+    /// 1 %, of the device's stiffness 3 %.
     Fine,
-    /// 10 %.
+    /// 10 %, of the device's stiffness 30 %.
     Coarse,
 }
 
-/// `preset` with the value of `row` nudged up or down.
+/// `preset` with the value of `row` nudged up or down; `contact` is the contact's own stiffness in the user's units,
+/// against which that of the device is judged.
 ///
 /// # Errors
 /// Why it cannot be nudged, in words: out of range, or a text.
-pub fn nudge(preset: &Preset, row: &Parameter, up: bool, amount: Amount) -> Result<Preset, String> {
+pub fn nudge(
+    preset: &Preset,
+    row: &Parameter,
+    up: bool,
+    amount: Amount,
+    contact: f64,
+) -> Result<Preset, String> {
     let share = if amount == Amount::Fine { 0.01 } else { 0.1 };
     let mut changed = preset.clone();
     let value = match (row.kind, preset.get(row.key)) {
@@ -47,25 +58,51 @@ pub fn nudge(preset: &Preset, row: &Parameter, up: bool, amount: Amount) -> Resu
             let step = if up { 1 } else { words.len() - 1 };
             Value::Text(words[(at + step) % words.len()].to_owned())
         }
-        (Kind::Control, Some(Value::Control(control))) => Value::Control(next_control(preset, control, up)),
+        (Kind::Control, Some(Value::Control(control))) => {
+            Value::Control(stiffened(control, up, amount, contact)?)
+        }
         _ => return Err(format!("{} is a text; Enter types it", row.label)),
     };
     changed.set(row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)
 }
 
-/// The control after `control`: displacement, force, a spring, and round again.
-pub fn next_control(preset: &Preset, control: Control, up: bool) -> Control {
+/// The stiffnesses the knob turns through, over the contact's own: beyond them the limit points of the device differ
+/// from those of displacement or force by a few thousandths at most.
+const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
+
+/// `control` made stiffer or softer: force, a spring of stiffness k by its logarithm, displacement.
+///
+/// `contact` is the stiffness of the contact itself, in the user's units.
+fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result<Control, String> {
+    let by = if amount == Amount::Fine { 1.03 } else { 1.3 };
+    let (softest, stiffest) = (STIFFNESSES.start() * contact, STIFFNESSES.end() * contact);
+    Ok(match (control, up) {
+        (Control::Displacement, true) => {
+            return Err("displacement control is the stiffest device there is".to_owned());
+        }
+        (Control::Force, false) => return Err("force control is the softest device there is".to_owned()),
+        (Control::Displacement, false) => Control::Stiffness(tidy(stiffest)),
+        (Control::Force, true) => Control::Stiffness(tidy(softest)),
+        (Control::Stiffness(k), true) if k * by > stiffest => Control::Displacement,
+        (Control::Stiffness(k), false) if k / by < softest => Control::Force,
+        (Control::Stiffness(k), true) => Control::Stiffness(tidy(k * by)),
+        (Control::Stiffness(k), false) => Control::Stiffness(tidy(k / by)),
+    })
+}
+
+/// The control after that of `preset`: displacement, force, a spring, and round again; the spring has the stiffness
+/// `last`, if there was one.
+pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
     // As stiff as the paper's contacts themselves in reduced units: all three kinds of limit points differ.
     const STIFFNESS: f64 = 0.15;
-    let spring = || {
-        let units = preset.problem().reduced().units;
-        Control::Stiffness(tidy(STIFFNESS * units.stiffness))
-    };
-    match (control, up) {
-        (Control::Displacement, true) | (Control::Stiffness(_), false) => Control::Force,
-        (Control::Force, true) | (Control::Displacement, false) => spring(),
-        (Control::Stiffness(_), true) | (Control::Force, false) => Control::Displacement,
+    match preset.path.control {
+        Control::Displacement => Control::Force,
+        Control::Force => {
+            let k = last.unwrap_or_else(|| tidy(STIFFNESS * preset.problem().reduced().units.stiffness));
+            Control::Stiffness(k)
+        }
+        Control::Stiffness(_) => Control::Displacement,
     }
 }
 
@@ -88,30 +125,71 @@ mod tests {
     fn positive_values_move_by_a_share_and_never_reach_zero() {
         let mut preset = preset();
         let row = parameter("gap.amplitude").unwrap();
-        let up = nudge(&preset, row, true, Amount::Fine).unwrap();
+        let up = nudge(&preset, row, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(up.get(row.key), Some(Value::Number(0.002_525)));
         for _ in 0..200 {
-            preset = nudge(&preset, row, false, Amount::Coarse).unwrap();
+            preset = nudge(&preset, row, false, Amount::Coarse, 1.0).unwrap();
         }
         assert!(matches!(preset.get(row.key), Some(Value::Number(x)) if x > 0.0));
     }
 
     #[test]
-    fn counts_stop_at_their_range_and_controls_go_round() {
+    fn counts_stop_at_their_range() {
         let mut preset = preset();
         let rings = parameter("basis.rings").unwrap();
+        preset.set("basis.kind", "rings".into()).unwrap();
         preset.set("basis.rings", Value::Integer(4)).unwrap();
-        assert!(nudge(&preset, rings, false, Amount::Fine).unwrap_err().contains('4'));
+        assert!(nudge(&preset, rings, false, Amount::Fine, 1.0).unwrap_err().contains('4'));
         let kind = parameter("basis.kind").unwrap();
-        let other = nudge(&preset, kind, true, Amount::Fine).unwrap();
+        let other = nudge(&preset, kind, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(other.get("basis.functions"), Some("auto".into()));
-        let back = nudge(&other, kind, true, Amount::Fine).unwrap();
+        let back = nudge(&other, kind, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(back.get("basis.rings"), Some(Value::Integer(200)));
-        let control = parameter("path.control").unwrap();
-        let start = preset.get("path.control");
-        for _ in 0..3 {
-            preset = nudge(&preset, control, true, Amount::Fine).unwrap();
+    }
+
+    #[test]
+    fn the_device_gets_stiffer_up_to_displacement_and_softer_down_to_force() {
+        let mut preset = preset();
+        let row = parameter("path.control").unwrap();
+        let contact = 2.0;
+        let turn = |preset: &mut Preset, up, amount| {
+            let turned = nudge(preset, row, up, amount, contact);
+            turned.map(|turned| {
+                *preset = turned;
+                preset.path.control
+            })
+        };
+        assert!(turn(&mut preset, true, Amount::Fine).unwrap_err().contains("stiffest"));
+        assert_eq!(turn(&mut preset, false, Amount::Fine), Ok(Control::Stiffness(2000.0)));
+        let mut before = 2000.0;
+        let softest = loop {
+            match turn(&mut preset, false, Amount::Coarse).unwrap() {
+                Control::Stiffness(k) => {
+                    assert!((before / k / 1.3 - 1.0).abs() < 1e-5, "{before} {k}");
+                    before = k;
+                }
+                end => break end,
+            }
+        };
+        assert_eq!(softest, Control::Force);
+        assert!((0.002..0.0026).contains(&before), "{before}");
+        assert!(turn(&mut preset, false, Amount::Coarse).unwrap_err().contains("softest"));
+        assert_eq!(turn(&mut preset, true, Amount::Coarse), Ok(Control::Stiffness(0.002)));
+        preset.path.control = Control::Stiffness(1999.0);
+        assert_eq!(turn(&mut preset, true, Amount::Fine), Ok(Control::Displacement));
+        // A stiffness typed beyond the ends turns back by steps, and on to the end.
+        preset.path.control = Control::Stiffness(1e6);
+        assert_eq!(turn(&mut preset, false, Amount::Coarse), Ok(Control::Stiffness(769_231.0)));
+        assert_eq!(turn(&mut preset, true, Amount::Coarse), Ok(Control::Displacement));
+    }
+
+    #[test]
+    fn controls_go_round_and_come_back_to_the_last_stiffness() {
+        let mut preset = preset();
+        for expected in [Control::Force, Control::Stiffness(0.15), Control::Displacement, Control::Force] {
+            preset.path.control = next_control(&preset, None);
+            assert_eq!(preset.path.control, expected);
         }
-        assert_eq!(preset.get("path.control"), start);
+        assert_eq!(next_control(&preset, Some(0.2)), Control::Stiffness(0.2));
     }
 }

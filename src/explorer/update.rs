@@ -24,7 +24,7 @@ use super::nudge::Amount;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
 use files::{export, file, file_done, save, save_back};
-use values::{adopt_parameters, change_control, curve_came, set, take_back, turn, want_curve};
+use values::{adopt_parameters, change_control, curve_came, give_up, set, take_back, turn, want_curve};
 use walk::{restart, scale_length, stop, travel, walk, walked};
 use words::unavailable;
 
@@ -104,12 +104,14 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
             model.event = 0;
         }
         Id::Smooth => model.smooth = !model.smooth,
+        Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
         Id::Save => return save_back(model),
-        Id::Cancel => return if model.walking.is_some() { stop(model) } else { Vec::new() },
+        Id::Cancel if model.walking.is_some() => return stop(model),
+        Id::Cancel if model.is_computing() => return give_up(model),
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Help => {}
+        Id::Cancel | Id::SaveAs | Id::Export | Id::Help => {}
     }
     Vec::new()
 }
@@ -158,7 +160,7 @@ fn select(model: &mut Model) -> Vec<Effect> {
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
     let Some(event) = unloading.events.get(model.event) else { return Vec::new() };
     let away = |s: f64| (s - event.before.contact_radius).abs();
-    let radius = |i: &usize| curve.curve.equilibrium.contact_radius(&curve.limits[*i].point);
+    let radius = |i: &usize| curve.sweep.curve.equilibrium.contact_radius(&curve.limits[*i].point);
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
     model.inward = true;
     nearest.map_or_else(Vec::new, |number| walk(model, Action::MoveToLimit(number)))

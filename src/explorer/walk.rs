@@ -4,14 +4,15 @@
 //! ones. A step that would pass a limit point of the control stops exactly there.
 
 use super::curve::CurveData;
-use super::history::{NodeKind, Setting};
+use super::history::{Ahead, NodeKind, Setting};
 use crate::case::Case;
 use crate::contact::Control;
 use crate::continuation::{Bracket, Point, Stepper, Work, events, locate, step_size};
 use crate::quasistatic::curve::settings;
-use crate::quasistatic::jump::{Landing, Nodes, Run};
+use crate::quasistatic::energy;
+use crate::quasistatic::jump::{Nodes, Run};
 use crate::quasistatic::unload::INWARD_REACH;
-use crate::quasistatic::{Equilibrium, Event, State};
+use crate::quasistatic::{Equilibrium, Event, State, Stiffness};
 use crate::ritz::{self, NewtonSettings};
 use crate::theory::Exact;
 use std::sync::Arc;
@@ -70,10 +71,16 @@ pub struct Request {
 pub struct Made {
     /// How it came about.
     pub kind: NodeKind,
+    /// The problem it solves, which may be no longer the one on the screen.
+    pub setting: Arc<Setting>,
     /// The point.
     pub point: Point,
     /// The state, reduced.
     pub state: State,
+    /// How force and area answer to the approach there, reduced.
+    pub stiffness: Stiffness,
+    /// At a limit point: where the jump leads, if that is known.
+    pub ahead: Option<Ahead>,
     /// Decimal digits the basis can be trusted for there.
     pub digits: f64,
     /// The difference of P from the exact solution at the same contact radius, relative to its force scale.
@@ -101,20 +108,14 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::Jump => jump(request, emit),
         Action::MoveTo(s) => match request.equilibrium().explicit(*s) {
             Some(point) => {
-                emit(Made {
-                    begins: true,
-                    ..made(request.case(), request.equilibrium(), NodeKind::Moved, point)
-                });
+                emit(Made { begins: true, ..made(request, NodeKind::Moved, point) });
                 Outcome::Done
             }
             None => Outcome::Stopped("there is no equilibrium at that contact radius".to_owned()),
         },
         Action::MoveToLimit(number) => match request.curve.limits.get(*number) {
             Some(limit) => {
-                emit(Made {
-                    begins: true,
-                    ..made(request.case(), request.equilibrium(), NodeKind::Limit, limit.point.clone())
-                });
+                emit(Made { begins: true, ..made(request, NodeKind::Limit, limit.point.clone()) });
                 Outcome::AtLimit
             }
             None => Outcome::Stopped("the curve has changed meanwhile".to_owned()),
@@ -131,11 +132,6 @@ impl Request {
     fn case(&self) -> &Case {
         &self.curve.setting.case
     }
-
-    /// The problem the new states belong to.
-    pub fn setting(&self) -> &Arc<Setting> {
-        &self.curve.setting
-    }
 }
 
 /// The difference of the force of `state` from the exact solution of `case` at the same contact radius, relative
@@ -146,11 +142,20 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
     exact.first().map_or(f64::NAN, |exact| (state.force - exact.force) / exact.force_scale)
 }
 
-fn made(case: &Case, equilibrium: &Equilibrium, kind: NodeKind, point: Point) -> Made {
+fn made(request: &Request, kind: NodeKind, point: Point) -> Made {
+    let equilibrium = request.equilibrium();
     let state = equilibrium.state(&point);
-    let digits = equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius);
-    let from_exact = from_exact(case, &state);
-    Made { kind, point, state, digits, from_exact, begins: false }
+    Made {
+        setting: Arc::clone(&request.curve.setting),
+        stiffness: equilibrium.stiffness(&point),
+        ahead: if kind == NodeKind::Limit { ahead(request, &point) } else { None },
+        digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
+        from_exact: from_exact(request.case(), &state),
+        begins: false,
+        kind,
+        point,
+        state,
+    }
 }
 
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
@@ -196,13 +201,13 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
             point.length = (&point.y - &here.y).norm();
             point.turning = step_size::turning(&here, &point);
             point.rounds = next.rounds;
-            emit(made(request.case(), equilibrium, NodeKind::Limit, point));
+            emit(made(request, NodeKind::Limit, point));
             return Outcome::AtLimit;
         }
         just_left = false;
         let s = equilibrium.contact_radius(&next);
         here = next.clone();
-        if !emit(made(request.case(), equilibrium, NodeKind::Step, next)) {
+        if !emit(made(request, NodeKind::Step, next)) {
             return Outcome::Stopped("paused".to_owned());
         }
         if request.inward && s < case.end {
@@ -222,51 +227,70 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let Some(from) = &request.from else {
         return Outcome::Stopped("there is no state to jump from".to_owned());
     };
-    let control = request.control;
-    let row = equilibrium.control_row(control);
-    let value = row.dot(&from.y);
-    let s = equilibrium.contact_radius(from);
-    let run = direction(request, from);
-    // A landing may lie beyond the curve on the screen.
-    let mut curve = request.curve.curve.clone();
-    if s > curve.outermost() {
-        curve.extend(s * 1.01);
-    }
-    let mut landing = None;
-    for share in [1.0, 0.1, INWARD_REACH] {
-        let reach = if run == Run::Inward { s * share } else { s / share.max(1e-3) };
-        let beyond = if run == Run::Inward { reach < curve.innermost() } else { reach > curve.outermost() };
-        if beyond {
-            curve.extend(reach);
-        }
-        let nodes = Nodes::new(&curve, control, &curve.limit_points(control));
-        let tolerance = s * 1e-9;
-        let node = nodes.points().iter().rposition(|p| equilibrium.contact_radius(p) >= s - tolerance);
-        landing = nodes.run(&curve, node.unwrap_or(0), value, run).map(|Landing { point, .. }| point);
-        if landing.is_some() {
-            break;
-        }
-    }
-    if landing.is_none() && run == Run::Outward {
-        return Outcome::Stopped("no stable state lies outward at this control value".to_owned());
-    }
-    if landing.is_none() && curve.innermost() > s * INWARD_REACH * (1.0 + 1e-9) {
-        return Outcome::Stopped(
-            "the basis has no equilibrium further in: the landing is not known".to_owned(),
-        );
-    }
-    let event = Event::new(equilibrium, control, value, equilibrium.state(from), landing.as_ref());
+    // Away from the stable side of a limit point; from an unstable state, as walked.
+    let as_walked = if request.inward { Run::Inward } else { Run::Outward };
+    let run = if request.on_limit { away(request, from) } else { as_walked };
+    let landing = match landing(request, from, run) {
+        Ok(landing) => landing,
+        Err(reason) => return Outcome::Stopped(reason.to_owned()),
+    };
+    let value = equilibrium.control_row(request.control).dot(&from.y);
+    let event = Event::new(equilibrium, request.control, value, equilibrium.state(from), landing.as_ref());
     let point = landing.unwrap_or_else(|| from.clone());
-    emit(made(request.case(), equilibrium, NodeKind::Jump(Box::new(event)), point));
+    emit(made(request, NodeKind::Jump(Box::new(event)), point));
     Outcome::Done
 }
 
-/// Which way the edge runs: away from the stable side of a limit point; from an unstable state, as walked.
-fn direction(request: &Request, from: &Point) -> Run {
-    if !request.on_limit {
-        return if request.inward { Run::Inward } else { Run::Outward };
+/// Where the edge comes to rest when it runs from `from` at constant control: `None` where the bodies come apart.
+///
+/// # Errors
+/// Why the landing is not known.
+fn landing(request: &Request, from: &Point, run: Run) -> Result<Option<Point>, &'static str> {
+    let equilibrium = request.equilibrium();
+    let control = request.control;
+    let value = equilibrium.control_row(control).dot(&from.y);
+    let s = equilibrium.contact_radius(from);
+    let mut curve = request.curve.sweep.curve.clone();
+    let mut limits = request.curve.limits.clone();
+    // The walker itself may be beyond the curve on the screen, and so may be the landing.
+    let here = if s > curve.outermost() { s * 1.01 } else { s };
+    let further = [0.1, INWARD_REACH].map(|share| match run {
+        Run::Inward => s * share,
+        Run::Outward => s / share.max(1e-3),
+    });
+    for reach in [here].into_iter().chain(further) {
+        let beyond = reach < curve.innermost() || reach > curve.outermost();
+        if beyond && curve.extend(reach) {
+            limits = curve.limit_points(control);
+        }
+        let nodes = Nodes::new(&curve, control, &limits);
+        let tolerance = s * 1e-9;
+        let node = nodes.points().iter().rposition(|p| equilibrium.contact_radius(p) >= s - tolerance);
+        if let Some(landing) = nodes.run(&curve, node.unwrap_or(0), value, run) {
+            return Ok(Some(landing.point));
+        }
     }
-    let bend = request.equilibrium().control_row(request.control).dot(&from.frame.curvature);
+    if run == Run::Outward {
+        return Err("no stable state lies outward at this control value");
+    }
+    if curve.innermost() > s * INWARD_REACH * (1.0 + 1e-9) {
+        return Err("the basis has no equilibrium further in: the landing is not known");
+    }
+    Ok(None)
+}
+
+/// Where the edge runs from the limit point `from`, and what that costs; `None` where it is not known.
+fn ahead(request: &Request, from: &Point) -> Option<Ahead> {
+    let equilibrium = request.equilibrium();
+    let after = landing(request, from, away(request, from)).ok()?.map(|point| equilibrium.state(&point));
+    let value = equilibrium.control_row(request.control).dot(&from.y);
+    let dissipated = energy::loss(request.control, value, &equilibrium.state(from), after.as_ref());
+    Some(Ahead { after, dissipated })
+}
+
+/// The way the edge runs from a limit point: away from its stable side.
+fn away(request: &Request, limit: &Point) -> Run {
+    let bend = request.equilibrium().control_row(request.control).dot(&limit.frame.curvature);
     // A minimum of the control along the curve is left inward, a maximum outward.
     if bend > 0.0 { Run::Inward } else { Run::Outward }
 }
@@ -296,7 +320,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
     let point = newton.or_else(|| nearest_crossing(request, value, s));
     match point {
         Some(point) => {
-            emit(made(request.case(), equilibrium, NodeKind::Solved, point));
+            emit(made(request, NodeKind::Solved, point));
             Outcome::Done
         }
         None => Outcome::Stopped(format!(
@@ -309,7 +333,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
 /// The state nearest to the radius `s` at which the curve takes the control value.
 fn nearest_crossing(request: &Request, value: f64, s: f64) -> Option<Point> {
     let equilibrium = request.equilibrium();
-    let curve = &request.curve.curve;
+    let curve = &request.curve.sweep.curve;
     let row = equilibrium.control_row(request.control);
     let nodes = Nodes::new(curve, request.control, &curve.limit_points(request.control));
     let settings = settings(equilibrium);

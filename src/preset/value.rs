@@ -154,7 +154,7 @@ impl Parameter {
         }
     }
 
-    /// The value a person typed: a TOML value, or a bare word; a control also as `stiffness=0.15`.
+    /// The value a person typed: a TOML value, or a bare word; a control also as `stiffness=0.15` or `0.15`.
     ///
     /// # Errors
     /// The text is no value of this row.
@@ -163,6 +163,10 @@ impl Parameter {
         let bare = || Value::Text(text.to_owned());
         if let (Kind::Control, Ok(control)) = (self.kind, text.parse::<Control>()) {
             return self.check(Value::Control(control));
+        }
+        // A bare number is the stiffness of the device.
+        if let (Kind::Control, Ok(stiffness)) = (self.kind, text.parse()) {
+            return self.check(Value::Control(Control::Stiffness(stiffness)));
         }
         let value = match (self.kind, DeValue::parse(text)) {
             // Text that happens to look like a number is still text.
@@ -229,6 +233,7 @@ mod tests {
         assert_eq!(parse("title", "Fig. 9, γ"), Ok("Fig. 9, γ".into()));
         assert_eq!(parse("path.control", "force"), Ok(Control::Force.into()));
         assert_eq!(parse("path.control", "stiffness=0.15"), Ok(Control::Stiffness(0.15).into()));
+        assert_eq!(parse("path.control", " 15 "), Ok(Control::Stiffness(15.0).into()));
     }
 
     #[test]
@@ -255,6 +260,8 @@ mod tests {
             ("gap.shape", "wavy_sphere", "did you mean wavy-sphere?"),
             ("path.control", "stiffness=-1", "stiffness = k"),
             ("path.control", "stiffness=1e99", "out of range"),
+            ("path.control", "-0.15", "out of range"),
+            ("path.control", "nan", "out of range"),
             ("path.control", "forse", "did you mean force?"),
             ("format", "2", "this version reads format 1"),
             ("title", "a\u{202e}b", "control or invisible"),

@@ -69,6 +69,7 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Axes => &[Char('a')],
         Id::Events => &[Char('v')],
         Id::Smooth => &[Char('J')],
+        Id::Device => &[Char('K')],
         Id::Open => &[Char('o')],
         Id::Save => &[Char('s')],
         Id::SaveAs => &[Char('S')],

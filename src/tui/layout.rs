@@ -59,7 +59,13 @@ pub fn regions(area: Rect, chart: Chart, events: usize) -> Option<Regions> {
     let [side, charts] =
         Layout::horizontal([Constraint::Length(side_width), Constraint::Fill(1)]).areas(main);
     // The walker needs six lines and its title, and the parameters more than that, as far as there are lines.
-    let walker_height = if main.height >= 24 { 9 } else { 7.min(main.height / 2 + 1) };
+    let walker_height = if main.height >= 25 {
+        11
+    } else if main.height >= 24 {
+        9
+    } else {
+        7.min(main.height / 2 + 1)
+    };
     let [problem, walker] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(walker_height)]).areas(side);
     let both = width >= 100 && height >= 30;

@@ -2,8 +2,9 @@
 
 use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
+use crate::contact::Control;
 use crate::explorer::curve::CurveData;
-use crate::explorer::driver::Effect;
+use crate::explorer::driver::{Effect, Wish};
 use crate::explorer::history::NodeKind;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::nudge::{Amount, next_control, nudge};
@@ -14,7 +15,32 @@ use std::sync::Arc;
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
-    Effect::Curve { id, preset: Box::new(model.preset.clone()) }
+    // The curve does not know what is controlled: under another control it need not be swept again.
+    let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
+    let sweep = known.map(Arc::clone);
+    Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), sweep }))
+}
+
+/// The curve on the screen stays; the one being computed is no longer wanted.
+pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
+    model.curve_shown = model.curve_wanted;
+    let control = model.curve.as_ref().filter(|curve| curve.sweep.is_of(&model.preset)).map(|curve| {
+        // Only the control was changed, which undo does not take back.
+        curve.setting.preset.path.control
+    });
+    let text = match (&model.curve, control) {
+        (Some(_), Some(control)) => {
+            model.preset.path.control = control;
+            "cancelled: the control is as before"
+        }
+        (Some(_), None) => "cancelled: the curve shown is of the values before; u takes them back",
+        (None, _) => "cancelled: there is no curve yet; change a value, or o opens another preset",
+    };
+    if control.is_none() {
+        model.curve_error = Some(text.to_owned());
+    }
+    tell(model, Level::Info, text);
+    vec![Effect::StopCurve(model.curve_wanted)]
 }
 
 pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveData>, String>) -> Vec<Effect> {
@@ -24,8 +50,9 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
     model.curve_shown = id;
     match result {
         Err(reason) => {
-            tell(model, Level::Error, format!("no curve for these values: {reason}"));
-            model.curve_error = Some(reason);
+            let text = format!("no curve for these values: {reason}");
+            tell(model, Level::Error, text.clone());
+            model.curve_error = Some(text);
             Vec::new()
         }
         Ok(curve) => {
@@ -75,6 +102,12 @@ fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         old.title.clone_from(&preset.title);
         old == preset
     };
+    // The last stiffness is remembered, to come back to it.
+    for control in [model.preset.path.control, preset.path.control] {
+        if let Control::Stiffness(k) = control {
+            model.stiffness = Some(k);
+        }
+    }
     model.preset = preset;
     if same_problem {
         return Vec::new();
@@ -82,13 +115,33 @@ fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     let knobs = model.knobs().len();
     model.parameter = model.parameter.min(knobs.saturating_sub(1));
     let mut effects = stop(model);
-    effects.push(want_curve(model));
+    let shown = model.curve.as_ref().is_some_and(|curve| {
+        curve.sweep.is_of(&model.preset) && curve.setting.preset.path.control == model.preset.path.control
+    });
+    if shown {
+        // Back at the values of the curve on the screen: the one being computed is no longer wanted.
+        model.curve_shown = model.curve_wanted;
+        model.curve_error = None;
+        effects.push(Effect::StopCurve(model.curve_wanted));
+    } else {
+        effects.push(want_curve(model));
+    }
     effects
+}
+
+/// The stiffness of the contact at the start in the user's units; before there is a curve, the unit of stiffness.
+fn contact_stiffness(model: &Model) -> f64 {
+    let known = model.curve.as_ref().and_then(|curve| {
+        let sweep = &curve.sweep;
+        Some(sweep.stiffness?.in_units(sweep.case.units()).contact)
+    });
+    known.unwrap_or_else(|| model.preset.problem().reduced().units.stiffness)
 }
 
 pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     let Some((row, _)) = model.selected_knob() else { return Vec::new() };
-    match nudge(&model.preset, row, up, amount) {
+    let contact = contact_stiffness(model);
+    match nudge(&model.preset, row, up, amount, contact) {
         Ok(preset) => change(model, preset),
         Err(reason) => {
             tell(model, Level::Error, reason);
@@ -112,6 +165,6 @@ pub(super) fn set(model: &mut Model, key: &'static str, text: &str) -> Vec<Effec
 
 pub(super) fn change_control(model: &mut Model) -> Vec<Effect> {
     let mut preset = model.preset.clone();
-    preset.path.control = next_control(&model.preset, preset.path.control, true);
+    preset.path.control = next_control(&model.preset, model.stiffness);
     change(model, preset)
 }

@@ -62,9 +62,8 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     if model.walking != Some(id) {
         return Vec::new();
     }
-    let Some(curve) = model.curve.clone() else { return Vec::new() };
     for state in made {
-        append(model, &curve, state);
+        append(model, state);
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
@@ -101,7 +100,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     }
 }
 
-fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
+fn append(model: &mut Model, state: Made) {
     let step = model.history.current().map_or(0, |node| node.step + 1);
     let step = if state.begins { 0 } else { step };
     let solved = state.kind == NodeKind::Solved;
@@ -112,11 +111,13 @@ fn append(model: &mut Model, curve: &Arc<CurveData>, state: Made) {
     let node = Node {
         parent: None,
         kind: state.kind,
-        setting: Arc::clone(&curve.setting),
-        control: curve.setting.case.control,
+        control: state.setting.case.control,
+        setting: state.setting,
         point: state.point,
         state: state.state,
         step,
+        stiffness: state.stiffness,
+        ahead: state.ahead,
         digits: state.digits,
         from_exact: state.from_exact,
         begins: state.begins,
@@ -160,7 +161,8 @@ pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Eff
 }
 
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
-    let Some(point) = curve.curve.branch.points.first().cloned() else { return };
+    let Some(point) = curve.sweep.curve.branch.points.first().cloned() else { return };
+    let Some(stiffness) = curve.sweep.stiffness else { return };
     let state = curve.setting.equilibrium.state(&point);
     let control = curve.setting.case.control;
     model.history.push(Node {
@@ -171,7 +173,9 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         point,
         state,
         step: 0,
-        digits: curve.digits,
+        stiffness,
+        ahead: None,
+        digits: curve.sweep.digits,
         from_exact: from_exact(&curve.setting.case, &state),
         begins: true,
     });

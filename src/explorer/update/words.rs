@@ -5,7 +5,7 @@ use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::model::Model;
 use crate::quasistatic::EventKind;
 use crate::report::number::{loss, significant};
-use crate::report::unload::control_name;
+use crate::report::unload::{StateReport, control_name};
 
 /// Why a command cannot be done now.
 pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
@@ -25,7 +25,7 @@ pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
 /// What the state is and which key is next.
 pub fn hint(model: &Model) -> String {
     if let Some(error) = &model.curve_error {
-        return format!("no curve for these values: {error}");
+        return error.clone();
     }
     let Some(node) = model.history.current() else {
         return "computing the equilibrium curve".to_owned();
@@ -58,13 +58,10 @@ pub fn hint(model: &Model) -> String {
             }
         };
     }
-    if let Some(at) = model.limit_number() {
-        return limit_hint(model, at);
-    }
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
     if node.is_limit(control) {
-        return "Limit point outside the curve: x lets the edge run, Space goes on along it".to_owned();
+        return limit_hint(model, node);
     }
     match (node.stability().under(control), &node.kind) {
         (true, NodeKind::Start) => {
@@ -84,25 +81,25 @@ pub fn hint(model: &Model) -> String {
     }
 }
 
-fn limit_hint(model: &Model, at: usize) -> String {
-    let Some(curve) = &model.curve else { return String::new() };
-    let count = curve.limits.len();
-    let events = curve.unloading.as_ref().ok().map(|u| u.events.as_slice()).unwrap_or_default();
-    let s = curve.curve.equilibrium.contact_radius(&curve.limits[at].point);
-    let event = events.iter().position(|e| (e.before.contact_radius - s).abs() <= 1e-7 * s);
-    let report = event.and_then(|i| curve.report.as_ref()?.events.get(i));
-    match report {
-        Some(report) => {
-            let lands = match (report.after, report.after.and_then(|a| a.wave)) {
-                (None, _) => "pulls off".to_owned(),
-                (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
-                (Some(after), None) => format!("jumps to s {}", significant(after.contact_radius, 4)),
-            };
-            let lost = report.dissipated.map_or_else(String::new, |lost| format!(" (loses {})", loss(lost)));
-            format!("Limit point {}/{count}: x {lands}{lost}, Space goes on unstable", at + 1)
-        }
-        None => {
-            format!("Limit point {}/{count}: x lets the edge run, Space goes on along the curve", at + 1)
-        }
-    }
+/// At the limit point `node`: where the edge would run and what that would cost.
+fn limit_hint(model: &Model, node: &Node) -> String {
+    let name = match (model.limit_number(), &model.curve) {
+        (Some(at), Some(curve)) => format!("Limit point {}/{}", at + 1, curve.limits.len()),
+        _ => "Limit point outside the curve".to_owned(),
+    };
+    let Some(ahead) = node.ahead else {
+        return format!("{name}: x lets the edge run, Space goes on along the curve");
+    };
+    let case = &node.setting.case;
+    let after = ahead.after.map(|after| StateReport::new(case, &after));
+    let lands = match (after, after.and_then(|after| after.wave)) {
+        (None, _) => "pulls off".to_owned(),
+        (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
+        (Some(after), None) => format!("jumps to s {}", significant(after.contact_radius, 4)),
+    };
+    let lost = ahead.dissipated.map(|lost| format!(" (loses {})", loss(lost * case.units().energy)));
+    // The edge runs over the unstable part: walking the same way leads onto it.
+    let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
+    let part = if runs_inward == model.inward { "unstable" } else { "stable" };
+    format!("{name}: x {lands}{}, Space goes on {part}", lost.unwrap_or_default())
 }

@@ -28,7 +28,7 @@ impl Scale {
         let problem = curve.setting.case.problem;
         // Without adhesion there is no P_c, without waves no λ: those axes stay raw.
         Self {
-            force: Some(curve.critical_force).filter(|force| *force > 0.0),
+            force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
             radius: crate::contact::Gap::feature_length(&problem.shape),
         }
     }
@@ -72,11 +72,15 @@ fn chart(model: &Model, curve: &CurveData, which: Which, alone: bool, theme: The
     let all: Vec<(f64, f64)> = curve.points.iter().map(of_point).collect();
     let mut series = Vec::new();
     if model.smooth {
-        let points = curve.smooth.iter().map(of_point).collect();
+        let points = curve.sweep.smooth.iter().map(of_point).collect();
         series.push(Series { points, color: ink::SMOOTH, stroke: Stroke::Sparse });
     }
     series.extend(pieces(curve, &all));
     let mut marks = limit_marks(curve, scale, which);
+    if let (Which::ForceApproach, Some(ends)) = (which, crate::explorer::device::line(model)) {
+        let points = ends.map(|(approach, force)| scale.place(which, approach, force, 0.0)).to_vec();
+        series.push(Series { points, color: ink::MARK, stroke: Stroke::Dotted });
+    }
     walk(model, scale, which, &mut series, &mut marks);
     // The walker may have left the range of the curve: the chart follows it there.
     let walker = model.walker().filter(|node| !node.is_apart()).map(|node| {
@@ -139,7 +143,7 @@ fn pieces(curve: &CurveData, all: &[(f64, f64)]) -> Vec<Series> {
 /// Limit points of the control as `v`, of the others as a small mark, the pull-off as `X`.
 fn limit_marks(curve: &CurveData, scale: Scale, which: Which) -> Vec<Mark> {
     let style = Style::new().fg(ink::MARK).add_modifier(Modifier::BOLD);
-    let equilibrium = &curve.curve.equilibrium;
+    let equilibrium = &curve.sweep.curve.equilibrium;
     let units = curve.setting.case.units();
     let mut marks: Vec<Mark> = curve
         .other_limits

@@ -32,7 +32,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
         return;
     }
-    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.critical_force);
+    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.sweep.critical_force);
     let rows = usize::from(body.height);
     let first = (model.event + 1).saturating_sub(rows).min(events.len().saturating_sub(rows));
     let here = here(model, &events);
@@ -86,8 +86,8 @@ fn headline(model: &Model, room: usize) -> String {
         return lost(total, events.iter().all(|(_, e)| e.dissipated.is_some()));
     }
     let Some(report) = &curve.report else { return String::new() };
-    let force = if curve.critical_force > 0.0 {
-        format!("{} Pc", significant(report.min_force / curve.critical_force, 4))
+    let force = if curve.sweep.critical_force > 0.0 {
+        format!("{} Pc", significant(report.min_force / curve.sweep.critical_force, 4))
     } else {
         significant(report.min_force, 4)
     };

@@ -1,10 +1,20 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
+use crate::contact::Control;
+use crate::explorer::{Axes, Model};
+use crate::report::number::significant;
 use crate::tui::app::App;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
+
+/// The stiffness of the device over that of the contact at the walker, on reduced axes.
+fn stiffness_share(model: &Model) -> Option<f64> {
+    let node = model.history.current().filter(|node| !node.is_apart() && model.axes == Axes::Reduced)?;
+    let Control::Stiffness(k) = model.preset.path.control else { return None };
+    Some(k / node.stiffness.in_units(node.setting.case.units()).contact)
+}
 
 /// Draws the first line.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
@@ -25,7 +35,13 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let control = model.preset.path.control.to_string().to_uppercase();
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
-    let warning = model.curve.as_ref().and_then(|curve| curve.warnings.first());
+    if let Some(share) = stiffness_share(model) {
+        spans.push(Span::styled(
+            theme.text(&format!(" ({} of the contact's)", significant(share, 3))),
+            theme.dim(),
+        ));
+    }
+    let warning = model.curve.as_ref().and_then(|curve| curve.sweep.warnings.first());
     for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
         // A warning needs the room more than what the Problem panel says as well.
         if let (Some(count), None) = (model.preset.get(key), warning) {

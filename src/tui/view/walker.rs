@@ -59,7 +59,8 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     }
     let stability = node.stability();
     let mut stable = vec![Span::styled(" stable", theme.dim())];
-    for control in case_controls(node) {
+    let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
+    for control in [Control::Displacement, Control::Force].into_iter().chain(spring) {
         let name = match control {
             Control::Displacement => " δ",
             Control::Force => " P",
@@ -96,10 +97,16 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
     lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
+    lines.extend(stiffness(theme, node));
     lines
 }
 
-/// Displacement and force, and the spring where there is one.
-fn case_controls(node: &Node) -> Vec<Control> {
-    node.setting.case.controls()
+/// `P_δ`, dP/dδ and dA/dδ.
+fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 2] {
+    let stiffness = node.stiffness.in_units(node.setting.case.units());
+    // At a limit point of the approach the slopes have no bound.
+    let slope = |x: f64| if x.is_infinite() { "infinite".to_owned() } else { significant(x, 4) };
+    let mut tangent = pair(theme, " dP/dδ ", &slope(stiffness.tangent)).to_vec();
+    tangent.extend(pair(theme, "  s held ", &significant(stiffness.contact, 4)));
+    [Line::from(tangent), Line::from(pair(theme, " dA/dδ ", &slope(stiffness.area_slope)).to_vec())]
 }
