@@ -5,7 +5,9 @@ mod session;
 
 use pulloff::explorer::files::Document;
 use pulloff::explorer::model::Level;
-use pulloff::explorer::{Axes, Command, EventSource, Id, NodeKind, Panel, update};
+use pulloff::explorer::{
+    Axes, Command, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
+};
 use pulloff::preset::Source;
 use pulloff::quasistatic::EventKind;
 use session::Session;
@@ -292,8 +294,14 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
         Id::Double,
         Id::Axes,
         Id::Events,
-        Id::Smooth,
-        Id::SwitchChart,
+        Id::NextView,
+        Id::PreviousView,
+        Id::ZoomIn,
+        Id::ZoomOut,
+        Id::CrossHair,
+        Id::Right,
+        Id::Fit,
+        Id::Pin,
         Id::NextPanel,
         Id::Down,
         Id::Up,
@@ -334,4 +342,64 @@ fn a_problem_without_adhesion_or_waves_can_be_walked() {
     assert!(session.status().contains("end contact radius"), "{}", session.status());
     session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
     assert!(session.model.curve_error.is_none());
+}
+
+#[test]
+fn pins_and_views_go_on_in_another_preset() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::Pin, Id::NextView]).does(Command::Overlay(Overlay::Exact));
+    session.set("gap.amplitude", "0.002").does(Id::Pin);
+    session.does(Command::Open("fig-8".to_owned()));
+    assert_eq!((session.model.view, session.model.overlays.exact), (View::RadiusForce, true));
+    let pins = session.model.pins.all();
+    assert_eq!(pins.iter().map(|pin| pin.number).collect::<Vec<_>>(), [1, 2]);
+    assert!(pins[1].name(&session.model.preset).contains("A 0.002"));
+    session.does(Id::Pin).does(Id::Pin);
+    assert!(session.status().contains("pinned already, as 3"), "{}", session.status());
+    session.does(Command::Unpin(Some(2))).does(Command::Unpin(Some(2)));
+    assert!(session.status().contains("no curve is pinned under that number"));
+}
+
+#[test]
+fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_walker() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Step);
+    assert!(session.model.profile.is_none());
+    session.all(&[Id::NextView, Id::NextView, Id::NextView]);
+    assert_eq!(session.model.view, View::Pressure);
+    let shown = |session: &Session| session.model.shown_profile().unwrap().profile.contact_radius.to_bits();
+    assert_eq!(shown(&session), session.radius().to_bits());
+    session.does(Command::Steps(3));
+    assert_eq!(shown(&session), session.radius().to_bits());
+    // Asked for once: nothing has changed.
+    assert!(update(&mut session.model, Id::Reverse.into()).len() == 1);
+    assert!(update(&mut session.model, Id::Axes.into()).is_empty());
+    // Late answers of older states do not replace newer ones.
+    let newest = session.model.profile.clone().unwrap();
+    session.does(Id::Undo);
+    let back = shown(&session);
+    assert_ne!(back, newest.profile.contact_radius.to_bits());
+    answer(&mut session.model, Reply::Profile(newest));
+    assert_eq!(shown(&session), back);
+}
+
+#[test]
+fn zoom_and_cross_hair_have_their_limits() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Fit);
+    assert!(session.status().contains("the whole chart is shown"));
+    session.does(Id::CrossHair);
+    assert_eq!(session.model.panel, Panel::Charts);
+    for _ in 0..100 {
+        session.does(Id::Left);
+    }
+    // At the edge it takes the window along.
+    assert_eq!(session.model.cross.map(|(x, _)| x), Some(0.0));
+    assert!(session.model.window(View::ForceApproach).x[0] < -0.5);
+    for _ in 0..40 {
+        session.does(Id::ZoomIn);
+    }
+    assert!(session.status().contains("no closer"), "{}", session.status());
+    session.does(Id::Fit).does(Id::Cancel);
+    assert!(session.model.cross.is_none() && session.model.window(View::ForceApproach).is_whole());
 }

@@ -108,6 +108,44 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 }
 
 #[test]
+fn every_view_a_closer_look_and_a_pin() {
+    let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
+    pty.wait_for(|screen| screen.contains("Events: on curve 2"), "the curve");
+    for title in
+        ["s/λ over P/Pc", "s/λ over δ", "p/E* over r/λ", "gap over r/λ", "U over s/λ", "unloading: P/Pc"]
+    {
+        pty.keys("t");
+        pty.wait_for(|screen| screen.contains(title), title);
+        // The state's own views come from a worker.
+        pty.wait_for(|screen| !screen.contains("computing"), "its picture");
+    }
+    pty.keys("t");
+    pty.wait_for(|screen| screen.contains("P/Pc over δ  (t:"), "the first view again");
+
+    pty.keys("++");
+    pty.wait_for(|screen| screen.contains("zoom 4x"), "a closer look");
+    pty.keys("i");
+    pty.wait_for(|screen| screen.contains("; * δ "), "the cross-hair");
+    pty.keys("\x1bf");
+    pty.wait_for(|screen| !screen.contains("zoom") && !screen.contains("; * δ "), "all of it");
+
+    // Back to the Problem panel, where > turns the amplitude.
+    pty.keys("\t\t");
+    pty.keys("p");
+    pty.wait_for(|screen| screen.contains("pinned as 1"), "a pin");
+    pty.keys("}");
+    pty.wait_for(|screen| screen.contains("1 A 0.001"), "the pin by what differs");
+    pty.keys("P");
+    pty.wait_for(|screen| screen.contains("Take a pinned curve away"), "the list of pins");
+    pty.keys("\r");
+    pty.wait_for(|screen| !screen.contains("1 A 0.001"), "the pin taken away");
+    pty.keys("y\r\x1b");
+    pty.wait_for(|screen| !screen.contains("Theory"), "the overlays closed");
+    pty.keys("qy");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
 fn quitting_with_unsaved_changes_asks_first() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
     pty.wait_for(|screen| screen.contains("Events: on curve 2"), "the curve");

@@ -49,7 +49,11 @@ fn screen() -> String {
         driver.settle(&mut app.model, effects);
     }
     let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
-    terminal.draw(|frame| view::draw(frame, &app)).unwrap();
+    terminal
+        .draw(|frame| {
+            view::draw(frame, &app);
+        })
+        .unwrap();
     let buffer = terminal.backend().buffer();
     (0..24).fold(String::new(), |mut text, y| {
         let row: String = (0..80).map(|x| buffer[(x, y)].symbol()).collect();

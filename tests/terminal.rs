@@ -133,6 +133,7 @@ fn any_size_is_survived_and_the_next_one_drawn() {
         pty.resize(cols, rows);
         pty.keys("t");
     }
+    pty.keys("t");
     pty.resize(30, 8);
     pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
     pty.resize(120, 40);
@@ -192,7 +193,7 @@ fn nothing_is_written_while_nothing_changes() {
     // Back where it was: only what differs between two frames is sent.
     pty.keys("jk");
     pty.keys("t");
-    pty.wait_for(|screen| screen.contains("s/λ over P/Pc  (t:"), "the other chart");
+    pty.wait_for(|screen| screen.contains("s/λ over P/Pc  (t:"), "the next view");
     let bytes = pty.raw().len() - before;
     assert!(bytes < 8000, "{bytes} bytes");
     pty.keys("q");

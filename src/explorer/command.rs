@@ -4,6 +4,7 @@
 //! each id its keys.
 
 use super::model::{Model, Panel};
+use super::view::{Overlay, Window};
 
 /// A command's identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -46,20 +47,38 @@ pub enum Id {
     Up,
     /// The one below.
     Down,
+    /// The panel to the left, or the chart moved.
+    Left,
+    /// The panel to the right, or the chart moved.
+    Right,
     /// The panel before.
     PreviousPanel,
     /// The next panel.
     NextPanel,
-    /// The other chart, where only one is shown.
-    SwitchChart,
+    /// The next view.
+    NextView,
+    /// The view before.
+    PreviousView,
+    /// Closer.
+    ZoomIn,
+    /// Further away.
+    ZoomOut,
+    /// The whole of the chart.
+    Fit,
+    /// The cross-hair.
+    CrossHair,
     /// Dimensionless or raw axes.
     Axes,
     /// Events on the curve, or walked.
     Events,
-    /// The smooth sphere as a reference.
-    Smooth,
     /// The line of the loading device through the walker.
     Device,
+    /// Theory over the curve.
+    Overlays,
+    /// Keep the curve to compare the next ones with.
+    Pin,
+    /// The pinned curves, to take away.
+    Pins,
     /// Open a preset.
     Open,
     /// Save the preset.
@@ -109,6 +128,17 @@ pub enum Command {
         /// What was typed.
         text: String,
     },
+    /// Closer to a place of the first view, or further away.
+    Zoom {
+        /// Whether closer.
+        closer: bool,
+        /// The place that stays where it is, in shares of the window.
+        about: (f64, f64),
+    },
+    /// Draw this theory over the curve, or no longer.
+    Overlay(Overlay),
+    /// Take away the pinned curve of this number, or all.
+    Unpin(Option<usize>),
     /// Open this preset, by name or path.
     Open(String),
     /// Save under this name.
@@ -144,6 +174,10 @@ impl Command {
             Self::Plain(id) => *id,
             Self::Steps(_) => Id::Step,
             Self::Set { .. } => Id::Edit,
+            Self::Zoom { closer: true, .. } => Id::ZoomIn,
+            Self::Zoom { closer: false, .. } => Id::ZoomOut,
+            Self::Overlay(_) => Id::Overlays,
+            Self::Unpin(_) => Id::Pins,
             Self::Open(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
@@ -170,6 +204,18 @@ fn can_undo(model: &Model) -> bool {
 
 fn can_redo(model: &Model) -> bool {
     model.history.redo_target().is_some()
+}
+
+fn has_curve(model: &Model) -> bool {
+    model.curve.is_some()
+}
+
+fn has_pins(model: &Model) -> bool {
+    !model.pins.is_empty()
+}
+
+fn is_moved(model: &Model) -> bool {
+    model.window(model.view) != Window::WHOLE
 }
 
 fn can_jump(model: &Model) -> bool {
@@ -265,21 +311,37 @@ pub static ROWS: &[Row] = &[
             always,
         ),
     ),
-    row(Id::Up, "up", VIEW, "up", "select the line above", always),
-    row(Id::Down, "down", VIEW, "down", "select the line below", always),
+    row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", always),
+    row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", always),
+    row(Id::Left, "left", VIEW, "left", "the panel before; in Charts: move left", always),
+    row(Id::Right, "right", VIEW, "right", "the next panel; in Charts: move right", always),
     row(Id::NextPanel, "next-panel", VIEW, "panel", "next panel", always),
     row(Id::PreviousPanel, "previous-panel", VIEW, "panel back", "previous panel", always),
+    row(Id::NextView, "next-view", VIEW, "view", "the next view of the chart", always),
+    row(Id::PreviousView, "previous-view", VIEW, "view back", "the view before", always),
+    taking(
+        "place",
+        row(
+            Id::ZoomIn,
+            "zoom-in",
+            VIEW,
+            "closer",
+            "the chart closer, about the cross-hair or the walker",
+            has_curve,
+        ),
+    ),
+    taking("place", row(Id::ZoomOut, "zoom-out", VIEW, "wider", "further away", has_curve)),
+    row(Id::Fit, "fit", VIEW, "fit", "the whole chart again", is_moved),
     row(
-        Id::SwitchChart,
-        "switch-chart",
+        Id::CrossHair,
+        "cross-hair",
         VIEW,
-        "other chart",
-        "the other chart, where one is shown at a time",
-        always,
+        "cross-hair",
+        "a cross-hair that reads the chart; arrows move it",
+        has_curve,
     ),
     row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", always),
     row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", always),
-    row(Id::Smooth, "smooth", VIEW, "JKR", "show or hide the smooth sphere (JKR)", always),
     row(
         Id::Device,
         "device-line",
@@ -288,6 +350,19 @@ pub static ROWS: &[Row] = &[
         "show or hide the line of the loading device through the walker",
         always,
     ),
+    taking(
+        "theory",
+        row(
+            Id::Overlays,
+            "overlays",
+            VIEW,
+            "theory",
+            "theory over the curve: smooth sphere, exact solution, envelope",
+            has_curve,
+        ),
+    ),
+    row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", has_curve),
+    taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", has_pins)),
     taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
     row(Id::Save, "save", FILES, "save", "save the preset", always),
     taking(

@@ -6,6 +6,7 @@
 
 use super::history::Setting;
 use super::model::same_curve;
+use super::theory::Theory;
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
@@ -37,8 +38,8 @@ pub struct Sweep {
     pub curve: Curve,
     /// The limit points of displacement and of force, which are shown under every control.
     held: [(Control, Vec<Limit>); 2],
-    /// The smooth sphere over the same radii: (δ, P, s); empty without adhesion or waves to differ from.
-    pub smooth: Vec<CurvePoint>,
+    /// The theory over the same radii.
+    pub theory: Theory,
     /// The dimensionless groups.
     pub groups: Groups,
     /// Decimal digits the basis can be trusted for at the start.
@@ -70,9 +71,6 @@ pub struct CurveData {
     pub report: Option<UnloadReport>,
 }
 
-/// Points of the reference curve of the smooth sphere.
-const SMOOTH_POINTS: u32 = 200;
-
 impl Sweep {
     /// Sweeps the curve of `preset`; `go_on` is asked between points.
     ///
@@ -86,7 +84,7 @@ impl Sweep {
         Ok(Self {
             preset: preset.clone(),
             held,
-            smooth: smooth(&case),
+            theory: Theory::of(&case),
             groups: Groups::of(&case.problem),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
@@ -156,24 +154,4 @@ impl CurveData {
         let setting = Arc::new(Setting { preset: preset.clone(), equilibrium, case });
         Ok(Self { sweep, setting, points, limits, other_limits, unloading, report })
     }
-}
-
-/// The smooth sphere of the same curvature and adhesion over the radii of `case`.
-fn smooth(case: &Case) -> Vec<CurvePoint> {
-    let jkr = case.smooth();
-    let units = case.units();
-    let (from, to) = (case.start * units.length, case.end * units.length);
-    (0..=SMOOTH_POINTS)
-        .map(|i| {
-            // Even in √s: the curve behaves like √s towards the axis.
-            let x = f64::from(i) / f64::from(SMOOTH_POINTS);
-            let s = (from.sqrt() + (to.sqrt() - from.sqrt()) * x).powi(2);
-            CurvePoint {
-                approach: jkr.approach(s),
-                force: jkr.force(s),
-                contact_radius: s,
-                stable: s >= jkr.fixed_grips_radius(),
-            }
-        })
-        .collect()
 }

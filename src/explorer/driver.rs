@@ -1,12 +1,13 @@
 //! Effects, and the two drivers that run them.
 //!
 //! Inline for tests and scripts: each effect is done before the next command, so nothing depends on timing. On
-//! threads for the screen: the newest curve wins, walks are done in order and stream their states, files have a
-//! lane of their own, and none of them waits for another.
+//! threads for the screen: the newest curve and the newest profile win, walks are done in order and stream their
+//! states, files have a lane of their own, and none of them waits for another.
 
 use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};
 use super::model::Model;
+use super::profile::{Ask, Inside};
 use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
@@ -25,6 +26,8 @@ pub enum Effect {
     Curve(Box<Wish>),
     /// Give up the curves up to this number.
     StopCurve(u64),
+    /// Compute the inside of a state; an older one still waiting is forgotten.
+    Profile(Box<Ask>),
     /// Walk.
     Walk(Box<Request>),
     /// End the walk of this number; its states so far stay.
@@ -54,6 +57,8 @@ pub enum Reply {
         /// The curve.
         result: Result<Arc<CurveData>, String>,
     },
+    /// The inside of a state.
+    Profile(Arc<Inside>),
     /// States walked.
     Walked {
         /// The request.
@@ -93,6 +98,7 @@ impl Inline {
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
             Effect::Curve(wish) => compute(&wish, || true),
+            Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
                 let outcome = walk::walk(&request, &mut |state| {
@@ -127,7 +133,8 @@ const CHUNK: Duration = Duration::from_millis(30);
 /// Runs effects on threads of their own; replies go to one function.
 #[derive(Debug)]
 pub struct Workers {
-    curve: Arc<Slot>,
+    curve: Arc<Slot<Box<Wish>>>,
+    profile: Arc<Slot<Box<Ask>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     stopped: Arc<AtomicU64>,
@@ -135,25 +142,29 @@ pub struct Workers {
 }
 
 /// One place for the newest wish.
-#[derive(Debug, Default)]
-struct Slot {
-    wish: Mutex<Option<Box<Wish>>>,
+#[derive(Debug)]
+struct Slot<T> {
+    wish: Mutex<Option<T>>,
     filled: Condvar,
     waiting: AtomicBool,
 }
 
-impl Slot {
-    fn lock(&self) -> MutexGuard<'_, Option<Box<Wish>>> {
+impl<T> Slot<T> {
+    fn empty() -> Arc<Self> {
+        Arc::new(Self { wish: Mutex::new(None), filled: Condvar::new(), waiting: AtomicBool::new(false) })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<T>> {
         self.wish.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn put(&self, wish: Box<Wish>) {
+    fn put(&self, wish: T) {
         *self.lock() = Some(wish);
         self.waiting.store(true, Ordering::Release);
         self.filled.notify_one();
     }
 
-    fn take(&self) -> Box<Wish> {
+    fn take(&self) -> T {
         let mut wish = self.lock();
         loop {
             if let Some(taken) = wish.take() {
@@ -174,16 +185,18 @@ impl Workers {
         store: Store,
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
-        let curve = Arc::new(Slot::default());
+        let (curve, profile) = (Slot::empty(), Slot::empty());
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
         let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), reply.clone());
         thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
+        let (slot, send) = (Arc::clone(&profile), reply.clone());
+        thread::Builder::new().name("profile".to_owned()).spawn(move || profiles(&slot, &send))?;
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, walks, files, stopped, given_up })
+        Ok(Self { curve, profile, walks, files, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -199,6 +212,7 @@ impl Workers {
         match effect {
             Effect::Curve(wish) => self.curve.put(wish),
             Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
+            Effect::Profile(ask) => self.profile.put(ask),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::File(job) => drop(self.files.send(job)),
@@ -206,7 +220,7 @@ impl Workers {
     }
 }
 
-fn curves(slot: &Slot, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
+fn curves(slot: &Slot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
     let mut last: Option<Arc<Sweep>> = None;
     loop {
         let mut wish = slot.take();
@@ -224,6 +238,12 @@ fn curves(slot: &Slot, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
             }
             reply(answer);
         }
+    }
+}
+
+fn profiles(slot: &Slot<Box<Ask>>, reply: &dyn Fn(Reply)) {
+    loop {
+        reply(Reply::Profile(Arc::new(Inside::compute(&slot.take()))));
     }
 }
 

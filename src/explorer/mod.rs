@@ -9,10 +9,15 @@
 //! | [`command`] | the one table of commands |
 //! | [`model`] | the state of a session |
 //! | [`update`](mod@update) | the only code that changes the model; it never solves and never reads a file |
+//! | [`view`] | the views, their windows, the overlays: what is shown of curve and walker |
+//! | [`look`] | the commands that change it |
+//! | [`pins`] | curves kept to compare the next ones with |
+//! | [`theory`] | the theory drawn over a curve, computed with it |
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
 //! | [`device`] | the line of the loading device through the walker |
+//! | [`profile`] | the inside of one state: pressure, gap, potential |
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`files`] | opening, saving and exporting |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
@@ -25,14 +30,20 @@ pub mod device;
 pub mod driver;
 pub mod files;
 pub mod history;
+pub mod look;
 pub mod model;
 pub mod nudge;
+pub mod pins;
+pub mod profile;
+pub mod theory;
 pub mod update;
+pub mod view;
 pub mod walk;
 
 pub use command::{Command, Id};
 pub use curve::{CurveData, Sweep};
 pub use driver::{Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
-pub use model::{Axes, Chart, EventSource, Level, Model, Panel};
+pub use model::{Axes, EventSource, Level, Model, Panel};
 pub use update::{answer, open, update};
+pub use view::{Overlay, Overlays, View, Window};

@@ -2,6 +2,9 @@
 
 use super::curve::CurveData;
 use super::history::{History, Node, NodeKind};
+use super::pins::Pins;
+use super::profile::{Ask, Inside};
+use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
 use crate::preset::{Fingerprint, Listing, Loaded, Parameter, Preset, Source, Value};
@@ -25,15 +28,6 @@ pub enum Panel {
 impl Panel {
     /// All, in the order of the Tab key.
     pub const ALL: [Self; 4] = [Self::Problem, Self::Walker, Self::Charts, Self::Events];
-}
-
-/// The charts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chart {
-    /// P over δ.
-    ForceApproach,
-    /// s over P.
-    RadiusForce,
 }
 
 /// What the axes show.
@@ -113,14 +107,26 @@ pub struct Model {
     pub parameter: usize,
     /// The event selected.
     pub event: usize,
-    /// The chart shown where only one fits.
-    pub chart: Chart,
+    /// The view shown where only one fits, and the first where more do.
+    pub view: View,
+    /// So many views fit on the screen.
+    pub views: usize,
+    /// The part of each view that is shown, in the order of [`View::ALL`].
+    pub windows: [Window; View::ALL.len()],
+    /// The cross-hair in the first view, in shares of its window.
+    pub cross: Option<(f64, f64)>,
     /// What the axes show.
     pub axes: Axes,
     /// Where the events come from.
     pub events: EventSource,
-    /// Whether the smooth sphere is drawn.
-    pub smooth: bool,
+    /// The theory drawn over the curve.
+    pub overlays: Overlays,
+    /// The curves to compare with.
+    pub pins: Pins,
+    /// The inside of the walker's state, for the views that show it; it can be that of the state before.
+    pub profile: Option<Arc<Inside>>,
+    /// What was last asked for.
+    pub profile_wanted: Option<Box<Ask>>,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
     /// The list of presets, once asked for.
@@ -147,6 +153,11 @@ pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
         == (b.material, b.gap, b.basis, b.path.start, b.path.end_contact_radius)
 }
 
+/// Whether a state solves the problem of `curve`.
+pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
+    same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
+}
+
 impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
@@ -169,10 +180,16 @@ impl Model {
             panel: Panel::Problem,
             parameter: 0,
             event: 0,
-            chart: Chart::ForceApproach,
+            view: View::ForceApproach,
+            views: 1,
+            windows: [Window::WHOLE; View::ALL.len()],
+            cross: None,
             axes: Axes::Reduced,
             events: EventSource::Curve,
-            smooth: true,
+            overlays: Overlays::default(),
+            pins: Pins::default(),
+            profile: None,
+            profile_wanted: None,
             message: None,
             listing: None,
             question: None,
@@ -225,8 +242,22 @@ impl Model {
 
     /// Whether the current node solves the problem of the curve on the screen.
     pub fn is_on_curve(&self, node: &Node) -> bool {
-        let Some(curve) = &self.curve else { return false };
-        same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
+        self.curve.as_ref().is_some_and(|curve| is_on_curve(curve, node))
+    }
+
+    /// The views on the screen, the first one first.
+    pub fn shown_views(&self) -> Vec<View> {
+        std::iter::once(self.view).chain(self.view.companions()).take(self.views.max(1)).collect()
+    }
+
+    /// The profile of the walker's state, or of the one before while that is computed.
+    pub fn shown_profile(&self) -> Option<&Inside> {
+        self.profile.as_deref().filter(|_| self.profile_wanted.is_some())
+    }
+
+    /// The part of a view that is shown.
+    pub fn window(&self, view: View) -> Window {
+        self.windows[view as usize]
     }
 
     /// Whether the values have been changed since the walker's state was made: undo takes that back first.

@@ -19,8 +19,10 @@ use super::History;
 use super::command::{Command, Id, row_of};
 use super::driver::{Effect, Reply};
 use super::files::Job;
-use super::model::{Axes, Chart, EventSource, Level, Model, Panel};
+use super::look;
+use super::model::{Axes, EventSource, Level, Model, Panel};
 use super::nudge::Amount;
+use super::view::View;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
 use files::{export, file, file_done, save, save_back};
@@ -43,10 +45,28 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
         return Vec::new();
     }
     model.message = None;
+    let mut effects = obey(model, command);
+    effects.extend(look::want_profile(model));
+    effects
+}
+
+fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
         Command::Set { key, text } => set(model, key, &text),
+        Command::Zoom { closer, about } => {
+            look::zoom(model, closer, about);
+            Vec::new()
+        }
+        Command::Overlay(overlay) => {
+            look::overlay(model, overlay);
+            Vec::new()
+        }
+        Command::Unpin(number) => {
+            look::unpin(model, number);
+            Vec::new()
+        }
         Command::Open(name) => vec![file(Job::Open(name))],
         Command::SaveAs { name, replace } => {
             let preset = Box::new(model.preset.clone());
@@ -59,11 +79,17 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
 
 /// What a reply does to the model, and what follows from it.
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
-    match reply {
+    let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result),
         Reply::Walked { id, made, outcome } => walked(model, id, made, outcome),
+        Reply::Profile(profile) => {
+            look::profile_came(model, profile);
+            Vec::new()
+        }
         Reply::File(done) => file_done(model, *done),
-    }
+    };
+    effects.extend(look::want_profile(model));
+    effects
 }
 
 fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
@@ -89,38 +115,45 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::MuchLess => return turn(model, false, Amount::Coarse),
         Id::MuchMore => return turn(model, true, Amount::Coarse),
         Id::Edit => return select(model),
+        Id::Up if model.panel == Panel::Charts => look::go(model, 0.0, 1.0),
+        Id::Down if model.panel == Panel::Charts => look::go(model, 0.0, -1.0),
+        Id::Left if model.panel == Panel::Charts => look::go(model, -1.0, 0.0),
+        Id::Right if model.panel == Panel::Charts => look::go(model, 1.0, 0.0),
         Id::Up => move_selection(model, false),
         Id::Down => move_selection(model, true),
-        Id::NextPanel => next_panel(model, 1),
-        Id::PreviousPanel => next_panel(model, Panel::ALL.len() - 1),
-        Id::SwitchChart => {
-            model.chart =
-                if model.chart == Chart::ForceApproach { Chart::RadiusForce } else { Chart::ForceApproach };
-        }
+        Id::NextPanel | Id::Right => next_panel(model, 1),
+        Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
+        Id::NextView => look::turn_view(model, 1),
+        Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
+        Id::ZoomIn => look::zoom(model, true, look::MIDDLE),
+        Id::ZoomOut => look::zoom(model, false, look::MIDDLE),
+        Id::Fit => look::fit(model),
+        Id::CrossHair => look::cross_hair(model),
+        Id::Pin => look::pin(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },
         Id::Events => {
             model.events =
                 if model.events == EventSource::Curve { EventSource::Walked } else { EventSource::Curve };
             model.event = 0;
         }
-        Id::Smooth => model.smooth = !model.smooth,
         Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
         Id::Save => return save_back(model),
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),
+        Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::Cancel | Id::SaveAs | Id::Export | Id::Help => {}
+        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Help => {}
     }
     Vec::new()
 }
 
-fn tell(model: &mut Model, level: Level, text: impl Into<String>) {
+pub(super) fn tell(model: &mut Model, level: Level, text: impl Into<String>) {
     model.message = Some((level, text.into()));
 }
 
-fn number(model: &mut Model) -> u64 {
+pub(super) fn number(model: &mut Model) -> u64 {
     let number = model.next_request;
     model.next_request += 1;
     number

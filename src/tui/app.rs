@@ -1,11 +1,13 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
 
 use super::keymap;
-use super::overlay::{Action, Choose, Confirm, Item, Overlay, Prompt, Purpose};
+use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::explorer::files::Document;
+use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
-use crate::explorer::{Command, Effect, Id, Model, Panel, Reply, answer, open, update};
+use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
+use crate::figure::Subject;
 use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Source};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
@@ -23,7 +25,7 @@ pub struct App {
     /// The session.
     pub model: Model,
     /// What lies over it.
-    pub overlay: Option<Overlay>,
+    pub overlay: Option<Over>,
     /// The number typed before a command.
     pub count: Option<usize>,
     /// Its looks.
@@ -47,10 +49,10 @@ impl App {
         }
         match self.overlay.take() {
             None => self.command_key(key),
-            Some(Overlay::Prompt(prompt)) => self.prompt_key(prompt, key),
-            Some(Overlay::Choose(choose)) => self.choose_key(choose, key),
-            Some(Overlay::Confirm(confirm)) => self.confirm_key(confirm, key),
-            Some(Overlay::Help(scroll)) => {
+            Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
+            Some(Over::Choose(choose)) => self.choose_key(choose, key),
+            Some(Over::Confirm(confirm)) => self.confirm_key(confirm, key),
+            Some(Over::Help(scroll)) => {
                 self.help_key(scroll, key);
                 Vec::new()
             }
@@ -59,7 +61,7 @@ impl App {
 
     /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
     pub fn paste(&mut self, text: &str) {
-        if let Some(Overlay::Prompt(prompt)) = &mut self.overlay {
+        if let Some(Over::Prompt(prompt)) = &mut self.overlay {
             if std::mem::take(&mut prompt.fresh) {
                 prompt.input.reset();
             }
@@ -67,6 +69,11 @@ impl App {
                 prompt.input.handle(tui_input::InputRequest::InsertChar(c));
             }
         }
+    }
+
+    /// The screen has room for so many views.
+    pub fn make_room(&mut self, views: usize) -> Vec<Effect> {
+        make_room(&mut self.model, views)
     }
 
     /// A worker has answered.
@@ -109,7 +116,7 @@ impl App {
             };
             items.push(Item { text: "a file ...".to_owned(), action: Action::Prompt(Box::new(prompt)) });
             self.overlay =
-                Some(Overlay::Choose(Choose { title: "Open a preset".to_owned(), items, selected: 0 }));
+                Some(Over::Choose(Choose { title: "Open a preset".to_owned(), items, selected: 0 }));
             return;
         }
         match model.question.take() {
@@ -130,7 +137,7 @@ impl App {
     }
 
     fn ask(&mut self, question: String, yes: Command) {
-        self.overlay = Some(Overlay::Confirm(Confirm { question, yes }));
+        self.overlay = Some(Over::Confirm(Confirm { question, yes }));
     }
 
     fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
@@ -151,7 +158,7 @@ impl App {
         match id {
             Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
             Id::Help => {
-                self.overlay = Some(Overlay::Help(0));
+                self.overlay = Some(Over::Help(0));
                 Vec::new()
             }
             Id::Quit if self.model.is_unsaved() => {
@@ -162,6 +169,12 @@ impl App {
             Id::Save if matches!(self.model.source, Source::Shipped(_)) => self.ask_name(),
             Id::SaveAs => self.ask_name(),
             Id::Export => self.ask_export(),
+            Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
+            Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
+            Id::ZoomIn | Id::ZoomOut => {
+                let about = self.walker_place();
+                self.run(Command::Zoom { closer: id == Id::ZoomIn, about })
+            }
             Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
             id => self.run(id.into()),
         }
@@ -201,7 +214,49 @@ impl App {
             Item { text: text.to_owned(), action: Action::Prompt(Box::new(prompt)) }
         });
         let choose = Choose { title: "Export".to_owned(), items: items.to_vec(), selected: 0 };
-        self.overlay = Some(Overlay::Choose(choose));
+        self.overlay = Some(Over::Choose(choose));
+        Vec::new()
+    }
+
+    /// Where the walker stands in the window of the first view, or its middle.
+    fn walker_place(&self) -> (f64, f64) {
+        let view = self.model.view;
+        let place = Subject::of(&self.model).and_then(|subject| {
+            let figure = subject.figure(view);
+            figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
+        });
+        place.unwrap_or(MIDDLE)
+    }
+
+    fn ask_overlays(&mut self, selected: usize) -> Vec<Effect> {
+        let Some(curve) = &self.model.curve else { return Vec::new() };
+        let theory = &curve.sweep.theory;
+        let items = Overlay::ALL.map(|overlay| {
+            let name = match (overlay, &theory.envelope) {
+                (Overlay::Smooth, _) => format!("smooth sphere ({})", theory.smooth_name),
+                (Overlay::Exact, _) => format!("exact solution ({})", theory.exact_name),
+                (Overlay::Envelope, Some(_)) => "envelope of small waves (Kesari-Lew)".to_owned(),
+                (Overlay::Envelope, None) => "envelope of small waves: needs waves and adhesion".to_owned(),
+            };
+            let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
+            Item { text: format!("[{on}] {name}"), action: Action::Command(Command::Overlay(overlay)) }
+        });
+        let title = "Theory over the curve".to_owned();
+        self.overlay = Some(Over::Choose(Choose { title, items: items.to_vec(), selected }));
+        Vec::new()
+    }
+
+    fn ask_pins(&mut self) -> Vec<Effect> {
+        let pins = self.model.pins.all().iter();
+        let mut items: Vec<Item> = pins
+            .map(|pin| Item {
+                text: format!("{}  {}", pin.number, self.theme.symbols(&pin.name(&self.model.preset))),
+                action: Action::Command(Command::Unpin(Some(pin.number))),
+            })
+            .collect();
+        items.push(Item { text: "all".to_owned(), action: Action::Command(Command::Unpin(None)) });
+        let title = "Take a pinned curve away".to_owned();
+        self.overlay = Some(Over::Choose(Choose { title, items, selected: 0 }));
         Vec::new()
     }
 
@@ -212,7 +267,7 @@ impl App {
     }
 
     fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
-        self.overlay = Some(Overlay::Prompt(Prompt {
+        self.overlay = Some(Over::Prompt(Prompt {
             title: title.to_owned(),
             note: note.to_owned(),
             input: Input::new(text),
@@ -234,7 +289,7 @@ impl App {
                     self.model.message.take_if(|(level, _)| *level == Level::Error)
                 {
                     prompt.error = Some(reason);
-                    self.overlay = Some(Overlay::Prompt(prompt));
+                    self.overlay = Some(Over::Prompt(prompt));
                 }
                 return effects;
             }
@@ -251,7 +306,7 @@ impl App {
                 prompt.error = None;
             }
         }
-        self.overlay = Some(Overlay::Prompt(prompt));
+        self.overlay = Some(Over::Prompt(prompt));
         Vec::new()
     }
 
@@ -263,9 +318,15 @@ impl App {
             Some(Id::Cancel | Id::Quit) => return Vec::new(),
             Some(Id::Edit) => {
                 return match choose.items.into_iter().nth(choose.selected).map(|item| item.action) {
+                    // Several may be wanted: the list stays until it is closed.
+                    Some(Action::Command(command @ Command::Overlay(_))) => {
+                        let effects = self.run(command);
+                        self.ask_overlays(choose.selected);
+                        effects
+                    }
                     Some(Action::Command(command)) => self.open_or_ask(command),
                     Some(Action::Prompt(prompt)) => {
-                        self.overlay = Some(Overlay::Prompt(*prompt));
+                        self.overlay = Some(Over::Prompt(*prompt));
                         Vec::new()
                     }
                     None => Vec::new(),
@@ -273,7 +334,7 @@ impl App {
             }
             _ => {}
         }
-        self.overlay = Some(Overlay::Choose(choose));
+        self.overlay = Some(Over::Choose(choose));
         Vec::new()
     }
 
@@ -293,7 +354,7 @@ impl App {
             KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
             KeyCode::Char('S') => self.ask_name(),
             _ => {
-                self.overlay = Some(Overlay::Confirm(confirm));
+                self.overlay = Some(Over::Confirm(confirm));
                 Vec::new()
             }
         }
@@ -308,6 +369,6 @@ impl App {
             (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
             _ => scroll,
         };
-        self.overlay = Some(Overlay::Help(scroll.min(super::view::help::lines())));
+        self.overlay = Some(Over::Help(scroll.min(super::view::help::lines())));
     }
 }

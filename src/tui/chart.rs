@@ -1,34 +1,21 @@
-//! One chart: axes with sensible ticks, curves in dots, marks as letters.
+//! One chart: axes with sensible ticks, curves in strokes, areas hatched, marks as letters.
 //!
-//! A stable part is a line, an unstable part is dotted, so that neither needs a colour. No number that is not
-//! finite reaches the canvas, and bounds always ascend.
+//! No two strokes look alike without their colour: a line, close dots, dots far apart, dashes, dots with digits
+//! between. No number that is not finite reaches the canvas, and nothing outside the window is drawn.
 
-use super::theme::Theme;
+use super::hatch::hatch;
+use super::stroke::{Stroke, letters, spots};
+use super::theme::{Theme, ink};
+use crate::figure::Bounds;
 use crate::report::number::{fixed, short};
 use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
+use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
-use ratatui::widgets::canvas::{Canvas, Line as Segment, Points};
+use ratatui::widgets::canvas::{Canvas, Context, Line as Segment, Points};
 use ratatui::widgets::{Block, Widget};
-
-/// How a curve is drawn; no two mean the same, so that none needs its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stroke {
-    /// A line.
-    Solid,
-    /// Close dots.
-    Dotted,
-    /// Dots far apart.
-    Sparse,
-}
-
-impl Stroke {
-    /// The distance between dots in character widths.
-    fn apart(self) -> f64 {
-        if self == Self::Sparse { 2.5 } else { 0.75 }
-    }
-}
 
 /// A curve to draw.
 #[derive(Debug, Clone)]
@@ -57,54 +44,24 @@ pub struct Mark {
 pub struct Chart {
     /// Title, with the axes' names.
     pub title: String,
+    /// What else it says, at the right end of the title's line where it fits.
+    pub note: String,
     /// The name of the x axis, at its right end.
     pub x_title: String,
-    /// The curves that set the bounds and those that only are drawn, in the order of drawing.
+    /// Closed outlines, hatched.
+    pub areas: Vec<Vec<(f64, f64)>>,
+    /// The curves, in the order of drawing.
     pub series: Vec<Series>,
     /// The marks, the last on top.
     pub marks: Vec<Mark>,
+    /// The cross-hair.
+    pub cross: Option<(f64, f64)>,
     /// x and y range.
     pub bounds: Bounds,
     /// What lines and letters mean, for the frame's lower edge: the first that fits.
     pub legend: Vec<String>,
-}
-
-/// The range of both axes, ascending and finite.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    /// Of x.
-    pub x: [f64; 2],
-    /// Of y.
-    pub y: [f64; 2],
-}
-
-impl Bounds {
-    /// The range of `points` with a little room; finite and ascending whatever the points are.
-    pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let empty = [f64::INFINITY, f64::NEG_INFINITY];
-        let (mut x, mut y) = (empty, empty);
-        for (px, py) in points {
-            if px.is_finite() && py.is_finite() {
-                x = [x[0].min(px), x[1].max(px)];
-                y = [y[0].min(py), y[1].max(py)];
-            }
-        }
-        Self { x: roomy(x), y: roomy(y) }
-    }
-}
-
-fn roomy([lo, hi]: [f64; 2]) -> [f64; 2] {
-    const ROOM: f64 = 0.04;
-    if !(lo.is_finite() && hi.is_finite()) {
-        return [0.0, 1.0];
-    }
-    let range = hi - lo;
-    if !range.is_finite() || range <= f64::EPSILON * lo.abs().max(hi.abs()) || range == 0.0 {
-        let half = (0.5 * lo.abs()).max(0.5 * hi.abs());
-        let half = if half > 0.0 && half.is_finite() { half } else { 0.5 };
-        return [0.5 * lo + 0.5 * hi - half, 0.5 * lo + 0.5 * hi + half];
-    }
-    [lo - ROOM * range, hi + ROOM * range]
+    /// What stands in it where there is nothing to draw.
+    pub missing: Option<String>,
 }
 
 /// Round ticks inside `bounds`, at most `most`, with labels of one precision.
@@ -119,15 +76,18 @@ pub fn ticks([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
     let first = (lo / step).ceil();
     // Decimals that tell neighbouring ticks apart; very small or large values get an exponent.
     let decimals = (-step.log10().floor()).max(0.0);
-    let plain = decimals <= 5.0 && lo.abs().max(hi.abs()) < 1e6;
+    let size = lo.abs().max(hi.abs());
+    let plain = decimals <= 5.0 && size < 1e6;
+    // Far into a curve only the last digits differ.
+    let digits = (size / step).log10().ceil().clamp(2.0, 16.0) + 1.0;
     (0..=most)
         .map(|i| (first + i as f64) * step)
         .take_while(|tick| *tick <= hi + 1e-9 * step)
         .map(|tick| {
             let tick = if tick.abs() < 0.5 * step { 0.0 } else { tick };
-            // Between 0 and 5, checked above.
+            // Between 0 and 5, and between 3 and 17, see above.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let label = if plain { fixed(tick, decimals as usize) } else { short(tick, 3) };
+            let label = if plain { fixed(tick, decimals as usize) } else { short(tick, digits as usize) };
             (tick, label)
         })
         .collect()
@@ -141,6 +101,10 @@ impl Chart {
             .border_style(theme.frame(selected))
             .title(Span::styled(theme.text(&self.title), theme.strong()));
         let fits = |text: &&String| text.chars().count() + 2 <= usize::from(area.width);
+        let titles = self.title.chars().count() + self.note.chars().count() + 3;
+        if !self.note.is_empty() && titles <= usize::from(area.width) {
+            block = block.title_top(Line::styled(theme.text(&self.note), theme.dim()).right_aligned());
+        }
         if let Some(legend) = self.legend.iter().find(fits) {
             block = block.title_bottom(Line::styled(theme.text(legend), theme.dim()).right_aligned());
         }
@@ -154,8 +118,14 @@ impl Chart {
         let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
         let plot =
             Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner };
-        self.draw_curves(frame, plot, theme);
         let buffer = frame.buffer_mut();
+        if let Some(reason) = &self.missing {
+            let text = theme.text(reason);
+            buffer.set_stringn(inner.x + 1, inner.y + 1, text, usize::from(inner.width) - 1, theme.dim());
+            return;
+        }
+        self.draw_lines(buffer, plot, theme);
+        self.draw_cross(buffer, plot, theme);
         for (value, label) in &y_ticks {
             if let Some(row) = cell(*value, self.bounds.y, plot.height, true) {
                 let room = usize::from(gutter.saturating_sub(1));
@@ -179,6 +149,12 @@ impl Chart {
         }
         let x = inner.right().saturating_sub(title_width);
         buffer.set_stringn(x, below, title, usize::from(inner.width), theme.strong());
+        for series in &self.series {
+            let Stroke::Lettered(letter) = series.stroke else { continue };
+            for (x, y) in letters(&series.points, &self.bounds, plot) {
+                buffer.set_stringn(x, y, letter, 1, Style::new().fg(series.color));
+            }
+        }
         for mark in &self.marks {
             let column = cell(mark.at.0, self.bounds.x, plot.width, false);
             let row = cell(mark.at.1, self.bounds.y, plot.height, true);
@@ -188,75 +164,72 @@ impl Chart {
         }
     }
 
-    /// The curves, each in a canvas of its own so that a later one does not recolour the cells of an earlier.
-    fn draw_curves(&self, frame: &mut Frame<'_>, plot: Rect, theme: Theme) {
-        for dotted in [true, false] {
-            let marker = if dotted { theme.unstable_marker() } else { theme.marker() };
-            let series: Vec<&Series> =
-                self.series.iter().filter(|series| (series.stroke != Stroke::Solid) == dotted).collect();
-            let canvas =
-                Canvas::default().marker(marker).x_bounds(self.bounds.x).y_bounds(self.bounds.y).paint(
-                    |context| {
-                        for series in &series {
-                            if dotted {
-                                let dots = self.dots(series, plot);
-                                context.draw(&Points::new(&dots, series.color));
-                            } else {
-                                for pair in series.points.windows(2) {
-                                    if let Some([(x1, y1), (x2, y2)]) = finite(pair) {
-                                        context.draw(&Segment { x1, y1, x2, y2, color: series.color });
-                                    }
-                                }
-                            }
-                            context.layer();
-                        }
-                    },
-                );
-            // Only the cells with dots: a later canvas leaves the others as they are.
-            let mut layer = ratatui::buffer::Buffer::empty(plot);
-            canvas.render(plot, &mut layer);
-            let buffer = frame.buffer_mut();
-            for position in plot.positions() {
-                let drawn = &layer[position];
-                if drawn.symbol() != " " && drawn.symbol() != "\u{2800}" {
-                    buffer[position] = drawn.clone();
+    /// Areas and curves, whole lines over dots and dashes.
+    fn draw_lines(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
+        let hatching = theme.hatch_marker();
+        let lost: Vec<(f64, f64)> =
+            self.areas.iter().flat_map(|outline| hatch(outline, &self.bounds, plot, hatching)).collect();
+        self.canvas(buffer, plot, hatching, |context| context.draw(&Points::new(&lost, ink::LOST)));
+        let (solid, broken): (Vec<&Series>, Vec<&Series>) =
+            self.series.iter().partition(|series| series.stroke == Stroke::Solid);
+        let marker = |series: &&Series| series.stroke.marker(theme);
+        for group in broken.chunk_by(|a, b| marker(a) == marker(b)).chain([solid.as_slice()]) {
+            let Some(first) = group.first() else { continue };
+            self.canvas(buffer, plot, marker(first), |context| {
+                for series in group {
+                    self.draw_series(context, series, plot);
+                    // A layer of its own: a later one does not recolour the cells of an earlier.
+                    context.layer();
                 }
-            }
+            });
         }
     }
 
-    /// Dots along a curve, evenly spaced on the screen.
-    fn dots(&self, series: &Series, plot: Rect) -> Vec<(f64, f64)> {
-        let apart = series.stroke.apart();
-        let per_x = f64::from(plot.width) / (self.bounds.x[1] - self.bounds.x[0]);
-        // A cell is twice as high as wide.
-        let per_y = 2.0 * f64::from(plot.height) / (self.bounds.y[1] - self.bounds.y[0]);
-        let mut dots = Vec::new();
-        let mut since = apart;
+    fn draw_series(&self, context: &mut Context<'_>, series: &Series, plot: Rect) {
+        if series.stroke != Stroke::Solid {
+            let spots = spots(&series.points, &self.bounds, plot, series.stroke);
+            context.draw(&Points::new(&spots, series.color));
+            return;
+        }
         for pair in series.points.windows(2) {
-            let Some([(x1, y1), (x2, y2)]) = finite(pair) else { continue };
-            let length = ((x2 - x1) * per_x).hypot((y2 - y1) * per_y);
-            // A piece far outside the window would give dots without end.
-            if !length.is_finite() || length > 1e4 {
-                continue;
+            if let [(x1, y1), (x2, y2)] = *pair
+                && [x1, y1, x2, y2].iter().all(|x| x.is_finite())
+            {
+                context.draw(&Segment { x1, y1, x2, y2, color: series.color });
             }
-            let mut at = apart - since;
-            while at < length {
-                if at >= 0.0 {
-                    let share = at / length;
-                    dots.push((x1 + (x2 - x1) * share, y1 + (y2 - y1) * share));
-                }
-                at += apart;
-            }
-            since = length - (at - apart);
         }
-        dots
     }
-}
 
-fn finite(pair: &[(f64, f64)]) -> Option<[(f64, f64); 2]> {
-    let [a, b] = *pair else { return None };
-    [a.0, a.1, b.0, b.1].iter().all(|x| x.is_finite()).then_some([a, b])
+    /// Draws on a canvas of its own and takes over only the cells with something in them.
+    fn canvas(&self, buffer: &mut Buffer, plot: Rect, marker: Marker, paint: impl Fn(&mut Context<'_>)) {
+        let canvas =
+            Canvas::default().marker(marker).x_bounds(self.bounds.x).y_bounds(self.bounds.y).paint(paint);
+        let mut layer = Buffer::empty(plot);
+        canvas.render(plot, &mut layer);
+        for position in plot.positions() {
+            let drawn = &layer[position];
+            if drawn.symbol() != " " && drawn.symbol() != "\u{2800}" {
+                buffer[position] = drawn.clone();
+            }
+        }
+    }
+
+    /// The cross-hair: lines in the empty cells of its row and column.
+    fn draw_cross(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
+        let Some((x, y)) = self.cross else { return };
+        let column = cell(x, self.bounds.x, plot.width, false);
+        let row = cell(y, self.bounds.y, plot.height, true);
+        let (Some(column), Some(row)) = (column, row) else { return };
+        let across = (0..plot.width).map(|i| (i, row, theme.glyph("─", "-")));
+        let upwards = (0..plot.height).map(|j| (column, j, theme.glyph("│", "|")));
+        for (i, j, line) in across.chain(upwards) {
+            let cell = &mut buffer[(plot.x + i, plot.y + j)];
+            if cell.symbol() == " " {
+                cell.set_symbol(line).set_style(theme.dim());
+            }
+        }
+        buffer.set_stringn(plot.x + column, plot.y + row, "+", 1, theme.strong());
+    }
 }
 
 /// The cell of `count` in which `value` falls; from the far end where `flipped`.
@@ -276,28 +249,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_are_finite_and_ascending_for_any_points() {
-        for points in [
-            vec![],
-            vec![(f64::NAN, 1.0)],
-            vec![(1.0, 2.0)],
-            vec![(0.0, 0.0), (0.0, 0.0)],
-            vec![(-1e300, 1e300), (1e300, -1e300)],
-            vec![(1.0, f64::INFINITY), (2.0, 3.0)],
-        ] {
-            let Bounds { x, y } = Bounds::of(points.clone());
-            for [lo, hi] in [x, y] {
-                assert!(lo.is_finite() && hi.is_finite() && lo < hi, "{points:?}: {lo} {hi}");
-            }
-        }
-    }
-
-    #[test]
     fn ticks_are_round_and_inside() {
         let labels = |bounds, most| ticks(bounds, most).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
         assert_eq!(labels([-0.061, 0.066], 4), ["-0.05", "0.00", "0.05"]);
         assert_eq!(labels([-1.5, 0.4], 5), ["-1.5", "-1.0", "-0.5", "0.0"]);
         assert_eq!(labels([0.0, 3e-9], 3), ["0", "1e-9", "2e-9", "3e-9"]);
+        // Far into a curve neighbouring ticks still differ.
+        let deep = labels([0.123_456_78, 0.123_456_82], 4);
+        assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);
         assert!(ticks([1.0, 1.0], 4).is_empty());
         assert!(ticks([0.0, f64::NAN], 4).is_empty());
     }

@@ -1,6 +1,6 @@
 //! Which region goes where at which size.
 
-use crate::explorer::Chart;
+use crate::explorer::View;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 /// The smallest screen on which anything is shown.
@@ -15,8 +15,8 @@ pub struct Regions {
     pub problem: Option<Rect>,
     /// The walker.
     pub walker: Option<Rect>,
-    /// The charts with their place.
-    pub charts: Vec<(Chart, Rect)>,
+    /// The views with their place, the first one first.
+    pub charts: Vec<(View, Rect)>,
     /// The instabilities.
     pub events: Option<Rect>,
     /// What the state is.
@@ -25,9 +25,9 @@ pub struct Regions {
     pub footer: Rect,
 }
 
-/// The regions of a screen showing `chart` where only one fits, with room for so many `events`; `None` below
-/// the smallest size.
-pub fn regions(area: Rect, chart: Chart, events: usize) -> Option<Regions> {
+/// The regions of a screen showing `view`, and its companions where more than one fits, with room for so many
+/// `events`; `None` below the smallest size.
+pub fn regions(area: Rect, view: View, events: usize) -> Option<Regions> {
     let (width, height) = (area.width, area.height);
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;
@@ -68,16 +68,8 @@ pub fn regions(area: Rect, chart: Chart, events: usize) -> Option<Regions> {
     };
     let [problem, walker] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(walker_height)]).areas(side);
-    let both = width >= 100 && height >= 30;
-    let charts = if !both {
-        vec![(chart, charts)]
-    } else if width >= 160 {
-        let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(charts);
-        vec![(Chart::ForceApproach, left), (Chart::RadiusForce, right)]
-    } else {
-        let [top, bottom] = Layout::vertical([Constraint::Fill(1), Constraint::Fill(1)]).areas(charts);
-        vec![(Chart::ForceApproach, top), (Chart::RadiusForce, bottom)]
-    };
+    let views = std::iter::once(view).chain(view.companions());
+    let charts = views.zip(places(charts, width, height)).collect();
     let shown = |rect: Rect| (rect.width > 0 && rect.height > 2).then_some(rect);
     Some(Regions {
         header,
@@ -90,6 +82,24 @@ pub fn regions(area: Rect, chart: Chart, events: usize) -> Option<Regions> {
     })
 }
 
+/// The places of the charts on a screen of this size: one, two, or four where they stay as large as on a small screen.
+fn places(charts: Rect, width: u16, height: u16) -> Vec<Rect> {
+    let half = [Constraint::Fill(1), Constraint::Fill(1)];
+    if width < 100 || height < 30 {
+        return vec![charts];
+    }
+    if width < 160 {
+        let rows: [Rect; 2] = Layout::vertical(half).areas(charts);
+        return rows.to_vec();
+    }
+    let columns: [Rect; 2] = Layout::horizontal(half).areas(charts);
+    if height < 45 {
+        return columns.to_vec();
+    }
+    let [left, right] = columns.map(|column| Layout::vertical(half).areas::<2>(column));
+    vec![left[0], right[0], left[1], right[1]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,7 +109,7 @@ mod tests {
         for width in 0..220 {
             for height in 0..70 {
                 let area = Rect::new(0, 0, width, height);
-                let Some(regions) = regions(area, Chart::ForceApproach, usize::from(width % 20)) else {
+                let Some(regions) = regions(area, View::ForceApproach, usize::from(width % 20)) else {
                     assert!(width < SMALLEST.0 || height < SMALLEST.1);
                     continue;
                 };
@@ -110,7 +120,12 @@ mod tests {
                     assert_eq!(a.intersection(area), *a);
                     assert!(all[i + 1..].iter().all(|b| a.intersection(*b).is_empty()), "{width}x{height}");
                 }
-                assert_eq!(regions.charts.len(), if width >= 100 && height >= 30 { 2 } else { 1 });
+                let views = match (width, height) {
+                    (160.., 45..) => 4,
+                    (100.., 30..) => 2,
+                    _ => 1,
+                };
+                assert_eq!(regions.charts.len(), views, "{width}x{height}");
             }
         }
     }

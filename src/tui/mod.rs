@@ -8,14 +8,18 @@
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
 //! | [`theme`] | colours and glyphs, Unicode or ASCII |
-//! | [`chart`] | one chart: axes, ticks, curves, marks |
+//! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
+//! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
+//! | [`hatch`] | areas filled with slanting lines |
 //! | [`view`] | one file per screen region |
 
 pub mod app;
 pub mod chart;
+pub mod hatch;
 pub mod keymap;
 pub mod layout;
 pub mod overlay;
+pub mod stroke;
 pub mod terminal;
 pub mod theme;
 pub mod view;
@@ -68,8 +72,10 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
             dirty = true;
         }
         if dirty && display.is_due() {
-            display.draw(|frame| view::draw(frame, &app));
+            let mut views = 0;
+            display.draw(|frame| views = view::draw(frame, &app));
             dirty = false;
+            workers.submit_all(app.make_room(views));
         }
     }
     drop(guard);

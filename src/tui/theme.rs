@@ -41,14 +41,17 @@ impl Theme {
         text.chars().map(|c| if c.is_ascii() { c.to_string() } else { transliterate(c).to_owned() }).collect()
     }
 
-    /// The dots of a chart.
-    pub fn marker(self) -> Marker {
-        if self.ascii { Marker::Custom('o') } else { Marker::Braille }
+    /// The dots of a hatched area.
+    pub fn hatch_marker(self) -> Marker {
+        if self.ascii { Marker::Custom('/') } else { Marker::Braille }
     }
 
-    /// The dots of an unstable branch; in ASCII one dot a cell needs another character.
-    pub fn unstable_marker(self) -> Marker {
-        if self.ascii { Marker::Custom('.') } else { Marker::Braille }
+    /// A label of the parameter table with its Greek letters, where the terminal can show them.
+    pub fn symbols(self, label: &str) -> String {
+        if self.ascii {
+            return label.to_owned();
+        }
+        label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
     }
 
     /// The frame of a panel.
@@ -109,6 +112,21 @@ pub mod ink {
     pub const MARK: Color = Color::Red;
     /// The walker.
     pub const WALKER: Color = Color::Cyan;
+    /// The exact solution and its envelope.
+    pub const EXACT: Color = Color::LightBlue;
+    /// Pressures, gaps and potentials.
+    pub const BODY: Color = Color::Green;
+    /// Energy lost.
+    pub const LOST: Color = Color::Magenta;
+    /// The pinned curves, by number.
+    pub const PINS: [Color; 6] = [
+        Color::LightYellow,
+        Color::LightCyan,
+        Color::LightMagenta,
+        Color::LightGreen,
+        Color::LightRed,
+        Color::Gray,
+    ];
 }
 
 fn transliterate(c: char) -> &'static str {

@@ -4,6 +4,7 @@ use super::values::want_curve;
 use super::{open, tell};
 use crate::explorer::driver::Effect;
 use crate::explorer::files::{Document, Done, Job};
+use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::preset::{Overwrite, Source};
 
@@ -44,8 +45,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             // Request numbers go on, so that late replies to the old session are recognised; so do the views.
             opened.next_request = model.next_request + 1;
             opened.curve_shown = model.next_request;
-            (opened.axes, opened.smooth, opened.chart) = (model.axes, model.smooth, model.chart);
-            (opened.panel, opened.events) = (model.panel, model.events);
+            look::carry_on(model, &mut opened);
             *model = opened;
             drop(effects);
             let effect = want_curve(model);

@@ -18,6 +18,8 @@ pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
         Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
             "select a parameter first: Tab goes to the Problem panel"
         }
+        Id::Fit => "the whole chart is shown",
+        Id::Pins => "no curve is pinned: p pins the one on the screen",
         _ => "the curve is being computed",
     }
 }

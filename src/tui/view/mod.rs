@@ -4,6 +4,7 @@ pub mod charts;
 pub mod events;
 pub mod header;
 pub mod help;
+pub mod legend;
 pub mod overlays;
 pub mod problem;
 pub mod status;
@@ -19,16 +20,16 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders};
 
-/// Draws the whole screen.
-pub fn draw(frame: &mut Frame<'_>, app: &App) {
+/// Draws the whole screen, and says for how many views it has room.
+pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
     let events = app.model.shown_events().len();
-    let Some(regions) = regions(area, app.model.chart, events) else {
+    let Some(regions) = regions(area, app.model.view, events) else {
         let (width, height) = SMALLEST;
         let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
         frame.render_widget(Line::raw(text), Rect { height: area.height.min(1), ..area });
-        return;
+        return 1;
     };
     header::draw(frame, regions.header, app);
     if let Some(area) = regions.problem {
@@ -37,8 +38,8 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) {
     if let Some(area) = regions.walker {
         walker::draw(frame, area, app);
     }
-    for (chart, area) in &regions.charts {
-        charts::draw(frame, *area, app, *chart, regions.charts.len() == 1);
+    for (i, (view, area)) in regions.charts.iter().enumerate() {
+        charts::draw(frame, *area, app, *view, i == 0);
     }
     if let Some(area) = regions.events {
         events::draw(frame, area, app);
@@ -49,6 +50,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) {
         Some(Overlay::Help(scroll)) => help::draw(frame, area, app, *scroll),
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
+    regions.charts.len()
 }
 
 /// The frame of a panel in the side column: what lies right of it and below has a frame of its own.

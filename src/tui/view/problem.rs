@@ -52,12 +52,6 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// A label as the terminal shows it.
-pub fn label(theme: Theme, row: &Parameter) -> String {
-    let unicode = row.label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ");
-    if theme.ascii { row.label.to_owned() } else { unicode }
-}
-
 fn knob_line(
     theme: Theme,
     row: &Parameter,
@@ -73,7 +67,7 @@ fn knob_line(
     let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
     let room = usize::from(width).saturating_sub(10 + ends.len());
     let text: String = text.chars().take(room).collect();
-    let line = format!("{mark}{:<8} {text}{ends}", label(theme, row));
+    let line = format!("{mark}{:<8} {text}{ends}", theme.symbols(row.label));
     let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }

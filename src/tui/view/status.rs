@@ -1,5 +1,6 @@
 //! What the state is and which key is next; and the keys.
 
+use super::legend::reading;
 use crate::explorer::Id;
 use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
@@ -24,6 +25,8 @@ const FOOTER: &[Id] = &[
     Id::Edit,
     Id::Save,
     Id::Open,
+    Id::NextView,
+    Id::ZoomIn,
     Id::Axes,
     Id::Events,
     Id::Export,
@@ -35,7 +38,9 @@ const FOOTER: &[Id] = &[
 /// Draws the status line and the footer.
 pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let theme = app.theme;
-    let (level, text) = app.model.status();
+    // The cross-hair is read while nothing else is to be told.
+    let reading = if app.model.message.is_none() { reading(&app.model) } else { None };
+    let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
     let count = app.count.map_or_else(String::new, |count| format!("{count} "));
     let line = Line::from(vec![

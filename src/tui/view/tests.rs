@@ -1,6 +1,6 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
-use crate::explorer::{Command, Id, Inline, Panel};
+use crate::explorer::{Command, Id, Inline, Panel, View};
 use crate::preset::Store;
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -59,7 +59,11 @@ impl Screen {
 
     fn draw(&self, width: u16, height: u16) -> Buffer {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-        terminal.draw(|frame| super::draw(frame, &self.app)).unwrap();
+        terminal
+            .draw(|frame| {
+                super::draw(frame, &self.app);
+            })
+            .unwrap();
         terminal.backend().buffer().clone()
     }
 
@@ -100,7 +104,7 @@ fn every_state_is_drawn_at_every_size() {
         ("wavy-sphere", "}q"),
         ("wavy-sphere", "nxnxnxkkk\r\u{8}\u{8}0\r"),
         ("fig-1-hertz", "5 a"),
-        ("fig-3-jkr", "J \t\t\tn"),
+        ("fig-3-jkr", "y\r\x1b \t\t\tn"),
     ] {
         let mut screen = Screen::new(preset);
         screen.keys(keys);
@@ -135,10 +139,120 @@ fn whole_screens_as_text() {
 }
 
 #[test]
+fn every_view_is_drawn_at_every_size_near_and_far() {
+    for (preset, keys) in [("wavy-sphere", "nxp}p"), ("fig-1-hertz", " "), ("wavy-sphere", "nxnxnxnxnxnx")] {
+        let mut screen = Screen::new(preset);
+        screen.keys("y\rj\rj\r\x1b").keys(keys).keys("i");
+        for view in View::ALL {
+            assert_eq!(screen.app.model.view, view);
+            for zoom in ["", "+++++", "++++++++++++++++++++++++++++++", "f------"] {
+                screen.keys(zoom);
+                for (width, height) in [(40, 10), (80, 24), (120, 40), (200, 60)] {
+                    screen.draw(width, height);
+                }
+            }
+            screen.keys("ft");
+        }
+    }
+}
+
+#[test]
+fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
+    let mut screen = Screen::new("wavy-sphere");
+    for title in [
+        "P/Pc over δ",
+        "s/λ over P/Pc",
+        "s/λ over δ",
+        "p/E* over r/λ",
+        "gap over r/λ",
+        "U over s/λ",
+        "unloading",
+    ] {
+        let text = screen.text(80, 24);
+        assert!(text.contains(title), "{title}: {text}");
+        screen.keys("t");
+    }
+    screen.keys("T");
+    assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
+    screen.keys("t");
+    let text = screen.text(200, 60);
+    for title in ["P/Pc over δ", "s/λ over P/Pc", "p/E* over r/λ", "U over s/λ"] {
+        assert!(text.contains(title), "{title}: {text}");
+    }
+    assert_eq!(text.matches("(t: radius-force)").count(), 1);
+    // A jump's loss is hatched, in ASCII as well.
+    screen.app.theme = Theme { ascii: true };
+    let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
+    let before = strokes(&screen);
+    screen.keys("T");
+    assert!(strokes(&screen) > before + 5, "{}", screen.text(120, 40));
+}
+
+#[test]
+fn zooming_keeps_the_walker_in_place_and_fit_shows_all_again() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("nx");
+    let whole = screen.text(80, 24);
+    screen.keys("++");
+    let close = screen.text(80, 24);
+    assert!(close.contains("zoom 4x") && close.contains('@'), "{close}");
+    let place = |text: &str| text.lines().find_map(|line| Some((line.len(), line.find('@')?)));
+    assert!(place(&whole).is_some() && place(&close).is_some());
+    // In Charts the arrows move the window, elsewhere they select.
+    screen.app.model.panel = Panel::Charts;
+    screen.press(KeyCode::Right);
+    assert_ne!(screen.text(80, 24), close);
+    assert_eq!(screen.app.model.panel, Panel::Charts);
+    screen.keys("f");
+    assert!(!screen.text(80, 24).contains("zoom"));
+    screen.press(KeyCode::Tab);
+    screen.press(KeyCode::Left);
+    assert_eq!(screen.app.model.panel, Panel::Charts);
+}
+
+#[test]
+fn the_cross_hair_reads_the_chart_and_the_curve() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("i");
+    let text = screen.text(120, 40);
+    assert!(text.contains("+ δ ") && text.contains("; * δ ") && text.contains("stable"), "{text}");
+    let before = screen.app.model.cross;
+    screen.press(KeyCode::Up);
+    screen.press(KeyCode::Right);
+    assert_ne!(screen.app.model.cross, before);
+    let find_cross = |screen: &Screen| {
+        let buffer = screen.draw(80, 24);
+        assert!(find(&buffer, "+").modifier.contains(Modifier::BOLD) || screen.app.theme.ascii);
+    };
+    find_cross(&screen);
+    // On a view of the state only its own coordinates.
+    screen.keys("ttt");
+    let text = screen.text(120, 40);
+    assert!(text.contains("+ r/λ ") && !text.contains("; * δ "), "{text}");
+    screen.keys("\x1b");
+    assert!(screen.app.model.cross.is_none());
+}
+
+#[test]
+fn pins_are_listed_and_taken_away_one_by_one() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p}p");
+    let text = screen.text(120, 40);
+    assert!(text.contains("1 A 0.0025") && text.contains("pinned as 2"), "{text}");
+    screen.keys("P");
+    let text = screen.text(120, 40);
+    assert!(text.contains("1  A 0.0025") && text.contains("2  as now"), "{text}");
+    screen.keys("\rPj");
+    assert!(screen.text(120, 40).contains("> all"));
+    screen.keys("\r");
+    assert!(screen.app.model.pins.is_empty());
+}
+
+#[test]
 fn an_ascii_terminal_gets_nothing_else() {
     let mut screen = Screen::new("wavy-sphere");
     screen.app.theme = Theme { ascii: true };
-    for keys in ["", "n", "x", "t", "?", "\x1bo", "\x1b\r"] {
+    for keys in ["", "n", "x", "t", "?", "\x1bo", "\x1b\r", "\x1bp}i+", "tttttty\r", "\x1bP"] {
         screen.keys(keys);
         for (width, height) in [(80, 24), (120, 40)] {
             let text = screen.text(width, height);

@@ -1,0 +1,138 @@
+//! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
+
+use super::driver::Effect;
+use super::model::{Level, Model, Panel};
+use super::profile::{Ask, Inside};
+use super::update::{number, tell};
+use super::view::{Overlay, View, Window};
+use std::sync::Arc;
+
+/// One press brings the chart closer by this factor.
+const CLOSER: f64 = 2.0;
+/// One press moves the chart by this share of what is seen.
+const PAN: f64 = 0.125;
+/// One press moves the cross-hair by this share: across, and upwards, where a screen has fewer rows.
+const ACROSS: f64 = 1.0 / 64.0;
+const UPWARDS: f64 = 1.0 / 32.0;
+
+/// The middle of a window.
+pub const MIDDLE: (f64, f64) = (0.5, 0.5);
+
+/// The view `by` places further on.
+pub(super) fn turn_view(model: &mut Model, by: usize) {
+    model.view = model.view.further(by);
+}
+
+/// Zooms the first view about a place of its window.
+pub(super) fn zoom(model: &mut Model, closer: bool, about: (f64, f64)) {
+    let about = model.cross.unwrap_or(about);
+    let times = if closer { CLOSER } else { 1.0 / CLOSER };
+    match model.window(model.view).zoomed(times, about) {
+        Some(window) => model.windows[model.view as usize] = window,
+        None if closer => tell(model, Level::Info, "no closer: there is nothing more to tell apart"),
+        None => tell(model, Level::Info, "no further away: f shows the whole chart"),
+    }
+}
+
+/// The whole of the first view.
+pub(super) fn fit(model: &mut Model) {
+    model.windows[model.view as usize] = Window::WHOLE;
+}
+
+/// The cross-hair on, in the middle, or off.
+pub(super) fn cross_hair(model: &mut Model) {
+    model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };
+    if model.cross.is_some() {
+        // There the arrows move it.
+        model.panel = Panel::Charts;
+    }
+}
+
+/// An arrow in Charts: the cross-hair moves, and takes the window along at its edge; without it the window moves.
+pub(super) fn go(model: &mut Model, right: f64, up: f64) {
+    let window = model.window(model.view);
+    let Some((x, y)) = model.cross else {
+        model.windows[model.view as usize] = window.moved(right * PAN, up * PAN);
+        return;
+    };
+    let (x, y) = (x + right * ACROSS, y + up * UPWARDS);
+    let beyond = |at: f64| at - at.clamp(0.0, 1.0);
+    model.windows[model.view as usize] = window.moved(beyond(x), beyond(y));
+    model.cross = Some((x.clamp(0.0, 1.0), y.clamp(0.0, 1.0)));
+}
+
+/// Draws an overlay or no longer; one that does not exist here is said to be missing.
+pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
+    model.overlays.toggle(overlay);
+    let missing = model.curve.as_ref().is_some_and(|curve| curve.sweep.theory.envelope.is_none());
+    if overlay == Overlay::Envelope && model.overlays.envelope && missing {
+        tell(model, Level::Info, "the envelope needs waves and adhesion: it is drawn where both are");
+    }
+}
+
+/// Pins the curve on the screen.
+pub(super) fn pin(model: &mut Model) {
+    let Some(curve) = model.curve.clone() else { return };
+    match model.pins.add(&curve) {
+        Ok(number) => {
+            tell(
+                model,
+                Level::Info,
+                format!("pinned as {number}: change a value to compare, P takes it away"),
+            );
+        }
+        Err(reason) => tell(model, Level::Error, reason),
+    }
+}
+
+/// Takes away one pinned curve or all.
+pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
+    if !model.pins.remove(number) {
+        tell(model, Level::Error, "no curve is pinned under that number");
+    }
+}
+
+/// The views and what belongs to them go on in another session; so do the pinned curves.
+pub(super) fn carry_on(from: &Model, to: &mut Model) {
+    (to.axes, to.overlays, to.view, to.views) = (from.axes, from.overlays, from.view, from.views);
+    (to.panel, to.events) = (from.panel, from.events);
+    to.pins = from.pins.clone();
+}
+
+/// The screen has room for so many views.
+pub fn make_room(model: &mut Model, views: usize) -> Vec<Effect> {
+    model.views = views.clamp(1, View::ALL.len());
+    want_profile(model).into_iter().collect()
+}
+
+/// Asks for the inside of the walker's state where a view shows it and it is not on its way.
+pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
+    let wanted = model.shown_views().into_iter().any(View::is_state);
+    let node = model.walker().filter(|node| wanted && !node.is_apart());
+    let (Some(node), Some(curve)) = (node, &model.curve) else {
+        model.profile_wanted = None;
+        return None;
+    };
+    let mut ask = Box::new(Ask {
+        id: 0,
+        setting: Arc::clone(&node.setting),
+        curve: Arc::clone(curve),
+        state: node.state,
+        exact: model.overlays.exact,
+        inward: model.inward,
+    });
+    if model.profile_wanted.as_ref().is_some_and(|last| last.is_like(&ask)) {
+        return None;
+    }
+    ask.id = number(model);
+    model.profile_wanted = Some(ask.clone());
+    Some(Effect::Profile(ask))
+}
+
+/// The inside of a state has come; a run shows what it passes, so it need not be the newest that was asked for.
+pub(super) fn profile_came(model: &mut Model, profile: Arc<Inside>) {
+    let newer = model.profile.as_ref().is_none_or(|shown| shown.id < profile.id);
+    if model.profile_wanted.is_some() && newer {
+        model.profile = Some(profile);
+    }
+}

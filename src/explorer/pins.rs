@@ -1,0 +1,172 @@
+//! Curves kept on the screen to compare the next ones with.
+//!
+//! A pin is named by the values in which it differs from the preset as it is now, so its name changes with the preset.
+
+use super::curve::CurveData;
+use crate::preset::{PARAMETERS, Preset, Value};
+use crate::report::number::short;
+use std::sync::Arc;
+
+/// Most curves pinned: each has a digit and a colour of its own.
+pub const MOST: usize = 6;
+
+/// Differences named; the others are counted.
+const NAMED: usize = 3;
+
+/// A pinned curve.
+#[derive(Debug, Clone)]
+pub struct Pin {
+    /// Its number, from 1 to [`MOST`]; it keeps it while others are taken away.
+    pub number: usize,
+    /// The curve, with the preset it was computed from.
+    pub curve: Arc<CurveData>,
+}
+
+impl Pin {
+    /// The preset the curve was computed from.
+    pub fn preset(&self) -> &Preset {
+        &self.curve.setting.preset
+    }
+
+    /// What differs from `now`, as labels and values.
+    pub fn name(&self, now: &Preset) -> String {
+        name(self.preset(), now)
+    }
+}
+
+/// The pinned curves, by number.
+#[derive(Debug, Clone, Default)]
+pub struct Pins(Vec<Pin>);
+
+impl Pins {
+    /// All.
+    pub fn all(&self) -> &[Pin] {
+        &self.0
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Pins `curve` under the smallest free number, which is given back.
+    ///
+    /// # Errors
+    /// Why not, in words: it is pinned already, or all numbers are taken.
+    pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
+        let same = |pin: &&Pin| {
+            let title = curve.setting.preset.title.clone();
+            Preset { title, ..pin.preset().clone() } == curve.setting.preset
+        };
+        if let Some(pin) = self.0.iter().find(same) {
+            return Err(format!("this curve is pinned already, as {}", pin.number));
+        }
+        let free = (1..=MOST).find(|number| self.0.iter().all(|pin| pin.number != *number));
+        let Some(number) = free else {
+            return Err(format!("{MOST} curves are pinned, which is the most: P takes one away"));
+        };
+        self.0.push(Pin { number, curve: Arc::clone(curve) });
+        self.0.sort_by_key(|pin| pin.number);
+        Ok(number)
+    }
+
+    /// Takes away the pin of this number, or all; false when there is nothing to take away.
+    pub fn remove(&mut self, number: Option<usize>) -> bool {
+        let before = self.0.len();
+        self.0.retain(|pin| number.is_some_and(|number| pin.number != number));
+        self.0.len() < before
+    }
+}
+
+/// The values of `pinned` that `now` has not, in the order of the table.
+fn differences(pinned: &Preset, now: &Preset) -> Vec<(&'static str, Value)> {
+    PARAMETERS
+        .iter()
+        .filter(|row| !matches!(row.key, "format" | "title"))
+        .filter_map(|row| Some((row, pinned.get(row.key)?)))
+        .filter(|(row, value)| now.get(row.key).as_ref() != Some(value))
+        // The stiffness has a row of its own and says that the device is a spring.
+        .filter(|(row, _)| row.key != "path.control" || pinned.get("path.control.stiffness").is_none())
+        .map(|(row, value)| (row.label, value))
+        .collect()
+}
+
+fn name(pinned: &Preset, now: &Preset) -> String {
+    let differences = differences(pinned, now);
+    if differences.is_empty() {
+        // An end that is given up differs only in what the other has.
+        return "as now".to_owned();
+    }
+    let shown = |value: &Value| match value {
+        Value::Number(x) => short(*x, 4),
+        other => other.to_string(),
+    };
+    let named: Vec<String> =
+        differences.iter().take(NAMED).map(|(label, value)| format!("{label} {}", shown(value))).collect();
+    let more = differences.len().saturating_sub(NAMED);
+    let rest = if more > 0 { format!(" +{more}") } else { String::new() };
+    format!("{}{rest}", named.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::{read, shipped};
+
+    fn preset(changes: &[(&str, &str)]) -> Preset {
+        let mut preset = read("wavy-sphere", shipped::find("wavy-sphere").unwrap().text).unwrap();
+        for (key, text) in changes {
+            let value = crate::preset::parameter(key).unwrap().parse(text).unwrap();
+            preset.set(key, value).unwrap();
+        }
+        preset
+    }
+
+    #[test]
+    fn a_pin_is_named_by_what_differs() {
+        let now = preset(&[]);
+        for (changes, expected) in [
+            (&[][..], "as now"),
+            (&[("title", "another")], "as now"),
+            (&[("gap.amplitude", "0.002")], "A 0.002"),
+            (&[("path.control.stiffness", "0.3")], "k 0.3"),
+            (&[("path.control", "force")], "control force"),
+            (&[("gap.shape", "sphere")], "gap sphere"),
+            (&[("path.start_approach", "0.05")], "delta start 0.05"),
+            (
+                &[
+                    ("material.effective_modulus", "2"),
+                    ("gap.amplitude", "0.0021"),
+                    ("gap.wavelength", "0.06"),
+                    ("path.control", "force"),
+                ],
+                "E* 2, A 0.0021, lambda 0.06 +1",
+            ),
+        ] {
+            assert_eq!(name(&preset(changes), &now), expected);
+        }
+        // Named anew as the preset changes.
+        assert_eq!(name(&now, &preset(&[("gap.amplitude", "0.002")])), "A 0.0025");
+        assert!(name(&now, &preset(&[("gap.shape", "sphere")])).starts_with("gap wavy-sphere, A 0.0025"));
+    }
+
+    #[test]
+    fn numbers_stay_and_free_ones_are_taken_again() {
+        let curve = |amplitude: &str| {
+            let preset = preset(&[("gap.amplitude", amplitude), ("path.end_contact_radius", "0.35")]);
+            Arc::new(CurveData::compute(&preset, || true).unwrap())
+        };
+        let mut pins = Pins::default();
+        let first = curve("0.001");
+        assert_eq!(pins.add(&first), Ok(1));
+        assert!(pins.add(&first).unwrap_err().contains("pinned already, as 1"));
+        for (number, amplitude) in [(2, "0.0011"), (3, "0.0012"), (4, "0.0013"), (5, "0.0014"), (6, "0.0015")]
+        {
+            assert_eq!(pins.add(&curve(amplitude)), Ok(number));
+        }
+        assert!(pins.add(&curve("0.0016")).unwrap_err().contains("P takes one away"));
+        assert!(pins.remove(Some(3)) && !pins.remove(Some(3)));
+        assert_eq!(pins.add(&curve("0.0016")), Ok(3));
+        assert!(pins.remove(None) && pins.is_empty() && !pins.remove(None));
+    }
+}

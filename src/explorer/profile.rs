@@ -1,0 +1,109 @@
+//! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
+
+use super::curve::CurveData;
+use super::history::Setting;
+use crate::contact::{Control, Gap, Units};
+use crate::quasistatic::jump::{Nodes, Run};
+use crate::quasistatic::{Landscape, Profile, State};
+use crate::theory::Exact;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Points of the exact pressure.
+const EXACT_POINTS: u32 = 200;
+/// Waves of the landscape inward and outward of the edge: the states next to it and what lies between.
+const WAVES: [f64; 2] = [2.2, 1.2];
+/// Without waves, these shares of the radius.
+const SHARES: [f64; 2] = [0.95, 0.6];
+
+/// What is wanted of a state.
+#[derive(Debug, Clone)]
+pub struct Ask {
+    /// Its number.
+    pub id: u64,
+    /// The problem the state solves.
+    pub setting: Arc<Setting>,
+    /// The curve on which it lies, with the control whose potential is wanted.
+    pub curve: Arc<CurveData>,
+    /// The state, reduced.
+    pub state: State,
+    /// Whether the exact pressure is wanted as well.
+    pub exact: bool,
+    /// Whether the barrier inward is wanted, or outward.
+    pub inward: bool,
+}
+
+impl Ask {
+    /// Whether the answer to the one is the answer to the other.
+    pub fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.setting, &other.setting)
+            && Arc::ptr_eq(&self.curve, &other.curve)
+            && (self.state, self.exact, self.inward) == (other.state, other.exact, other.inward)
+    }
+
+    fn control(&self) -> Control {
+        self.curve.setting.case.control
+    }
+}
+
+/// The inside of one state, reduced.
+#[derive(Debug, Clone)]
+pub struct Inside {
+    /// The number it was asked for under.
+    pub id: u64,
+    /// The way to the user's units.
+    pub units: Units,
+    /// λ, where the gap has waves.
+    pub wave: Option<f64>,
+    /// Pressure and gap across the radius.
+    pub profile: Profile,
+    /// The exact (r, p), where it was asked for.
+    pub exact: Vec<(f64, f64)>,
+    /// The potential over the contact radius; `None` off the curve.
+    pub landscape: Option<Landscape>,
+    /// What keeps the edge from running the way it is walked.
+    pub barrier: Option<f64>,
+}
+
+impl Inside {
+    /// Computes what `ask` wants.
+    pub fn compute(ask: &Ask) -> Self {
+        let case = &ask.setting.case;
+        let State { contact_radius: s, approach, .. } = ask.state;
+        let landscape = landscape(ask);
+        let run = if ask.inward { Run::Inward } else { Run::Outward };
+        Self {
+            id: ask.id,
+            units: *case.units(),
+            wave: case.reduced.gap.feature_length(),
+            profile: Profile::of(&case.reduced, case.basis.as_ref(), s, approach),
+            exact: if ask.exact { exact_pressure(ask) } else { Vec::new() },
+            barrier: landscape.as_ref().and_then(|landscape| landscape.barrier(run)),
+            landscape,
+        }
+    }
+}
+
+fn landscape(ask: &Ask) -> Option<Landscape> {
+    let (curve, control, s) = (&ask.curve.sweep.curve, ask.control(), ask.state.contact_radius);
+    let wave = ask.setting.case.reduced.gap.feature_length();
+    let [inward, outward] = wave
+        .map_or(SHARES.map(|share| share * s), |wave| WAVES.map(|waves| (waves * wave).min(SHARES[0] * s)));
+    let nodes = Nodes::new(curve, control, &ask.curve.limits);
+    let value = control.value(ask.state.approach, ask.state.force);
+    Landscape::of(curve, &nodes, value, s, [s - inward, s + outward])
+}
+
+/// The exact (r, p) in the problem's own units, made reduced; dense towards the edge.
+fn exact_pressure(ask: &Ask) -> Vec<(f64, f64)> {
+    let case = &ask.setting.case;
+    let (exact, units) = (Exact::of(&case.problem), case.units());
+    let s = ask.state.contact_radius;
+    (0..EXACT_POINTS)
+        .map(|i| {
+            // r = s sin θ, the last point just inside the edge.
+            let r = s * (FRAC_PI_2 * f64::from(i) / f64::from(EXACT_POINTS)).sin();
+            (r, exact.pressure(s * units.length, r * units.length) / units.pressure)
+        })
+        .collect()
+}

@@ -1,0 +1,99 @@
+//! The theory drawn over a curve, computed with it.
+
+use crate::case::Case;
+use crate::contact::{Gap, Shape};
+use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
+use crate::theory::guduru::Guduru;
+use crate::theory::kesari_lew::{KesariLew, Side};
+use crate::theory::{Disc, Exact};
+
+/// Points of a smooth curve.
+const SMOOTH_POINTS: u32 = 200;
+
+/// δ, P and s of one state, in the user's units.
+pub type Place = [f64; 3];
+
+/// Theory over the radii of a curve, in the user's units.
+#[derive(Debug, Clone)]
+pub struct Theory {
+    /// The smooth sphere of the same curvature and adhesion.
+    pub smooth: Vec<Place>,
+    /// Its name: Hertz or JKR.
+    pub smooth_name: &'static str,
+    /// The exact solution of the gap, over the radii of the curve and as fine.
+    pub exact: Vec<Place>,
+    /// Its name.
+    pub exact_name: &'static str,
+    /// The envelope of small waves; none without adhesion or waves.
+    pub envelope: Option<Envelope>,
+}
+
+/// The envelope of Kesari and Lew.
+#[derive(Debug, Clone)]
+pub struct Envelope {
+    /// The side along which a disc peels.
+    pub unloading: Vec<Place>,
+    /// The side along which it grows.
+    pub loading: Vec<Place>,
+    /// The peak of the pull, `P_off/P_c`.
+    pub peak: f64,
+    /// n = s/λ at the peak: with n ≥ 5 the peak is good to 2 %, with n ≥ 20 to 0.2 %.
+    pub waves: f64,
+}
+
+impl Theory {
+    /// The theory of `case` between its start and its end.
+    pub fn of(case: &Case) -> Self {
+        let units = case.units();
+        let (from, to) = (case.start * units.length, case.end * units.length);
+        let smooth: Vec<f64> = (0..=SMOOTH_POINTS)
+            .map(|i| {
+                // Even in √s: the curve behaves like √s towards the axis.
+                let x = f64::from(i) / f64::from(SMOOTH_POINTS);
+                (from.sqrt() + (to.sqrt() - from.sqrt()) * x).powi(2)
+            })
+            .collect();
+        let fine = radii(from, to, case.problem.shape.feature_length(), SWEEP_STEPS_PER_WAVE);
+        let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
+        Self {
+            smooth: along(&jkr, &smooth),
+            smooth_name: jkr.name(),
+            exact: along(&*exact, &fine),
+            exact_name: exact.name(),
+            envelope: envelope(case, &smooth),
+        }
+    }
+}
+
+fn along(disc: &dyn Disc, radii: &[f64]) -> Vec<Place> {
+    radii.iter().map(|&s| [disc.approach(s), disc.force(s), s]).collect()
+}
+
+fn envelope(case: &Case, radii: &[f64]) -> Option<Envelope> {
+    let Shape::WavySphere { radius_of_curvature, amplitude, wavelength } = case.problem.shape else {
+        return None;
+    };
+    let (effective_modulus, work_of_adhesion) =
+        (case.problem.effective_modulus, case.problem.work_of_adhesion);
+    if amplitude <= 0.0 || work_of_adhesion <= 0.0 {
+        return None;
+    }
+    let envelope = KesariLew {
+        sphere: Guduru { effective_modulus, work_of_adhesion, radius_of_curvature, amplitude, wavelength },
+    };
+    let side = |side| {
+        radii
+            .iter()
+            .map(|&s| {
+                let (approach, force) = envelope.envelope(side, s);
+                [approach, force, s]
+            })
+            .collect()
+    };
+    Some(Envelope {
+        unloading: side(Side::Unloading),
+        loading: side(Side::Loading),
+        peak: envelope.pull_off_ratio(),
+        waves: envelope.waves(),
+    })
+}

@@ -1,0 +1,242 @@
+//! What of the curve and the walker is shown, and which part of it: pure data.
+//!
+//! A window is kept in shares of the whole chart, not in values: it stays on the edge of the contact while the walker
+//! moves, on a snap while a knob is turned, and means the same on reduced and raw axes.
+
+/// The views of a problem and its walker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum View {
+    /// P over δ.
+    ForceApproach,
+    /// s over P.
+    RadiusForce,
+    /// s over δ.
+    RadiusApproach,
+    /// The contact pressure p(r) of the walker's state.
+    Pressure,
+    /// The deformed gap outside the disc of the walker's state.
+    Gap,
+    /// The potential of bodies and device over s, the control held at the walker's value.
+    Energy,
+    /// The quasi-static path with what its jumps dissipate, Fig. 10.
+    Unloading,
+}
+
+impl View {
+    /// All, in the order in which they follow each other.
+    pub const ALL: [Self; 7] = [
+        Self::ForceApproach,
+        Self::RadiusForce,
+        Self::RadiusApproach,
+        Self::Pressure,
+        Self::Gap,
+        Self::Energy,
+        Self::Unloading,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ForceApproach => "force-approach",
+            Self::RadiusForce => "radius-force",
+            Self::RadiusApproach => "radius-approach",
+            Self::Pressure => "pressure",
+            Self::Gap => "gap",
+            Self::Energy => "energy",
+            Self::Unloading => "unloading",
+        }
+    }
+
+    /// Whether it shows the equilibrium curve, on which walker, pins and overlays have a place.
+    pub fn is_curve(self) -> bool {
+        matches!(self, Self::ForceApproach | Self::RadiusForce | Self::RadiusApproach)
+    }
+
+    /// Whether it shows the inside of one state, which a worker has to compute.
+    pub fn is_state(self) -> bool {
+        matches!(self, Self::Pressure | Self::Gap | Self::Energy)
+    }
+
+    /// The view `by` places further on, round and round.
+    #[must_use]
+    pub fn further(self, by: usize) -> Self {
+        let at = Self::ALL.iter().position(|view| *view == self).unwrap_or(0);
+        Self::ALL[(at + by) % Self::ALL.len()]
+    }
+
+    /// What is shown beside it where there is room, the most telling first.
+    pub fn companions(self) -> [Self; 3] {
+        use View::{Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce, Unloading};
+        match self {
+            ForceApproach => [RadiusForce, Pressure, Energy],
+            RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
+            RadiusApproach => [ForceApproach, Energy, Pressure],
+            Pressure => [ForceApproach, Gap, Energy],
+            Energy => [RadiusApproach, ForceApproach, Pressure],
+        }
+    }
+}
+
+/// Theory drawn over the curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Overlay {
+    /// The smooth sphere of the same curvature and adhesion: JKR, or Hertz without adhesion.
+    Smooth,
+    /// The exact solution of the same gap.
+    Exact,
+    /// The envelope of small waves, Kesari and Lew.
+    Envelope,
+}
+
+impl Overlay {
+    /// All, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Smooth, Self::Exact, Self::Envelope];
+}
+
+/// Which overlays are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Overlays {
+    /// [`Overlay::Smooth`].
+    pub smooth: bool,
+    /// [`Overlay::Exact`].
+    pub exact: bool,
+    /// [`Overlay::Envelope`].
+    pub envelope: bool,
+}
+
+impl Default for Overlays {
+    fn default() -> Self {
+        Self { smooth: true, exact: false, envelope: false }
+    }
+}
+
+impl Overlays {
+    /// Whether `overlay` is drawn.
+    pub fn has(self, overlay: Overlay) -> bool {
+        match overlay {
+            Overlay::Smooth => self.smooth,
+            Overlay::Exact => self.exact,
+            Overlay::Envelope => self.envelope,
+        }
+    }
+
+    /// Draws `overlay`, or no longer.
+    pub fn toggle(&mut self, overlay: Overlay) {
+        let place = match overlay {
+            Overlay::Smooth => &mut self.smooth,
+            Overlay::Exact => &mut self.exact,
+            Overlay::Envelope => &mut self.envelope,
+        };
+        *place = !*place;
+    }
+}
+
+/// The part of a chart that is shown: from and to along each axis, 0 and 1 the ends of the whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Along x.
+    pub x: [f64; 2],
+    /// Along y, upwards.
+    pub y: [f64; 2],
+}
+
+/// The smallest share that is shown: doubles tell about a million places apart in it.
+const CLOSEST: f64 = 1e-9;
+/// The largest.
+const WIDEST: f64 = 16.0;
+/// How far the middle of a window may leave the whole, in wholes.
+const AWAY: f64 = 8.0;
+
+impl Window {
+    /// The whole chart.
+    pub const WHOLE: Self = Self { x: [0.0, 1.0], y: [0.0, 1.0] };
+
+    /// Whether all of the chart is shown, and no more.
+    pub fn is_whole(&self) -> bool {
+        *self == Self::WHOLE
+    }
+
+    /// How many times closer than the whole.
+    pub fn magnification(&self) -> f64 {
+        1.0 / (self.x[1] - self.x[0])
+    }
+
+    /// So many times closer about a place of the window that stays where it is, in shares of the window; `None`
+    /// beyond the limits.
+    #[must_use]
+    pub fn zoomed(&self, times: f64, about: (f64, f64)) -> Option<Self> {
+        let zoomed = |[lo, hi]: [f64; 2], at: f64| {
+            let fixed = lo + (hi - lo) * at;
+            [fixed - (fixed - lo) / times, fixed + (hi - fixed) / times]
+        };
+        let window = Self { x: zoomed(self.x, about.0), y: zoomed(self.y, about.1) };
+        let allowed = |[lo, hi]: [f64; 2]| (CLOSEST..=WIDEST).contains(&(hi - lo));
+        // The whole again, without the rounding of the way back.
+        let near = |a: [f64; 2], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+        if near(window.x, [0.0, 1.0]) && near(window.y, [0.0, 1.0]) {
+            return Some(Self::WHOLE);
+        }
+        (allowed(window.x) && allowed(window.y)).then(|| window.moved(0.0, 0.0))
+    }
+
+    /// Moved by shares of itself to the right and upwards, as far as there may be something to see.
+    #[must_use]
+    pub fn moved(&self, right: f64, up: f64) -> Self {
+        let moved = |[lo, hi]: [f64; 2], by: f64| {
+            let half = 0.5 * (hi - lo);
+            let middle = (lo + half + 2.0 * half * by).clamp(-AWAY, 1.0 + AWAY);
+            [middle - half, middle + half]
+        };
+        Self {
+            x: if right == 0.0 { self.x } else { moved(self.x, right) },
+            y: if up == 0.0 { self.y } else { moved(self.y, up) },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn views_go_round_have_names_and_never_stand_beside_themselves() {
+        let mut view = View::ForceApproach;
+        let mut names = HashSet::new();
+        for _ in View::ALL {
+            assert!(names.insert(view.name()));
+            let mut shown = HashSet::from(view.companions());
+            assert!(shown.insert(view) && shown.len() == 4, "{view:?}");
+            view = view.further(1);
+        }
+        assert_eq!(view, View::ForceApproach);
+        assert_eq!(view.further(View::ALL.len() - 1), View::Unloading);
+    }
+
+    #[test]
+    fn zooming_keeps_the_place_and_comes_back_to_the_whole() {
+        let about = (0.25, 0.75);
+        let close = Window::WHOLE.zoomed(4.0, about).unwrap();
+        assert!((close.magnification() - 4.0).abs() < 1e-12);
+        let place = close.x[0] + (close.x[1] - close.x[0]) * about.0;
+        assert!((place - 0.25).abs() < 1e-12, "{close:?}");
+        assert_eq!(close.zoomed(0.25, about), Some(Window::WHOLE));
+    }
+
+    #[test]
+    fn a_window_stays_in_reach_and_finite() {
+        let mut window = Window::WHOLE;
+        let mut closer = 0;
+        while let Some(next) = window.zoomed(2.0, (0.3, 0.9)) {
+            (window, closer) = (next, closer + 1);
+        }
+        assert_eq!(closer, 29);
+        assert!(window.x[0] < window.x[1] && window.y[0] < window.y[1]);
+        let mut window = Window::WHOLE;
+        for _ in 0..1000 {
+            window = window.moved(0.5, -0.5);
+        }
+        assert!(window.x[0] < 10.0 && window.y[0] > -10.0);
+        assert!((window.magnification() - 1.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,123 @@
+//! The equilibrium curve in three views, with the walk, the theory and the pinned curves.
+
+use super::Subject;
+use super::bounds::Bounds;
+use super::parts::{Figure, Line, Mark, Role, Sign};
+use super::scale::Scale;
+use super::walk::{events_before, walk};
+use crate::explorer::View;
+use crate::explorer::curve::CurvePoint;
+use crate::report::number::{fixed, significant};
+
+/// Builds a view of the curve.
+pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
+    let scale = subject.scale();
+    let [x, y] = scale.axes(view);
+    let mut figure = Figure::empty(view, format!("{} over {}", y.symbol, x.symbol), x, y);
+    let points: Vec<(f64, f64)> =
+        subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
+    theory(subject, scale, &mut figure);
+    let pinned = pins(subject, &mut figure);
+    figure.lines.extend(pieces(&subject.curve.points, &points));
+    limit_marks(subject, scale, &mut figure);
+    device(subject, scale, &mut figure);
+    walk(subject, scale, &mut figure);
+    // The walker may have left the range of the curve: the figure follows it there.
+    let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
+    figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned));
+    figure
+}
+
+/// δ, P and s of a point of the curve.
+pub fn place(point: &CurvePoint) -> [f64; 3] {
+    [point.approach, point.force, point.contact_radius]
+}
+
+/// The curve cut where its stability changes, the stable parts last: they are drawn over the others.
+pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
+    let mut pieces: Vec<Line> = Vec::new();
+    let mut last = None;
+    for (point, at) in points.iter().zip(places) {
+        if last != Some(point.stable) {
+            // The piece before reaches to here, so that no gap is left.
+            if let Some(piece) = pieces.last_mut() {
+                piece.points.push(*at);
+            }
+            let (role, name) =
+                if point.stable { (Role::Stable, "stable") } else { (Role::Unstable, "unstable") };
+            pieces.push(Line::new(role, name, Vec::new()));
+            last = Some(point.stable);
+        }
+        if let Some(piece) = pieces.last_mut() {
+            piece.points.push(*at);
+        }
+    }
+    pieces.sort_by_key(|piece| piece.role);
+    pieces
+}
+
+/// The line of the loading device, where it is shown; it has no radius.
+fn device(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+    if let (View::ForceApproach, Some(ends)) = (figure.view, subject.device) {
+        let points = ends.map(|(approach, force)| scale.place(figure.view, [approach, force, 0.0]));
+        figure.lines.push(Line::new(Role::Device, "device", points.to_vec()));
+    }
+}
+
+/// The overlays that are on and exist, and what the envelope says.
+fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+    let theory = &subject.curve.sweep.theory;
+    let view = figure.view;
+    let line = |role, name: &str, places: &[[f64; 3]]| {
+        Line::new(role, name, places.iter().map(|at| scale.place(view, *at)).collect())
+    };
+    if subject.overlays.smooth {
+        figure.lines.push(line(Role::Smooth, theory.smooth_name, &theory.smooth));
+    }
+    if let (Some(envelope), true) = (&theory.envelope, subject.overlays.envelope) {
+        for side in [&envelope.unloading, &envelope.loading] {
+            figure.lines.push(line(Role::Envelope, "envelope", side));
+        }
+        figure.notes.push(format!(
+            "Kesari-Lew peak {}, n = {}",
+            significant(envelope.peak, 4),
+            fixed(envelope.waves, 1)
+        ));
+    }
+    if subject.overlays.exact {
+        figure.lines.push(line(Role::Exact, theory.exact_name, &theory.exact));
+    }
+}
+
+/// The pinned curves, each over its own divisors; their points are given back for the bounds.
+fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
+    let mut all = Vec::new();
+    for pin in subject.pins {
+        let scale = Scale::of(&pin.curve, subject.axes);
+        let points: Vec<(f64, f64)> =
+            pin.curve.points.iter().map(|point| scale.place(figure.view, place(point))).collect();
+        all.extend(points.iter().copied());
+        figure.lines.push(Line::new(Role::Pin(pin.number), pin.name(subject.preset), points));
+    }
+    all
+}
+
+/// The limit points of the control and of the others, and the pull-off.
+fn limit_marks(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+    let curve = subject.curve;
+    let (equilibrium, units) = (&curve.sweep.curve.equilibrium, curve.setting.case.units());
+    let view = figure.view;
+    figure.marks.extend(
+        curve
+            .other_limits
+            .iter()
+            .map(|(control, p)| Mark { sign: Sign::OtherLimit(*control), at: scale.place(view, place(p)) }),
+    );
+    figure.marks.extend(curve.limits.iter().map(|limit| {
+        let [delta, force, s] = equilibrium.quantities(&limit.point.y);
+        let at = scale.place(view, [delta * units.length, force * units.force, s * units.length]);
+        Mark { sign: Sign::Limit, at }
+    }));
+    let pull_off = events_before(subject, scale, view).filter(|mark| mark.sign == Sign::PullOff);
+    figure.marks.extend(pull_off.collect::<Vec<_>>());
+}

@@ -1,0 +1,162 @@
+//! What a figure is made of: axes, lines, marks and areas, each with a role and no look.
+
+use super::bounds::Bounds;
+use crate::contact::Control;
+use crate::explorer::View;
+
+/// What a line shows. A renderer gives each role a stroke of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Role {
+    /// Where an axis is zero.
+    Zero,
+    /// The undeformed gap.
+    Undeformed,
+    /// The smooth sphere of the same curvature and adhesion.
+    Smooth,
+    /// An envelope of small waves.
+    Envelope,
+    /// A pinned curve, by its number.
+    Pin(usize),
+    /// The exact solution.
+    Exact,
+    /// Equilibrium, unstable under the control.
+    Unstable,
+    /// Equilibrium, stable under the control.
+    Stable,
+    /// A computed profile or landscape: pressure, deformed gap, potential.
+    Body,
+    /// The disc of contact.
+    Contact,
+    /// From the walker's level up to the barrier.
+    Barrier,
+    /// The line of the loading device through the walker.
+    Device,
+    /// The states walked.
+    Walk,
+    /// A jump at constant control.
+    Jump,
+}
+
+/// A line through points in axis values, its parts in order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// What it shows.
+    pub role: Role,
+    /// Its name in a legend; empty where it needs none.
+    pub name: String,
+    /// Its points; a number that is not finite is a break.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// What stands at a point. A renderer gives each a letter of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sign {
+    /// A limit point of another control.
+    OtherLimit(Control),
+    /// A limit point of the control.
+    Limit,
+    /// The last limit point of a path: the bodies come apart.
+    PullOff,
+    /// Where a jump lands.
+    Landing,
+    /// A crest of the wave.
+    Crest,
+    /// The edge of the contact.
+    Edge,
+    /// A smallest potential: stable.
+    Minimum,
+    /// A largest potential: unstable.
+    Maximum,
+    /// The barrier next to the walker's state.
+    Barrier,
+    /// The walker, in a state of other values than the curve's.
+    Stray,
+    /// The walker.
+    Walker,
+}
+
+/// A sign at a point in axis values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// What it is.
+    pub sign: Sign,
+    /// Where.
+    pub at: (f64, f64),
+}
+
+/// A closed outline in axis values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// Its corners; the last is joined to the first.
+    pub outline: Vec<(f64, f64)>,
+    /// The energy it stands for, in the user's units.
+    pub lost: Option<f64>,
+}
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    /// The quantity, over what it is divided by: `P/Pc`, `δ`, `s/λ`.
+    pub symbol: String,
+    /// Its dimension in words; empty for a pure number.
+    pub unit: &'static str,
+}
+
+/// A figure: everything a renderer needs but strokes, letters and colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// What is shown.
+    pub view: View,
+    /// One line above it.
+    pub title: String,
+    /// The axis to the right.
+    pub x: Axis,
+    /// The axis upwards.
+    pub y: Axis,
+    /// The lines, in the order of drawing.
+    pub lines: Vec<Line>,
+    /// The signs, the last on top.
+    pub marks: Vec<Mark>,
+    /// The hatched areas.
+    pub areas: Vec<Area>,
+    /// The whole of it: what is shown at first.
+    pub bounds: Bounds,
+    /// What else it says, in words.
+    pub notes: Vec<String>,
+    /// Why it is empty.
+    pub missing: Option<String>,
+}
+
+impl Figure {
+    /// A figure without anything on it.
+    pub fn empty(view: View, title: String, x: Axis, y: Axis) -> Self {
+        Self {
+            view,
+            title,
+            x,
+            y,
+            lines: Vec::new(),
+            marks: Vec::new(),
+            areas: Vec::new(),
+            bounds: Bounds::of([]),
+            notes: Vec::new(),
+            missing: None,
+        }
+    }
+
+    /// Where the walker stands, if it is on the figure.
+    pub fn walker(&self) -> Option<(f64, f64)> {
+        self.marks
+            .iter()
+            .rev()
+            .find(|mark| matches!(mark.sign, Sign::Walker | Sign::Stray))
+            .map(|mark| mark.at)
+    }
+}
+
+impl Line {
+    /// A line with a name.
+    pub fn new(role: Role, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { role, name: name.into(), points }
+    }
+}

@@ -1,0 +1,175 @@
+//! The inside of the walker's state: the contact pressure, the gap outside the disc, the potential over the radius.
+
+use super::Subject;
+use super::bounds::Bounds;
+use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::scale::{Scale, length};
+use crate::contact::Control;
+use crate::explorer::View;
+use crate::explorer::profile::Inside;
+use crate::quasistatic::landscape::Stationary;
+use crate::quasistatic::profile::Outside;
+use crate::report::number::{loss, significant};
+
+/// The pressure grows without bound at an adhesive edge: the whole is fitted to the disc up to this share of its
+/// radius.
+const FITTED: f64 = 0.99;
+/// Of the contact this share of what is shown outside is seen in the gap.
+const INSIDE: f64 = 0.3;
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
+    let scale = subject.scale();
+    let (x, y) = match view {
+        View::Pressure => (scale.radius_axis("r"), scale.pressure_axis()),
+        View::Gap => (scale.radius_axis("r"), length("gap")),
+        _ => (scale.radius_axis("s"), potential_axis(subject.curve.setting.case.control)),
+    };
+    let mut figure = Figure::empty(view, format!("{} over {}", y.symbol, x.symbol), x, y);
+    let Some(inside) = subject.inside else {
+        figure.missing = Some(match subject.walk.last() {
+            Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),
+            Some(node) if !subject.is_on_curve(node) => "the state is not of these values".to_owned(),
+            _ => "computing".to_owned(),
+        });
+        return figure;
+    };
+    let drawing = Drawing { scale, inside };
+    let radius = drawing.radius(inside.profile.contact_radius);
+    figure.title = format!("{}, {} {}", figure.title, scale.radius_axis("s").symbol, significant(radius, 4));
+    match view {
+        View::Pressure => drawing.pressure(subject.curve.sweep.theory.exact_name, &mut figure),
+        View::Gap => drawing.gap(&mut figure),
+        _ => drawing.energy(&mut figure),
+    }
+    figure
+}
+
+/// What is smallest at a stable state when the control is held.
+fn potential_axis(control: Control) -> Axis {
+    let symbol = match control {
+        Control::Displacement => "U",
+        Control::Force => "U-Pδ",
+        Control::Stiffness(_) => "U+k(Δ-δ)²/2",
+    };
+    Axis { symbol: symbol.to_owned(), unit: "energy" }
+}
+
+/// A state on its axes.
+struct Drawing<'a> {
+    scale: Scale,
+    inside: &'a Inside,
+}
+
+impl Drawing<'_> {
+    /// A reduced radius on its axis.
+    fn radius(&self, r: f64) -> f64 {
+        self.scale.radius(r * self.inside.units.length)
+    }
+
+    /// A reduced pressure on its axis.
+    fn stress(&self, p: f64) -> f64 {
+        self.scale.pressure(p * self.inside.units.pressure)
+    }
+
+    fn edge(&self) -> f64 {
+        self.radius(self.inside.profile.contact_radius)
+    }
+
+    fn pressure(&self, exact_name: &str, figure: &mut Figure) {
+        let edge = self.edge();
+        let place = |r: f64, p: f64| (self.radius(r), self.stress(p));
+        let computed: Vec<(f64, f64)> =
+            self.inside.profile.inside.iter().map(|at| place(at.radius, at.pressure)).collect();
+        let exact: Vec<(f64, f64)> = self.inside.exact.iter().map(|(r, p)| place(*r, *p)).collect();
+        let seen = computed.iter().chain(&exact).filter(|at| at.0 <= FITTED * edge).copied();
+        figure.bounds = Bounds::of(seen.chain([(0.0, 0.0), (edge, 0.0)]));
+        figure.lines.push(Line::new(Role::Zero, "", vec![(0.0, 0.0), (edge, 0.0)]));
+        if !exact.is_empty() {
+            figure.lines.push(Line::new(Role::Exact, exact_name, exact));
+        }
+        figure.lines.push(Line::new(Role::Body, "pressure", computed));
+        let crests = self.crests(0.0, self.inside.profile.contact_radius);
+        figure.marks.extend(crests.map(|r| Mark { sign: Sign::Crest, at: (self.radius(r), 0.0) }));
+        figure.marks.push(Mark { sign: Sign::Edge, at: (edge, 0.0) });
+    }
+
+    fn gap(&self, figure: &mut Figure) {
+        let (edge, length) = (self.edge(), self.inside.units.length);
+        let profile = &self.inside.profile;
+        let line = |value: &dyn Fn(&Outside) -> f64| -> Vec<(f64, f64)> {
+            profile.outside.iter().map(|at| (self.radius(at.radius), value(at) * length)).collect()
+        };
+        let deformed = line(&|at| at.gap);
+        // As far above the other body as it would be undeformed, at the same approach.
+        let undeformed = line(&|at| at.undeformed - profile.approach);
+        let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
+        let last = self.radius(end);
+        let from = (edge - INSIDE * (last - edge)).max(0.0);
+        figure.bounds = Bounds::of(deformed.iter().chain(&undeformed).copied().chain([(from, 0.0)]));
+        let crests: Vec<Mark> = self
+            .crests(profile.contact_radius, end)
+            .filter_map(|r| {
+                let at = self.radius(r);
+                Some(Mark { sign: Sign::Crest, at: (at, between(&deformed, at)?) })
+            })
+            .collect();
+        figure.lines.push(Line::new(Role::Zero, "", vec![(edge, 0.0), (last, 0.0)]));
+        figure.lines.push(Line::new(Role::Undeformed, "undeformed", undeformed));
+        figure.lines.push(Line::new(Role::Contact, "contact", vec![(0.0, 0.0), (edge, 0.0)]));
+        figure.lines.push(Line::new(Role::Body, "gap", deformed));
+        figure.marks.extend(crests);
+        figure.marks.push(Mark { sign: Sign::Edge, at: (edge, 0.0) });
+    }
+
+    fn energy(&self, figure: &mut Figure) {
+        let Some(landscape) = &self.inside.landscape else {
+            figure.missing = Some("the state lies outside the curve".to_owned());
+            return;
+        };
+        // Counted from the present state.
+        let place = |s: f64, potential: f64| (self.radius(s), potential * self.inside.units.energy);
+        let points: Vec<(f64, f64)> =
+            landscape.points.iter().map(|at| place(at.contact_radius, at.potential)).collect();
+        let here = place(landscape.present, 0.0);
+        figure.bounds = Bounds::of(points.iter().copied());
+        figure.lines.push(Line::new(Role::Body, "potential", points));
+        for at in &landscape.stationary {
+            let sign = if at.stable { Sign::Minimum } else { Sign::Maximum };
+            figure.marks.push(Mark { sign, at: place(at.contact_radius, at.potential) });
+        }
+        if let Some(height) = self.inside.barrier {
+            let above = |at: &&Stationary| !at.stable && at.potential.total_cmp(&height).is_eq();
+            let top = landscape.stationary.iter().find(above);
+            figure.notes.push(format!("barrier {}", loss(height * self.inside.units.energy)));
+            if let Some(top) = top {
+                let top = place(top.contact_radius, top.potential);
+                figure.lines.push(Line::new(Role::Barrier, "height", vec![here, (top.0, here.1), top]));
+                figure.marks.push(Mark { sign: Sign::Barrier, at: top });
+            }
+        }
+        figure.marks.push(Mark { sign: Sign::Walker, at: here });
+    }
+
+    /// The crests r = mλ between two reduced radii.
+    fn crests(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+        /// More crests than these are no marks but a band.
+        const MOST: f64 = 60.0;
+        let wave = self.inside.wave.filter(|wave| (to - from) / wave <= MOST);
+        let first = wave.map(|wave| ((from / wave).floor() + 1.0, wave));
+        first.into_iter().flat_map(move |(first, wave)| {
+            std::iter::successors(Some(first), |m| Some(m + 1.0))
+                .map(move |m| m * wave)
+                .take_while(move |r| *r < to)
+        })
+    }
+}
+
+/// The value of a line of ascending radii at `r`.
+fn between(line: &[(f64, f64)], r: f64) -> Option<f64> {
+    line.windows(2).find(|pair| pair[0].0 <= r && r <= pair[1].0).map(|pair| {
+        let width = pair[1].0 - pair[0].0;
+        let share = if width > 0.0 { (r - pair[0].0) / width } else { 0.0 };
+        pair[0].1 + (pair[1].1 - pair[0].1) * share
+    })
+}

@@ -1,0 +1,249 @@
+//! Every figure of every kind of problem: what is on it, and that its bounds are fit for any renderer.
+
+use super::*;
+use crate::case::Case;
+use crate::explorer::{Command, Id, Inline, Overlay, open, update};
+use crate::preset::Store;
+
+/// A session with every effect done inline, and room for every view.
+struct Session {
+    model: Model,
+    driver: Inline,
+    _folder: tempfile::TempDir,
+}
+
+impl Session {
+    fn new(preset: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path(), &[]);
+        let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
+        let (mut model, effects) = open(loaded);
+        model.views = 4;
+        let driver = Inline::new(store);
+        driver.settle(&mut model, effects);
+        Self { model, driver, _folder: folder }
+    }
+
+    fn does(&mut self, command: impl Into<Command>) -> &mut Self {
+        let effects = update(&mut self.model, command.into());
+        self.driver.settle(&mut self.model, effects);
+        self
+    }
+
+    fn figure(&self, view: View) -> Figure {
+        Subject::of(&self.model).unwrap().figure(view)
+    }
+}
+
+fn count(figure: &Figure, role: Role) -> usize {
+    figure.lines.iter().filter(|line| line.role == role).count()
+}
+
+fn signs(figure: &Figure, sign: Sign) -> usize {
+    figure.marks.iter().filter(|mark| mark.sign == sign).count()
+}
+
+fn is_fit(figure: &Figure) -> bool {
+    let Bounds { x, y } = figure.bounds;
+    [x, y].iter().all(|[lo, hi]| lo.is_finite() && hi.is_finite() && lo < hi)
+}
+
+#[test]
+fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextLimit).does(Id::Jump).does(Id::Step);
+    let curve = session.model.curve.clone().unwrap();
+    for view in [View::ForceApproach, View::RadiusForce, View::RadiusApproach] {
+        let figure = session.figure(view);
+        let changes = curve.points.windows(2).filter(|pair| pair[0].stable != pair[1].stable).count();
+        assert_eq!(count(&figure, Role::Stable) + count(&figure, Role::Unstable), changes + 1);
+        assert_eq!(signs(&figure, Sign::Limit), curve.limits.len());
+        assert_eq!(signs(&figure, Sign::PullOff), 1);
+        assert_eq!((signs(&figure, Sign::Landing), signs(&figure, Sign::Walker)), (1, 1));
+        assert_eq!((count(&figure, Role::Walk), count(&figure, Role::Jump)), (2, 1));
+        assert_eq!((count(&figure, Role::Smooth), count(&figure, Role::Exact)), (1, 0));
+        assert!(figure.walker().is_some() && is_fit(&figure));
+    }
+    let titles = View::ALL.map(|view| session.figure(view).title);
+    assert_eq!(titles[..3], ["P/Pc over δ", "s/λ over P/Pc", "s/λ over δ"]);
+    session.does(Id::Axes);
+    assert_eq!(session.figure(View::RadiusForce).title, "s over P");
+    assert_eq!(session.figure(View::RadiusForce).x.unit, "force");
+}
+
+#[test]
+fn overlays_are_drawn_where_they_exist() {
+    let mut session = Session::new("wavy-sphere");
+    for overlay in [Overlay::Exact, Overlay::Envelope] {
+        session.does(Command::Overlay(overlay));
+    }
+    let figure = session.figure(View::ForceApproach);
+    assert_eq!((count(&figure, Role::Exact), count(&figure, Role::Envelope)), (1, 2));
+    assert!(figure.notes[0].starts_with("Kesari-Lew peak 1.49"), "{:?}", figure.notes);
+    // The exact curve lies on the computed one as far as 200 rings are good.
+    let exact = figure.lines.iter().find(|line| line.role == Role::Exact).unwrap();
+    let computed = session.model.curve.as_ref().unwrap();
+    assert_eq!(exact.points.len(), computed.points.len());
+    session.does(Command::Overlay(Overlay::Smooth));
+    assert_eq!(count(&session.figure(View::ForceApproach), Role::Smooth), 0);
+    let mut sphere = Session::new("fig-3-jkr");
+    sphere.does(Command::Overlay(Overlay::Envelope));
+    assert_eq!(count(&sphere.figure(View::ForceApproach), Role::Envelope), 0);
+    assert!(sphere.model.status().1.contains("needs waves"));
+}
+
+#[test]
+fn pinned_curves_have_their_numbers_names_and_divisors() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Pin);
+    let before = session.figure(View::ForceApproach);
+    session.does(Command::Set { key: "material.work_of_adhesion", text: "0.002".to_owned() }).does(Id::Pin);
+    let figure = session.figure(View::ForceApproach);
+    let pin = figure.lines.iter().find(|line| line.role == Role::Pin(1)).unwrap();
+    assert!(pin.name.starts_with("gamma 0.00397"), "{}", pin.name);
+    // Over its own P_c, as it was drawn before.
+    let old: Vec<(f64, f64)> =
+        before.lines.iter().filter(|line| line.role == Role::Pin(1)).flat_map(|l| l.points.clone()).collect();
+    assert_eq!(pin.points, old);
+    assert_eq!(count(&figure, Role::Pin(2)), 1);
+    let lowest = pin.points.iter().map(|at| at.1).fold(f64::INFINITY, f64::min);
+    assert!(figure.bounds.y[0] < lowest);
+    session.does(Command::Unpin(Some(1)));
+    assert_eq!(count(&session.figure(View::ForceApproach), Role::Pin(1)), 0);
+}
+
+#[test]
+fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
+    for (control, unbounded) in [("displacement", 0), ("force", 1), ("stiffness=0.15", 0)] {
+        let mut session = Session::new("wavy-sphere");
+        session.does(Command::Set { key: "path.control", text: control.to_owned() });
+        let curve = session.model.curve.clone().unwrap();
+        let unloading = curve.unloading.as_ref().unwrap();
+        let figure = session.figure(View::Unloading);
+        assert_eq!(figure.areas.len() + unbounded, unloading.events.len(), "{control}");
+        assert_eq!(count(&figure, Role::Jump), unloading.events.len());
+        assert_eq!(signs(&figure, Sign::PullOff), 1);
+        let scale = curve.sweep.critical_force;
+        for (area, event) in figure.areas.iter().zip(&unloading.events) {
+            // The outline encloses what was lost: P/Pc over δ.
+            let next = area.outline.iter().cycle().skip(1);
+            let enclosed: f64 =
+                area.outline.iter().zip(next).map(|(a, b)| 0.5 * (a.0 * b.1 - b.0 * a.1)).sum();
+            let lost = event.dissipated.unwrap() * curve.setting.case.units().energy;
+            assert!(
+                (enclosed.abs() * scale / lost - 1.0).abs() < 0.02,
+                "{control}: {} {lost}",
+                enclosed * scale
+            );
+            assert_eq!(area.lost, Some(lost));
+        }
+        assert!(figure.notes[0].starts_with("lost "), "{:?}", figure.notes);
+    }
+}
+
+#[test]
+fn figures_of_nothing_of_one_point_and_without_adhesion_are_fit_to_draw() {
+    for preset in ["wavy-sphere", "fig-1-hertz", "fig-3-jkr"] {
+        let mut session = Session::new(preset);
+        session.does(Id::Pin);
+        let whole = session.model.curve.clone().unwrap();
+        for kept in [0, 1, whole.points.len()] {
+            let mut curve = (*whole).clone();
+            curve.points.truncate(kept);
+            session.model.curve = Some(std::sync::Arc::new(curve));
+            for view in View::ALL {
+                for axes in [Axes::Reduced, Axes::Raw] {
+                    session.model.axes = axes;
+                    let figure = session.figure(view);
+                    assert!(is_fit(&figure), "{preset} {view:?} {kept}: {:?}", figure.bounds);
+                    assert!(!figure.title.is_empty() && figure.view == view);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
+    let session = Session::new("wavy-sphere");
+    let subject = Subject::of(&session.model).unwrap();
+    let figure = subject.figure(View::ForceApproach);
+    let point = &subject.curve.points[100];
+    let at = subject.scale().place(View::ForceApproach, [point.approach, point.force, point.contact_radius]);
+    let found = nearest(&subject, View::ForceApproach, &figure.bounds, at).unwrap();
+    assert_eq!((found.at, found.contact_radius), (at, point.contact_radius));
+    assert!(found.text().contains("stable"));
+    assert!(nearest(&subject, View::Pressure, &figure.bounds, at).is_none());
+    let axes = [&figure.x, &figure.y];
+    let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [-1.0, 1.0] };
+    let text = reading::coordinates(&deep, axes, (0.5 + 5e-10, 0.25));
+    assert_eq!(text, "δ 0.500000000500, P/Pc 0.250");
+}
+
+#[test]
+fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Overlay(Overlay::Exact)).does(Id::NextLimit).does(Id::Jump);
+    let node = session.model.walker().unwrap();
+    let case: &Case = &node.setting.case;
+    let radius = node.state.contact_radius / case.reduced.gap.feature_length().unwrap();
+    let pressure = session.figure(View::Pressure);
+    assert_eq!((count(&pressure, Role::Body), count(&pressure, Role::Exact)), (1, 1));
+    assert_eq!(pressure.x.symbol, "r/λ");
+    // Every crest r = mλ inside, and no other.
+    let crests = signs(&pressure, Sign::Crest) as f64;
+    assert!(crests <= radius && crests + 1.0 > radius && signs(&pressure, Sign::Edge) == 1);
+    // The edge pulls beyond what is shown at first.
+    let body = pressure.lines.iter().find(|line| line.role == Role::Body).unwrap();
+    let least = body.points.iter().map(|at| at.1).fold(f64::INFINITY, f64::min);
+    assert!(least < pressure.bounds.y[0] && is_fit(&pressure));
+
+    let gap = session.figure(View::Gap);
+    assert_eq!(
+        (count(&gap, Role::Contact), count(&gap, Role::Body), count(&gap, Role::Undeformed)),
+        (1, 1, 1)
+    );
+    let body = gap.lines.iter().find(|line| line.role == Role::Body).unwrap();
+    assert!(body.points[0].1.abs() < 1e-3 * gap.bounds.y[1], "closed at the edge: {:?}", body.points[0]);
+    assert!(body.points.iter().skip(1).all(|at| at.1 > -1e-4 * gap.bounds.y[1]));
+    assert!(signs(&gap, Sign::Crest) >= 2 && is_fit(&gap));
+
+    let energy = session.figure(View::Energy);
+    assert_eq!((energy.y.symbol.as_str(), count(&energy, Role::Body)), ("U", 1));
+    // The walker sits on the landscape, in a minimum.
+    let at = energy.walker().unwrap();
+    let mut minima = energy.marks.iter().filter(|mark| mark.sign == Sign::Minimum);
+    assert!(minima.any(|mark| (mark.at.0 - at.0).abs() < 1e-6 * at.0), "{:?} {at:?}", energy.marks);
+    session.does(Id::Axes);
+    assert_eq!(session.figure(View::Pressure).y.unit, "stress");
+
+    // Apart there is no inside, and no figure of the last one.
+    for _ in 0..8 {
+        session.does(Id::NextLimit).does(Id::Jump);
+    }
+    assert!(session.figure(View::Pressure).missing.unwrap().contains("apart"));
+}
+
+#[test]
+fn the_barrier_appears_shrinks_and_is_gone_at_the_limit_point() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextLimit).does(Id::Jump);
+    let mut heights = Vec::new();
+    for _ in 0..100 {
+        session.does(Id::Step);
+        let figure = session.figure(View::Energy);
+        if session.model.limit_number().is_some() {
+            assert_eq!(signs(&figure, Sign::Barrier), 0);
+            break;
+        }
+        let Some(mark) = figure.marks.iter().find(|mark| mark.sign == Sign::Barrier) else { continue };
+        assert_eq!(count(&figure, Role::Barrier), 1);
+        assert!(figure.notes[0].starts_with("barrier "), "{:?}", figure.notes);
+        // Inward of the walker, and above it.
+        let walker = figure.walker().unwrap();
+        assert!(mark.at.0 < walker.0 && mark.at.1 > walker.1, "{mark:?} {walker:?}");
+        heights.push(mark.at.1 - walker.1);
+    }
+    assert!(session.model.limit_number().is_some());
+    assert!(heights.len() > 3 && heights.windows(2).all(|pair| pair[1] < pair[0]), "{heights:?}");
+}

@@ -1,0 +1,98 @@
+//! The quasi-static path: the stable pieces followed, the jumps between them, and what each dissipates as the area
+//! between the curve and the control line (Fig. 10).
+//!
+//! The area of a jump is closed by the curve that the edge runs past and by the line of the device; that of a pull-off
+//! goes on along the curve to s = 0 and back along P = 0. Under a dead load the last has no bound and is not drawn.
+
+use super::Subject;
+use super::bounds::Bounds;
+use super::curves::place;
+use super::parts::{Area, Figure, Line, Mark, Role, Sign};
+use super::scale::Scale;
+use super::walk::{apart, events_before, quantities};
+use crate::contact::{Control, Units};
+use crate::explorer::curve::CurvePoint;
+use crate::explorer::{CurveData, View};
+use crate::quasistatic::{Event, State};
+use crate::report::number::loss;
+
+const VIEW: View = View::Unloading;
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>) -> Figure {
+    let scale = subject.scale();
+    let [x, y] = scale.axes(VIEW);
+    let mut figure = Figure::empty(VIEW, format!("unloading: {} over {}", y.symbol, x.symbol), x, y);
+    let points: Vec<(f64, f64)> =
+        subject.curve.points.iter().map(|point| scale.place(VIEW, place(point))).collect();
+    figure.bounds = Bounds::of(points.iter().copied());
+    let unloading = match &subject.curve.unloading {
+        Ok(unloading) => unloading,
+        Err(reason) => {
+            figure.missing = Some(format!("no path: {reason}"));
+            return figure;
+        }
+    };
+    figure.lines.push(Line::new(Role::Unstable, "passed by", points));
+    let path = Path { curve: subject.curve, scale, units: *subject.curve.setting.case.units() };
+    let mut from = unloading.start;
+    for event in &unloading.events {
+        figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, Some(&event.before))));
+        let after = event.after.unwrap_or_else(|| apart(unloading.control, event));
+        figure.lines.push(Line::new(Role::Jump, "jump", vec![path.shown(&event.before), path.shown(&after)]));
+        figure.areas.extend(path.area(unloading.control, event));
+        if event.after.is_some() {
+            figure.marks.push(Mark { sign: Sign::Landing, at: path.shown(&after) });
+        }
+        from = after;
+    }
+    if unloading.events.last().is_none_or(|event| event.after.is_some()) {
+        figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, None)));
+    }
+    figure.marks.extend(events_before(subject, scale, VIEW));
+    let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
+    let bounded = figure.areas.len() == unloading.events.len();
+    if !unloading.events.is_empty() {
+        let all = if bounded { "" } else { " and the fall" };
+        figure.notes.push(format!("lost {}{all}", loss(lost)));
+    }
+    figure
+}
+
+/// What is needed to follow the curve between two of its states.
+struct Path<'a> {
+    curve: &'a CurveData,
+    scale: Scale,
+    units: Units,
+}
+
+impl Path<'_> {
+    fn shown(&self, state: &State) -> (f64, f64) {
+        self.scale.place(VIEW, quantities(&state.in_units(&self.units)))
+    }
+
+    /// The curve from one state inward to another, or to its end.
+    fn between(&self, from: &State, to: Option<&State>) -> Vec<(f64, f64)> {
+        let radius = |state: &State| state.contact_radius * self.units.length;
+        let (outer, inner) = (radius(from), to.map_or(0.0, radius));
+        let between = |point: &&CurvePoint| point.contact_radius < outer && point.contact_radius > inner;
+        let mut points = vec![self.shown(from)];
+        let passed = self.curve.points.iter().filter(between);
+        points.extend(passed.map(|point| self.scale.place(VIEW, place(point))));
+        points.extend(to.map(|to| self.shown(to)));
+        points
+    }
+
+    /// The area of a jump; none where it has no bound.
+    fn area(&self, control: Control, event: &Event) -> Option<Area> {
+        let mut outline = self.between(&event.before, event.after.as_ref());
+        if event.after.is_none() {
+            if control == Control::Force {
+                return None;
+            }
+            outline.push(self.scale.place(VIEW, [0.0; 3]));
+            outline.push(self.shown(&apart(control, event)));
+        }
+        Some(Area { outline, lost: event.dissipated.map(|lost| lost * self.units.energy) })
+    }
+}

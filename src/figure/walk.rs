@@ -1,0 +1,82 @@
+//! The states walked, the jumps as straight lines, and the walker.
+
+use super::Subject;
+use super::parts::{Figure, Line, Mark, Role, Sign};
+use super::scale::Scale;
+use crate::contact::Control;
+use crate::explorer::View;
+use crate::explorer::history::{Node, NodeKind};
+use crate::quasistatic::{Event, EventKind, State};
+
+/// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
+pub fn apart(control: Control, event: &Event) -> State {
+    /// Under a dead load the bodies fall apart for ever: a line to the left, out of the figure.
+    const FAR: f64 = -1e3;
+    let (approach, force) = match control {
+        Control::Displacement => (event.before.approach, 0.0),
+        Control::Force => (FAR * event.before.approach.abs(), event.before.force),
+        Control::Stiffness(_) => (event.control_value, 0.0),
+    };
+    State { contact_radius: 0.0, approach, force, energy: 0.0 }
+}
+
+/// δ, P and s of a state in the user's units.
+pub fn quantities(state: &State) -> [f64; 3] {
+    [state.approach, state.force, state.contact_radius]
+}
+
+/// The limit points of the quasi-static path, as marks.
+pub fn events_before<'a>(subject: &Subject<'a>, scale: Scale, view: View) -> impl Iterator<Item = Mark> + 'a {
+    let units = *subject.curve.setting.case.units();
+    let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
+    events.map(move |event| {
+        let sign = if event.kind == EventKind::PullOff { Sign::PullOff } else { Sign::Limit };
+        Mark { sign, at: scale.place(view, quantities(&event.before.in_units(&units))) }
+    })
+}
+
+/// Adds the walk to a view of the curve; the walker is the last mark.
+pub fn walk(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+    let view = figure.view;
+    let place = |node: &Node, state: &State| {
+        scale.place(view, quantities(&state.in_units(node.setting.case.units())))
+    };
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    let mut finish = |steps: &mut Vec<(f64, f64)>| {
+        if steps.len() > 1 {
+            figure.lines.push(Line::new(Role::Walk, "walked", std::mem::take(steps)));
+        }
+        steps.clear();
+    };
+    let (mut jumps, mut landings) = (Vec::new(), Vec::new());
+    for node in &subject.walk {
+        if !subject.is_on_curve(node) {
+            finish(&mut steps);
+            continue;
+        }
+        match &node.kind {
+            NodeKind::Jump(event) => {
+                finish(&mut steps);
+                let after = event.after.unwrap_or_else(|| apart(node.control, event));
+                let after = place(node, &after);
+                jumps.push(Line::new(Role::Jump, "jump", vec![place(node, &event.before), after]));
+                if event.after.is_some() {
+                    landings.push(Mark { sign: Sign::Landing, at: after });
+                    steps.push(after);
+                }
+            }
+            NodeKind::Step | NodeKind::Limit if !steps.is_empty() => steps.push(place(node, &node.state)),
+            _ => {
+                finish(&mut steps);
+                steps.push(place(node, &node.state));
+            }
+        }
+    }
+    finish(&mut steps);
+    figure.lines.extend(jumps);
+    figure.marks.extend(landings);
+    if let Some(node) = subject.walk.last() {
+        let sign = if subject.is_on_curve(node) { Sign::Walker } else { Sign::Stray };
+        figure.marks.push(Mark { sign, at: place(node, &node.state) });
+    }
+}

@@ -1,0 +1,91 @@
+//! What the lines and letters of a figure mean, in as many words as there is room for; and the cross-hair in words.
+
+use super::charts::{letter, look};
+use crate::explorer::Model;
+use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
+use crate::tui::stroke::Stroke;
+use crate::tui::theme::Theme;
+
+/// The legends of a figure, each shorter than the one before: the least wanted words go first.
+pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
+    let mut words: Vec<(u8, String)> = Vec::new();
+    let mut add = |rank: u8, word: String| {
+        if !words.iter().any(|(_, other)| *other == word) {
+            words.push((rank, word));
+        }
+    };
+    let mut lines: Vec<_> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
+    // Stable first, overlays behind, pins last.
+    lines.sort_by_key(|line| std::cmp::Reverse(line.role));
+    lines.sort_by_key(|line| rank(line.role) == 0);
+    for line in lines {
+        if !matches!(line.role, Role::Walk | Role::Jump) {
+            let (stroke, _) = look(line.role);
+            add(rank(line.role), format!("{} {}", glyph(stroke, theme), theme.symbols(&line.name)));
+        }
+    }
+    for mark in &figure.marks {
+        if let Some((rank, word)) = meaning(mark.sign) {
+            add(rank, format!("{} {word}", letter(mark.sign)));
+        }
+    }
+    let worst = words.iter().map(|(rank, _)| *rank).max().unwrap_or(0);
+    let up_to = |limit: u8| {
+        let kept: Vec<&str> =
+            words.iter().filter(|(rank, _)| *rank <= limit).map(|(_, word)| word.as_str()).collect();
+        kept.join(" ")
+    };
+    (0..=worst).rev().map(up_to).collect()
+}
+
+/// How much a line's name is wanted, 0 the most.
+fn rank(role: Role) -> u8 {
+    match role {
+        Role::Pin(_) => 0,
+        Role::Exact | Role::Envelope | Role::Undeformed | Role::Barrier | Role::Device => 1,
+        Role::Smooth => 3,
+        _ => 4,
+    }
+}
+
+/// What a sign means, and how much that is wanted; the signs of other controls are in the help.
+fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
+    Some(match sign {
+        Sign::OtherLimit(_) | Sign::Stray => return None,
+        Sign::Limit => (1, "limit"),
+        Sign::PullOff => (2, "pull-off"),
+        Sign::Landing => (2, "landing"),
+        Sign::Crest => (3, "crest"),
+        Sign::Edge => (3, "edge"),
+        Sign::Minimum => (2, "minimum"),
+        Sign::Maximum => (2, "maximum"),
+        Sign::Barrier => (1, "barrier"),
+        Sign::Walker => (1, "here"),
+    })
+}
+
+fn glyph(stroke: Stroke, theme: Theme) -> &'static str {
+    match stroke {
+        Stroke::Solid => theme.glyph("━", "o"),
+        Stroke::Dotted => theme.glyph("┈", "."),
+        Stroke::Sparse => theme.glyph("· ·", ". ."),
+        Stroke::Dashed => theme.glyph("╌", "--"),
+        Stroke::ShortDashed => theme.glyph("┅", "::"),
+        Stroke::LongDashed => theme.glyph("━ ━", "~~"),
+        Stroke::Lettered(letter) => letter,
+    }
+}
+
+/// The cross-hair in words: both coordinates, and on a curve the nearest state.
+pub fn reading(model: &Model) -> Option<String> {
+    let (share, view) = (model.cross?, model.view);
+    let subject = Subject::of(model)?;
+    let figure = subject.figure(view);
+    let bounds = figure.bounds.part(&model.window(view));
+    let at = bounds.at(share);
+    let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
+    Some(match nearest(&subject, view, &bounds, at) {
+        Some(nearest) => format!("+ {here}; * {}", nearest.text()),
+        None => format!("+ {here}"),
+    })
+}
