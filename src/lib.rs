@@ -24,6 +24,7 @@
 //! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
+//! | 0 | [`expression`] | the one grammar of gap formulas and of values |
 //!
 //! # Where the equations are
 //!
@@ -58,6 +59,7 @@ pub mod cli;
 pub mod contact;
 pub mod continuation;
 pub mod explorer;
+pub mod expression;
 pub mod figure;
 pub mod preset;
 pub mod quasistatic;
