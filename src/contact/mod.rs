@@ -6,12 +6,14 @@
 //! | `lanes` | functions of many radii, four at a time |
 //! | [`shape`] | the gap shapes a person can choose |
 //! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
+//! | [`formula`] | gaps typed as formulas in r |
 //! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
 //! | [`start`] | how the start of a path is given |
 
 pub mod control;
+pub mod formula;
 pub mod gap;
 pub mod groups;
 mod lanes;

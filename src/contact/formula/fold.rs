@@ -1,0 +1,249 @@
+//! The formula with its parameters put in: constants folded, what is left as steps over a block of radii.
+
+use crate::expression::function::{Binary, Unary};
+use crate::expression::{Op, Program};
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+/// The largest integer power done by repeated multiplication.
+const LARGEST_POWER: f64 = 1024.0;
+
+/// One step on a stack of blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A number laid on top.
+    Number(f64),
+    /// The radii laid on top.
+    Radius,
+    /// x → f(x).
+    Unary(Unary),
+    /// (a, b) → f(a, b).
+    Binary(Binary),
+    /// x → x + c.
+    Shift(f64),
+    /// x → c x.
+    Scale(f64),
+    /// x → x/c.
+    Divide(f64),
+    /// x → c/x.
+    Over(f64),
+    /// x → xⁿ.
+    IntegerPower(u32),
+    /// x → xᵖ.
+    RealPower(f64),
+    /// x → cˣ.
+    Exponential(f64),
+}
+
+/// A periodic function and the steps of its argument.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wave {
+    /// The steps of the argument.
+    pub argument: Range<usize>,
+    /// The period of the function in its argument.
+    pub period: f64,
+}
+
+/// Steps whose zeros make the formula infinite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pole {
+    /// The steps of a denominator, of the argument of a logarithm or of a tangent.
+    pub argument: Range<usize>,
+    /// Whether it is a tangent, infinite where the cosine is zero.
+    pub tangent: bool,
+}
+
+/// The formula as steps.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Steps {
+    /// The steps; they leave one block.
+    pub steps: Vec<Step>,
+    /// The largest number of blocks on the stack.
+    pub depth: usize,
+    /// Its periodic functions.
+    pub waves: Vec<Wave>,
+    /// Its possible poles.
+    pub poles: Vec<Pole>,
+}
+
+/// A value on the stack while the steps are written.
+#[derive(Debug, Clone, Copy)]
+enum Slot {
+    /// Known now; no step has been written for it.
+    Constant(f64),
+    /// Made by the steps from here on.
+    From(usize),
+}
+
+/// The steps of `program` with these values for its parameters.
+pub fn fold(program: &Program, parameters: &[f64]) -> Steps {
+    let mut folder = Folder::default();
+    for op in &program.ops {
+        match *op {
+            Op::Number(number) => folder.slots.push(Slot::Constant(number)),
+            Op::Parameter(index) => folder.slots.push(Slot::Constant(parameters[index])),
+            Op::Radius => {
+                folder.slots.push(Slot::From(folder.out.steps.len()));
+                folder.out.steps.push(Step::Radius);
+            }
+            Op::Unary(unary) => folder.unary(unary),
+            Op::Binary(binary) => folder.binary(binary),
+        }
+    }
+    if let Slot::Constant(number) = folder.pop() {
+        folder.out.steps.push(Step::Number(number));
+    }
+    folder.out.depth = depth(&folder.out.steps);
+    folder.out
+}
+
+#[derive(Default)]
+struct Folder {
+    out: Steps,
+    slots: Vec<Slot>,
+}
+
+impl Folder {
+    fn pop(&mut self) -> Slot {
+        // The grammar gives every operation its operands.
+        self.slots.pop().unwrap_or(Slot::Constant(f64::NAN))
+    }
+
+    fn unary(&mut self, unary: Unary) {
+        let slot = self.pop();
+        match slot {
+            Slot::Constant(x) => self.slots.push(Slot::Constant(unary.value(x))),
+            Slot::From(start) => self.step(start, Step::Unary(unary)),
+        }
+    }
+
+    /// A step on the value made by the steps from `start` on.
+    fn step(&mut self, start: usize, step: Step) {
+        let argument = start..self.out.steps.len();
+        let pole = |tangent| Pole { argument: argument.clone(), tangent };
+        match step {
+            Step::Unary(Unary::Sin | Unary::Cos) => {
+                self.out.waves.push(Wave { argument: argument.clone(), period: TAU });
+            }
+            Step::Unary(Unary::Tan) => {
+                self.out.waves.push(Wave { argument: argument.clone(), period: PI });
+                self.out.poles.push(pole(true));
+            }
+            Step::Unary(Unary::Log | Unary::Log10) | Step::Over(_) => self.out.poles.push(pole(false)),
+            Step::RealPower(p) if p < 0.0 => self.out.poles.push(pole(false)),
+            _ => {}
+        }
+        self.out.steps.push(step);
+        self.slots.push(Slot::From(start));
+    }
+
+    /// What the steps from `start` on make is this number after all.
+    fn replace(&mut self, start: usize, number: f64) {
+        self.out.steps.truncate(start);
+        self.out.waves.retain(|wave| wave.argument.end <= start);
+        self.out.poles.retain(|pole| pole.argument.end <= start);
+        self.slots.push(Slot::Constant(number));
+    }
+
+    fn binary(&mut self, binary: Binary) {
+        let (b, a) = (self.pop(), self.pop());
+        match (a, b) {
+            (Slot::Constant(a), Slot::Constant(b)) => self.slots.push(Slot::Constant(binary.value(a, b))),
+            (Slot::From(start), Slot::From(second)) => {
+                if binary == Binary::Divide {
+                    let argument = second..self.out.steps.len();
+                    self.out.poles.push(Pole { argument, tangent: false });
+                }
+                self.step(start, Step::Binary(binary));
+            }
+            (Slot::From(start), Slot::Constant(c)) => self.with_second(binary, start, c),
+            (Slot::Constant(c), Slot::From(start)) => match binary {
+                Binary::Subtract => {
+                    self.out.steps.push(Step::Unary(Unary::Negate));
+                    self.step(start, Step::Shift(c));
+                }
+                Binary::Divide if c == 0.0 => self.replace(start, 0.0),
+                Binary::Divide => self.step(start, Step::Over(c)),
+                Binary::Power => self.step(start, Step::Exponential(c)),
+                symmetric => self.with_second(symmetric, start, c),
+            },
+        }
+    }
+
+    /// An operation whose second operand is a number.
+    fn with_second(&mut self, binary: Binary, start: usize, c: f64) {
+        match binary {
+            Binary::Add => self.step(start, Step::Shift(c)),
+            Binary::Subtract => self.step(start, Step::Shift(-c)),
+            // A wave without amplitude is no feature: nothing of it may stay.
+            Binary::Multiply if c == 0.0 => self.replace(start, 0.0),
+            Binary::Multiply => self.step(start, Step::Scale(c)),
+            Binary::Divide => self.step(start, Step::Divide(c)),
+            Binary::Power => self.power(start, c),
+            Binary::Min | Binary::Max | Binary::Hypot => {
+                self.out.steps.push(Step::Number(c));
+                self.step(start, Step::Binary(binary));
+            }
+        }
+    }
+
+    fn power(&mut self, start: usize, p: f64) {
+        if p == 0.0 {
+            return self.replace(start, 1.0);
+        }
+        if p.fract() != 0.0 || p.abs() > LARGEST_POWER {
+            return self.step(start, Step::RealPower(p));
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small integer by now")]
+        let n = p.abs() as u32;
+        if p < 0.0 {
+            // Before the power, so that the pole is looked for where the base changes its sign.
+            self.step(start, Step::Over(1.0));
+            self.slots.pop();
+        }
+        if n > 1 { self.step(start, Step::IntegerPower(n)) } else { self.slots.push(Slot::From(start)) }
+    }
+}
+
+fn depth(steps: &[Step]) -> usize {
+    let (mut depth, mut deepest) = (0, 0);
+    for step in steps {
+        match step {
+            Step::Number(_) | Step::Radius => depth += 1,
+            Step::Binary(_) => depth -= 1,
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::grammar::formula;
+
+    fn steps(text: &str) -> Steps {
+        fold(&formula(text).unwrap(), &[])
+    }
+
+    #[test]
+    fn constants_are_folded() {
+        assert_eq!(steps("2*pi/4").steps, [Step::Number(PI / 2.0)]);
+        assert_eq!(steps("3 - r").steps, [Step::Radius, Step::Unary(Unary::Negate), Step::Shift(3.0)]);
+        assert_eq!(steps("r^2/(2*3)").steps, [Step::Radius, Step::IntegerPower(2), Step::Divide(6.0)]);
+        assert_eq!(steps("2^r").steps, [Step::Radius, Step::Exponential(2.0)]);
+        assert_eq!(steps("r^-2").steps, [Step::Radius, Step::Over(1.0), Step::IntegerPower(2)]);
+        assert_eq!(steps("r^1 + r^0").steps, [Step::Radius, Step::Shift(1.0)]);
+        assert_eq!(steps("r + (r + (r + r))").depth, 4);
+    }
+
+    #[test]
+    fn what_is_multiplied_by_zero_leaves_no_wave_and_no_pole() {
+        let wavy = steps("r^2 + sin(3*r)*tan(r)/r");
+        assert_eq!((wavy.waves.len(), wavy.poles.len()), (2, 2));
+        assert_eq!(wavy.waves[0].argument, 2..4);
+        let flat = steps("cos(r) + 0*(sin(3*r)*tan(r)/r)");
+        assert_eq!((flat.waves.len(), flat.poles.len()), (1, 0));
+    }
+}
