@@ -23,6 +23,7 @@
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
 //! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
+//! | 1 | [`units`] | dimensions, unit names, values with units read and shown |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
 //! | 0 | [`expression`] | the one grammar of gap formulas and of values |
 //!
@@ -68,4 +69,5 @@ pub mod ritz;
 pub mod theory;
 #[cfg(feature = "tui")]
 pub mod tui;
+pub mod units;
 pub mod verify;

@@ -1,0 +1,148 @@
+//! Dimensions as exponent vectors, and the quantities of contact mechanics.
+
+use std::fmt;
+use std::ops::{Add, Mul};
+
+/// The exponents of metre, kilogram and second; those of a product add.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Dimension {
+    /// Of the metre.
+    pub metre: i32,
+    /// Of the kilogram.
+    pub kilogram: i32,
+    /// Of the second.
+    pub second: i32,
+}
+
+/// A quantity of contact mechanics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Contact radius, approach, amplitude, wavelength: m.
+    Length,
+    /// N.
+    Force,
+    /// Elastic moduli and pressures: Pa.
+    Stress,
+    /// The work of adhesion: J/m².
+    EnergyPerArea,
+    /// Losses: J.
+    Energy,
+    /// The stiffness of the device: N/m, of the same dimension as J/m².
+    ForcePerLength,
+    /// A ratio, an angle or a count.
+    Number,
+}
+
+impl Dimension {
+    /// No dimension.
+    pub const NONE: Self = Self::new(0, 0, 0);
+
+    /// The dimension with these exponents of metre, kilogram and second.
+    pub const fn new(metre: i32, kilogram: i32, second: i32) -> Self {
+        Self { metre, kilogram, second }
+    }
+
+    /// What it is called, with its article, if it has a name here.
+    ///
+    /// An energy per area and a force per length have one dimension.
+    pub fn name(self) -> Option<&'static str> {
+        Some(match (self.metre, self.kilogram, self.second) {
+            (0, 0, 0) => "a pure number",
+            (1, 0, 0) => "a length",
+            (2, 0, 0) => "an area",
+            (3, 0, 0) => "a volume",
+            (-1, 0, 0) => "an inverse length",
+            (0, 1, 0) => "a mass",
+            (0, 0, 1) => "a time",
+            (1, 1, -2) => "a force",
+            (-1, 1, -2) => "a stress",
+            (2, 1, -2) => "an energy",
+            (0, 1, -2) => "an energy per area or a force per length",
+            _ => return None,
+        })
+    }
+}
+
+impl Add for Dimension {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.metre + other.metre, self.kilogram + other.kilogram, self.second + other.second)
+    }
+}
+
+impl Mul<i32> for Dimension {
+    type Output = Self;
+
+    fn mul(self, power: i32) -> Self {
+        Self::new(self.metre * power, self.kilogram * power, self.second * power)
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(name) = self.name() {
+            return f.write_str(name);
+        }
+        f.write_str("of dimension")?;
+        for (symbol, power) in [("m", self.metre), ("kg", self.kilogram), ("s", self.second)] {
+            match power {
+                0 => {}
+                1 => write!(f, " {symbol}")?,
+                _ => write!(f, " {symbol}^{power}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Length,
+        Self::Force,
+        Self::Stress,
+        Self::EnergyPerArea,
+        Self::Energy,
+        Self::ForcePerLength,
+        Self::Number,
+    ];
+
+    /// Its dimension.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Self::Length => Dimension::new(1, 0, 0),
+            Self::Force => Dimension::new(1, 1, -2),
+            Self::Stress => Dimension::new(-1, 1, -2),
+            Self::EnergyPerArea | Self::ForcePerLength => Dimension::new(0, 1, -2),
+            Self::Energy => Dimension::new(2, 1, -2),
+            Self::Number => Dimension::NONE,
+        }
+    }
+
+    /// What it is called, with its article.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "a length",
+            Self::Force => "a force",
+            Self::Stress => "a stress",
+            Self::EnergyPerArea => "an energy per area",
+            Self::Energy => "an energy",
+            Self::ForcePerLength => "a force per length",
+            Self::Number => "a pure number",
+        }
+    }
+
+    /// A unit of it for a message; a pure number has none.
+    pub fn example(self) -> Option<&'static str> {
+        match self {
+            Self::Length => Some("um"),
+            Self::Force => Some("mN"),
+            Self::Stress => Some("kPa"),
+            Self::EnergyPerArea => Some("mJ/m^2"),
+            Self::Energy => Some("pJ"),
+            Self::ForcePerLength => Some("N/m"),
+            Self::Number => None,
+        }
+    }
+}

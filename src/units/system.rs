@@ -1,0 +1,179 @@
+//! Reduced or SI: how a quantity is typed and shown.
+
+use super::dimension::Quantity;
+use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, Named, PASCAL, PICO, Prefix};
+use super::unit::{Factor, Unit};
+use super::value::{ValueError, parse_quantity};
+use std::fmt;
+
+/// The units in which a problem is typed and shown.
+#[derive(Debug, Clone, PartialEq)]
+pub enum UnitSystem {
+    /// Pure numbers: E* and R are what a person makes them.
+    Reduced,
+    /// SI, each quantity shown in a unit of its own.
+    Si(DisplayUnits),
+}
+
+/// The unit in which each quantity is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplayUnits {
+    length: Unit,
+    force: Unit,
+    stress: Unit,
+    energy_per_area: Unit,
+    energy: Unit,
+    force_per_length: Unit,
+}
+
+impl Default for DisplayUnits {
+    /// µm, µN, kPa, mJ/m², pJ and N/m: those of a soft sphere of a millimetre.
+    fn default() -> Self {
+        let factor = |prefix: &'static Prefix, unit: &'static Named, power| Factor { prefix, unit, power };
+        let one = |prefix, unit| Unit::of(vec![factor(prefix, unit, 1)]);
+        Self {
+            length: one(&MICRO, &METRE),
+            force: one(&MICRO, &NEWTON),
+            stress: one(&KILO, &PASCAL),
+            energy_per_area: Unit::of(vec![factor(&MILLI, &JOULE, 1), factor(&NONE, &METRE, -2)]),
+            energy: one(&PICO, &JOULE),
+            force_per_length: Unit::of(vec![factor(&NONE, &NEWTON, 1), factor(&NONE, &METRE, -1)]),
+        }
+    }
+}
+
+impl DisplayUnits {
+    /// The unit of a quantity; a pure number has none.
+    pub fn unit(&self, quantity: Quantity) -> Option<&Unit> {
+        Some(match quantity {
+            Quantity::Length => &self.length,
+            Quantity::Force => &self.force,
+            Quantity::Stress => &self.stress,
+            Quantity::EnergyPerArea => &self.energy_per_area,
+            Quantity::Energy => &self.energy,
+            Quantity::ForcePerLength => &self.force_per_length,
+            Quantity::Number => return None,
+        })
+    }
+
+    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without.
+    ///
+    /// # Errors
+    /// A text that is no unit, or one of another dimension.
+    pub fn with(mut self, quantity: Quantity, name: &str) -> Result<Self, ValueError> {
+        let unit = Unit::parse(name, 0)?;
+        if unit.dimension() != quantity.dimension() {
+            let got = unit.measures();
+            return Err(ValueError::Dimension { expected: quantity, text: unit.to_string(), got });
+        }
+        match quantity {
+            Quantity::Length => self.length = unit,
+            Quantity::Force => self.force = unit,
+            Quantity::Stress => self.stress = unit,
+            Quantity::EnergyPerArea => self.energy_per_area = unit,
+            Quantity::Energy => self.energy = unit,
+            Quantity::ForcePerLength => self.force_per_length = unit,
+            Quantity::Number => {}
+        }
+        Ok(self)
+    }
+}
+
+/// A value as it is shown: its [`Display`](fmt::Display) has every digit, so that it is read back as the same value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown<'a> {
+    /// The number in the unit.
+    pub number: f64,
+    /// The unit, if it has one.
+    pub unit: Option<&'a Unit>,
+}
+
+impl Shown<'_> {
+    /// The text with the number written as `number`, in ASCII if the terminal has nothing else.
+    pub fn text(&self, number: &str, ascii: bool) -> String {
+        match self.unit {
+            None => number.to_owned(),
+            Some(unit) if ascii => format!("{number} {}", unit.ascii()),
+            Some(unit) => format!("{number} {unit}"),
+        }
+    }
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text(&format!("{:?}", self.number), false))
+    }
+}
+
+impl UnitSystem {
+    /// The unit in which a quantity is shown, if it has one.
+    pub fn unit(&self, quantity: Quantity) -> Option<&Unit> {
+        match self {
+            Self::Reduced => None,
+            Self::Si(units) => units.unit(quantity),
+        }
+    }
+
+    /// The SI value of one display unit; 1 where there is none.
+    pub fn factor(&self, quantity: Quantity) -> f64 {
+        self.unit(quantity).map_or(1.0, |unit| unit.to_si(1.0))
+    }
+
+    /// The value of a quantity as typed, in SI or reduced units.
+    ///
+    /// In SI a bare number is one of the unit in which the quantity is shown.
+    ///
+    /// # Errors
+    /// Text that is no value, a value that is not finite, a wrong dimension, any unit in reduced units.
+    pub fn read(&self, quantity: Quantity, text: &str) -> Result<f64, ValueError> {
+        let value = parse_quantity(text)?;
+        match self {
+            Self::Reduced => value.pure(),
+            Self::Si(units) => value.in_si(quantity, units.unit(quantity)),
+        }
+    }
+
+    /// How `value`, in SI or reduced units, is shown.
+    pub fn shown(&self, quantity: Quantity, value: f64) -> Shown<'_> {
+        let unit = self.unit(quantity);
+        Shown { number: unit.map_or(value, |unit| unit.from_si(value)), unit }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_in_micrometres() {
+        let si = UnitSystem::Si(DisplayUnits::default());
+        let shown = si.shown(Quantity::Length, 12.5e-6);
+        assert_eq!((shown.to_string().as_str(), shown.text("12.5", true).as_str()), ("12.5 µm", "12.5 um"));
+        assert_eq!(si.read(Quantity::Length, "12.5"), Ok(12.5e-6));
+        assert_eq!(si.read(Quantity::Length, "12.5 nm"), Ok(12.5e-9));
+        assert_eq!(si.factor(Quantity::Stress).to_bits(), 1e3f64.to_bits());
+        assert_eq!(si.shown(Quantity::Number, 0.25).to_string(), "0.25");
+        assert_eq!(UnitSystem::Reduced.shown(Quantity::Length, 0.25).to_string(), "0.25");
+        assert!(UnitSystem::Reduced.read(Quantity::Length, "12.5 nm").is_err());
+    }
+
+    #[test]
+    fn display_units_have_the_dimension_of_their_quantity() {
+        let units = DisplayUnits::default();
+        for quantity in Quantity::ALL {
+            assert_eq!(
+                units.unit(quantity).map_or(quantity.dimension(), Unit::dimension),
+                quantity.dimension()
+            );
+        }
+        let units = units.with(Quantity::EnergyPerArea, "J/m^2").unwrap();
+        assert_eq!(
+            UnitSystem::Si(units.clone()).shown(Quantity::EnergyPerArea, 0.03).to_string(),
+            "0.03 J/m²"
+        );
+        assert_eq!(
+            units.with(Quantity::Length, "kPa").unwrap_err().to_string(),
+            "expected a length such as um, got kPa, a stress"
+        );
+    }
+}

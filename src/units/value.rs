@@ -1,0 +1,193 @@
+//! A number with its unit, read.
+
+use super::dimension::{Dimension, Quantity};
+use super::unit::{Unit, UnitError};
+use crate::expression::{FormulaError, grammar};
+use thiserror::Error;
+
+/// Characters of a value that a message quotes.
+const QUOTED: usize = 40;
+
+/// A number as typed, with the unit behind it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    /// The number before the unit, finite.
+    pub number: f64,
+    /// The unit; a bare number has none.
+    pub unit: Option<Unit>,
+    text: String,
+}
+
+/// Why a text is no value of the quantity it stands for. Foreign text in it is short and safe to show.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ValueError {
+    /// The number is none.
+    #[error(transparent)]
+    Number(#[from] FormulaError),
+    /// The unit is none.
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    /// An overflow, or a division of zero by zero.
+    #[error("{text} is not a finite number")]
+    NotFinite {
+        /// The value as typed.
+        text: String,
+    },
+    /// Another dimension than that of the quantity.
+    #[error("expected {}, got {text}, {got}", wanted(*.expected))]
+    Dimension {
+        /// The quantity.
+        expected: Quantity,
+        /// The value as typed.
+        text: String,
+        /// What is measured in its unit.
+        got: String,
+    },
+    /// A value with a unit where only pure numbers have a meaning.
+    #[error("the problem is in reduced units: expected a pure number, got {text}, {got}")]
+    Reduced {
+        /// The value as typed.
+        text: String,
+        /// What is measured in its unit.
+        got: String,
+    },
+}
+
+fn wanted(quantity: Quantity) -> String {
+    match quantity.example() {
+        Some(unit) => format!("{} such as {unit}", quantity.name()),
+        None => quantity.name().to_owned(),
+    }
+}
+
+/// The value of a text: an expression of numbers, then a unit if there is one.
+///
+/// # Errors
+/// Text that is neither, with its column; a number that is not finite.
+pub fn parse_quantity(text: &str) -> Result<Value, ValueError> {
+    let (program, end) = grammar::number(text)?;
+    let unit = if end < text.len() { Some(Unit::parse(text, end)?) } else { None };
+    let number = program.value();
+    let value = Value { number, unit, text: quoted(text) };
+    if number.is_finite() { Ok(value) } else { Err(ValueError::NotFinite { text: value.text }) }
+}
+
+/// The text on one line and not too long; what could be read holds nothing unsafe.
+fn quoted(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.chars().nth(QUOTED).is_none() {
+        return line;
+    }
+    line.chars().take(QUOTED - 3).chain("...".chars()).collect()
+}
+
+impl Value {
+    /// The dimension of the unit; a bare number has none of its own.
+    pub fn dimension(&self) -> Option<Dimension> {
+        self.unit.as_ref().map(Unit::dimension)
+    }
+
+    /// The value of this quantity in SI; a bare number is one of `unit`, or of SI without one.
+    ///
+    /// # Errors
+    /// Another dimension; a value that is too large or too small for a double.
+    pub fn in_si(&self, expected: Quantity, unit: Option<&Unit>) -> Result<f64, ValueError> {
+        if let Some(own) = &self.unit
+            && own.dimension() != expected.dimension()
+        {
+            return Err(ValueError::Dimension { expected, text: self.text.clone(), got: own.measures() });
+        }
+        let si = self.unit.as_ref().or(unit).map_or(self.number, |unit| unit.to_si(self.number));
+        if si.is_finite() && (si != 0.0 || self.number == 0.0) {
+            Ok(si)
+        } else {
+            Err(ValueError::NotFinite { text: self.text.clone() })
+        }
+    }
+
+    /// The value of a quantity without units.
+    ///
+    /// # Errors
+    /// A unit.
+    pub fn pure(&self) -> Result<f64, ValueError> {
+        match &self.unit {
+            None => Ok(self.number),
+            Some(unit) => Err(ValueError::Reduced { text: self.text.clone(), got: unit.measures() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn si(text: &str, quantity: Quantity) -> Result<f64, String> {
+        parse_quantity(text).and_then(|value| value.in_si(quantity, None)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_as_people_type_them() {
+        for (text, quantity, expected) in [
+            ("3*pi/2 um", Quantity::Length, 3.0 * std::f64::consts::PI / 2.0 / 1e6),
+            ("12.5um", Quantity::Length, 12.5e-6),
+            ("2.5 MPa", Quantity::Stress, 2.5e6),
+            ("30 mJ/m^2", Quantity::EnergyPerArea, 30e-3),
+            ("30 mN/m", Quantity::EnergyPerArea, 30e-3),
+            ("1/2 N/m", Quantity::ForcePerLength, 0.5),
+            ("-(1+1) nN", Quantity::Force, -2e-9),
+            ("2e3 eV", Quantity::Energy, 2e3 * 1.602_176_634 / 1e19),
+            ("1e-3", Quantity::Number, 1e-3),
+            ("3*pi/2", Quantity::Number, 3.0 * std::f64::consts::FRAC_PI_2),
+            ("90 deg", Quantity::Number, std::f64::consts::FRAC_PI_2),
+            ("0 um", Quantity::Length, 0.0),
+        ] {
+            assert_eq!(si(text, quantity), Ok(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn refusals_say_what_was_expected() {
+        for (text, quantity, message) in [
+            (
+                "30 mJ/m^2",
+                Quantity::Stress,
+                "expected a stress such as kPa, got 30 mJ/m^2, an energy per area",
+            ),
+            ("3 um", Quantity::Number, "expected a pure number, got 3 um, a length"),
+            ("3 m/s", Quantity::Length, "expected a length such as um, got 3 m/s, of dimension m s^-1"),
+            ("10^10^10", Quantity::Number, "10^10^10 is not a finite number"),
+            ("0/0 um", Quantity::Length, "0/0 um is not a finite number"),
+            ("1e300 Ym", Quantity::Length, "1e300 Ym is not a finite number"),
+            (
+                "1e-300 ym^9 ym^9/ym^9/ym^8",
+                Quantity::Length,
+                "1e-300 ym^9 ym^9/ym^9/ym^8 is not a finite number",
+            ),
+            ("3 furlong", Quantity::Length, "column 3: unknown unit furlong"),
+            (
+                "2*r um",
+                Quantity::Length,
+                "column 3: r has no value here: only numbers, pi, e and functions of them",
+            ),
+            (
+                "um",
+                Quantity::Length,
+                "column 1: um has no value here: only numbers, pi, e and functions of them",
+            ),
+            ("", Quantity::Length, "column 1: expected a number, a name or '(', found the end"),
+            ("3 um)", Quantity::Length, "column 5: expected a unit such as um, mN, kPa or mJ/m^2, found ')'"),
+            (
+                "1,5 um",
+                Quantity::Length,
+                "column 2: expected a unit such as um, mN, kPa or mJ/m^2, found ','",
+            ),
+        ] {
+            assert_eq!(si(text, quantity), Err(message.to_owned()), "{text}");
+        }
+        assert_eq!(parse_quantity("2").unwrap().pure(), Ok(2.0));
+        assert_eq!(
+            parse_quantity("2 nm").unwrap().pure().unwrap_err().to_string(),
+            "the problem is in reduced units: expected a pure number, got 2 nm, a length"
+        );
+    }
+}
