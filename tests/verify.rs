@@ -40,6 +40,8 @@ fn the_groups_are_these() {
     Smooth sphere at s = 0.3 R, 4 eigenfunctions
     Hertz at approach 0.1 R, uniform rings
     JKR at approach 0.1 R, uniform rings
+    Hertz at approach 0.1 R, rings crowded towards the edge
+    JKR at approach 0.1 R, rings crowded towards the edge
     Fig. 9 at s = 0.5 R by the number of eigenfunctions
     Newton-Raphson from a threefold contact radius, JKR sphere
     Fig. 8, extreme values, 38 eigenfunctions

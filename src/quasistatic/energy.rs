@@ -15,11 +15,14 @@ use super::equilibrium::{Equilibrium, State};
 use crate::contact::{Control, Gap};
 use gauss_quad::GaussLegendre;
 
-/// Nodes of Gauss's rule in each piece of the area. 12: on half a wave the two losses agree to rounding.
+/// Nodes of Gauss's rule in each piece of the area. 12: on a third of a wave the two losses agree to rounding.
 const NODES: usize = 12;
 
 /// Pieces of the area per wave of the gap.
-const PIECES_PER_WAVE: f64 = 2.0;
+const PIECES_PER_WAVE: f64 = 3.0;
+
+/// Fewest pieces: a gap that is steep but has no waves is a polynomial of high degree in one.
+const FEWEST_PIECES: f64 = 3.0;
 
 /// Most pieces: a thousand waves.
 const MOST_PIECES: f64 = 2000.0;
@@ -65,7 +68,7 @@ pub fn area(
     }
     let to = after.unwrap_or(0.0);
     let waves = equilibrium.problem.gap.feature_length().map_or(0.0, |wave| (before - to) / wave);
-    let pieces = (PIECES_PER_WAVE * waves).ceil().clamp(1.0, MOST_PIECES);
+    let pieces = (PIECES_PER_WAVE * waves).ceil().clamp(FEWEST_PIECES, MOST_PIECES);
     // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
     let edge = |piece: f64| (before + (to - before) * (piece / pieces).min(1.0)).sqrt();
     let rule = GaussLegendre::new(NODES.try_into().ok()?);

@@ -1,8 +1,9 @@
 //! Hertz and JKR in rings at a given approach: the errors of contact radius and force, and their observed order.
 //!
 //! ```text
-//! JKR     s  0.16/N      P  1.4/N                order 1 and 1
-//! Hertz   s  0.5/N       P  0.24/N²              order 1 and 2
+//!                uniform rings                        rings crowded towards the edge
+//! JKR     s  0.16/N    P  1.4/N     order 1, 1      s  0.34/N²   P  9.4/N²    order 2, 2
+//! Hertz   s  0.5/N     P  0.24/N²   order 1, 2      s  0.37/N    P  0.31/N²   order 1, 2
 //! ```
 //!
 //! The order between N and 2N is log₂ of the ratio of their errors. Eqs. (21), (22) of the paper with their misprints
@@ -13,10 +14,9 @@ use super::cases::{smooth, sphere};
 use super::row::{Group, Row};
 use super::settings::Settings;
 use crate::contact::Control;
-use crate::ritz::{Basis, BasisError, NewtonSettings, Rings, solve};
+use crate::ritz::{Basis, BasisError, Grading, NewtonSettings, Rings, solve};
 use crate::theory::jkr::Jkr;
 use crate::theory::root::halved;
-use std::sync::Arc;
 
 /// δ/R of the comparison.
 const APPROACH: f64 = 0.1;
@@ -35,29 +35,39 @@ struct Study {
     title: &'static str,
     /// γ/(E*R).
     work_of_adhesion: f64,
-    rings: fn(usize) -> Result<Arc<Rings>, BasisError>,
+    grading: Grading,
     radius: Law,
     force: Law,
 }
 
-fn uniform(rings: usize) -> Result<Arc<Rings>, BasisError> {
-    Ok(Rings::shared(rings)?)
-}
-
-const STUDIES: [Study; 2] = [
+const STUDIES: [Study; 4] = [
     Study {
         title: "Hertz at approach 0.1 R, uniform rings",
         work_of_adhesion: 0.0,
-        rings: uniform,
+        grading: Grading::Uniform,
         radius: Law { constant: 0.6, order: 1.0, spread: 0.1 },
         force: Law { constant: 0.3, order: 2.0, spread: 0.2 },
     },
     Study {
         title: "JKR at approach 0.1 R, uniform rings",
         work_of_adhesion: 0.01,
-        rings: uniform,
+        grading: Grading::Uniform,
         radius: Law { constant: 0.2, order: 1.0, spread: 0.1 },
         force: Law { constant: 1.7, order: 1.0, spread: 0.1 },
+    },
+    Study {
+        title: "Hertz at approach 0.1 R, rings crowded towards the edge",
+        work_of_adhesion: 0.0,
+        grading: Grading::Edge,
+        radius: Law { constant: 0.45, order: 1.0, spread: 0.1 },
+        force: Law { constant: 0.4, order: 2.0, spread: 0.2 },
+    },
+    Study {
+        title: "JKR at approach 0.1 R, rings crowded towards the edge",
+        work_of_adhesion: 0.01,
+        grading: Grading::Edge,
+        radius: Law { constant: 0.4, order: 2.0, spread: 0.1 },
+        force: Law { constant: 11.0, order: 2.0, spread: 0.1 },
     },
 ];
 
@@ -83,7 +93,7 @@ fn group(study: &Study, finest: usize) -> Result<Group, BasisError> {
     let problem = sphere(study.work_of_adhesion).reduced();
     let mut states = Vec::new();
     for rings in [finest / 4, finest / 2, finest] {
-        let basis = (study.rings)(rings)?;
+        let basis = Rings::shared_with(rings, study.grading, &mut |_| true)?;
         let control = Control::Displacement;
         let solved = solve(&*basis, &problem, control, APPROACH, 3.0 * radius, NewtonSettings::default());
         let state = solved.map(|solved| [solved.evaluation.contact_radius, solved.evaluation.force]);

@@ -10,10 +10,10 @@ use crate::theory::Exact;
 
 /// n, and the bounds of force and energy.
 const NUMBERS: [(usize, f64, f64); 6] = [
-    (16, 1e-5, 0.2),
+    (16, 1e-5, 0.3),
     (24, 1e-10, 0.15),
-    (32, 1e-12, 1e-2),
-    (40, 1e-12, 1e-9),
+    (32, 1e-12, 2e-2),
+    (40, 1e-12, 2e-9),
     (48, 1e-12, 1e-12),
     (64, 1e-12, 1e-12),
 ];
