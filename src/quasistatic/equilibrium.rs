@@ -306,7 +306,7 @@ mod tests {
         Case::new(&preset).unwrap().sweep(|| true).unwrap()
     }
 
-    /// U_ss, U_sδ and U_δδ by central differences.
+    /// `U_ss`, `U_sδ` and `U_δδ` by central differences.
     fn hessian(equilibrium: &Equilibrium, s: f64, delta: f64) -> [f64; 3] {
         let (h, d) = (1e-4 * s, 1e-4 * s);
         let u = |i: f64, j: f64| equilibrium.basis.energy(&equilibrium.problem, s + i * h, delta + j * d);

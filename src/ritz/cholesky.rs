@@ -1,13 +1,13 @@
 //! The Cholesky factor of a symmetric positive definite matrix, by blocks of columns.
 //!
-//! A = LLᵀ. Block k of L follows from those before it ("left-looking"):
+//! `A = LLᵀ`. Block k of L follows from those before it ("left-looking"):
 //!
 //! ```text
 //! C   = A[k.., k] − L[k.., ..k] L[k, ..k]ᵀ         one matrix product
 //! L_kk = Cholesky of C's first block,  L[k+1.., k] = C[k+1..] L_kk⁻ᵀ
 //! ```
 //!
-//! and L x = b is solved the same way, x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k]), for many b at once. Nearly all the work is
+//! and L x = b is solved the same way, `x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k])`, for many b at once. Nearly all the work is
 //! matrix products, and between blocks the factorization can be asked to stop.
 
 use super::parallel::Progress;
@@ -28,7 +28,7 @@ pub enum NoFactor {
     Cancelled,
 }
 
-/// L of A = LLᵀ.
+/// L of `A = LLᵀ`.
 #[derive(Debug)]
 pub struct Factor {
     lower: DMatrix<f64>,

@@ -8,7 +8,7 @@
 //!
 //! with complete elliptic integrals of modulus k. Both come from one arithmetic-geometric mean that begins with 1 and the
 //! complementary modulus k' = √((b − a)(b + a))/b, which keeps the digits where a ring is thin: with
-//! `c_n` half the difference of the two means, S = Σ 2ⁿ⁻¹ c_n² (n ≥ 1) and K = π/2 over their limit,
+//! `c_n` half the difference of the two means, `S = Σ 2ⁿ⁻¹ c_n²` (n ≥ 1) and K = π/2 over their limit,
 //!
 //! ```text
 //! E = K [(1 + k'²)/2 − S]     ⇒     (1 + k²) E − (1 − k²) K = K [½ k² (2 + k'²) − (1 + k²) S]
