@@ -72,12 +72,12 @@ pub struct CurveData {
 }
 
 impl Sweep {
-    /// Sweeps the curve of `preset`; `go_on` is asked between points.
+    /// Sweeps the curve of `preset`; `go_on` is asked between the blocks of a basis and between points.
     ///
     /// # Errors
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
-    pub fn compute(preset: &Preset, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
-        let case = Case::new(preset)?;
+    pub fn compute(preset: &Preset, mut go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &mut |_| go_on())?;
         let curve = case.sweep(go_on)?;
         let held =
             [Control::Displacement, Control::Force].map(|control| (control, curve.limit_points(control)));
