@@ -31,9 +31,8 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// A preset's name, or a preset file (with a '/' or ending in .toml); the wavy sphere when left out
-    #[arg(value_name = "PRESET|FILE.toml")]
-    preset: Option<OsString>,
+    #[command(flatten)]
+    problem: Problem,
 }
 
 #[derive(Debug, Subcommand)]
@@ -49,10 +48,10 @@ enum Command {
     Presets(presets::Command),
 }
 
-/// Which problem, as every computing command takes it.
+/// Which problem, as the explorer and every computing command take it.
 #[derive(Debug, Args)]
 struct Problem {
-    /// A preset's name, or a preset file (with a '/' or ending in .toml)
+    /// A preset's name, or a preset file (with a '/' or ending in .toml); the wavy sphere when left out
     #[arg(value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
@@ -93,7 +92,7 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(cli.preset.as_ref()),
+        None => explore::run(&cli.problem),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),

@@ -5,6 +5,7 @@ use super::model::{Level, Model, Panel};
 use super::profile::{Ask, Inside};
 use super::update::{number, tell};
 use super::view::{Overlay, View, Window};
+use crate::quasistatic::jump::Run;
 use std::sync::Arc;
 
 /// One press brings the chart closer by this factor.
@@ -78,7 +79,7 @@ pub(super) fn pin(model: &mut Model) {
             tell(
                 model,
                 Level::Info,
-                format!("pinned as {number}: change a value to compare, P takes it away"),
+                format!("pinned as {number}: change a value to compare; P lists the pins"),
             );
         }
         Err(reason) => tell(model, Level::Error, reason),
@@ -113,13 +114,14 @@ pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
         model.profile_wanted = None;
         return None;
     };
+    let run = if model.inward { Run::Inward } else { Run::Outward };
     let mut ask = Box::new(Ask {
         id: 0,
         setting: Arc::clone(&node.setting),
         curve: Arc::clone(curve),
         state: node.state,
         exact: model.overlays.exact,
-        inward: model.inward,
+        barrier: (!node.is_limit(curve.setting.case.control)).then_some(run),
     });
     if model.profile_wanted.as_ref().is_some_and(|last| last.is_like(&ask)) {
         return None;

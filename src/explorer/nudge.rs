@@ -75,7 +75,7 @@ const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
 ///
 /// `contact` is the stiffness of the contact itself, in the user's units.
 fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result<Control, String> {
-    let by = if amount == Amount::Fine { 1.03 } else { 1.3 };
+    let by = if amount == Amount::Fine { 1.03 } else { 2.0 };
     let (softest, stiffest) = (STIFFNESSES.start() * contact, STIFFNESSES.end() * contact);
     Ok(match (control, up) {
         (Control::Displacement, true) => {

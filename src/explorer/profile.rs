@@ -29,8 +29,8 @@ pub struct Ask {
     pub state: State,
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
-    /// Whether the barrier inward is wanted, or outward.
-    pub inward: bool,
+    /// The way in which the barrier is wanted; none holds the edge at a limit point.
+    pub barrier: Option<Run>,
 }
 
 impl Ask {
@@ -38,7 +38,7 @@ impl Ask {
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.setting, &other.setting)
             && Arc::ptr_eq(&self.curve, &other.curve)
-            && (self.state, self.exact, self.inward) == (other.state, other.exact, other.inward)
+            && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
     }
 
     fn control(&self) -> Control {
@@ -71,14 +71,13 @@ impl Inside {
         let case = &ask.setting.case;
         let State { contact_radius: s, approach, .. } = ask.state;
         let landscape = landscape(ask);
-        let run = if ask.inward { Run::Inward } else { Run::Outward };
         Self {
             id: ask.id,
             units: *case.units(),
             wave: case.reduced.gap.feature_length(),
             profile: Profile::of(&case.reduced, case.basis.as_ref(), s, approach),
             exact: if ask.exact { exact_pressure(ask) } else { Vec::new() },
-            barrier: landscape.as_ref().and_then(|landscape| landscape.barrier(run)),
+            barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),
             landscape,
         }
     }

@@ -142,10 +142,10 @@ pub struct Window {
 
 /// The smallest share that is shown: doubles tell about a million places apart in it.
 const CLOSEST: f64 = 1e-9;
-/// The largest.
-const WIDEST: f64 = 16.0;
+/// The largest: further away there is only more of nothing, but a walk beyond the curve may be seen.
+const WIDEST: f64 = 4.0;
 /// How far the middle of a window may leave the whole, in wholes.
-const AWAY: f64 = 8.0;
+const AWAY: f64 = 0.5;
 
 impl Window {
     /// The whole chart.

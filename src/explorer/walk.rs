@@ -134,12 +134,11 @@ impl Request {
     }
 }
 
-/// The difference of the force of `state` from the exact solution of `case` at the same contact radius, relative
-/// to the larger of the two forces whose difference the exact one is.
+/// The relative difference of the force of `state` from the exact solution of `case` at the same contact radius.
 pub fn from_exact(case: &Case, state: &State) -> f64 {
     let state = state.in_units(case.units());
-    let exact = Exact::of(&case.problem).curve(&[state.contact_radius]);
-    exact.first().map_or(f64::NAN, |exact| (state.force - exact.force) / exact.force_scale)
+    let exact = Exact::of(&case.problem).force(state.contact_radius);
+    (state.force - exact) / exact.abs()
 }
 
 fn made(request: &Request, kind: NodeKind, point: Point) -> Made {

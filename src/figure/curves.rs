@@ -78,9 +78,13 @@ fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
         for side in [&envelope.unloading, &envelope.loading] {
             figure.lines.push(line(Role::Envelope, "envelope", side));
         }
+        // The estimate is of the force under a dead load, over P_c; the path's own least force stands beside it.
+        let critical = subject.curve.sweep.critical_force;
+        let ours = subject.curve.report.as_ref().map(|report| -report.min_force / critical);
         figure.notes.push(format!(
-            "Kesari-Lew peak {}, n = {}",
+            "Kesari-Lew peak {}, here {}, n = s/λ = {}",
             significant(envelope.peak, 4),
+            ours.map_or_else(|| "-".to_owned(), |ours| significant(ours, 4)),
             fixed(envelope.waves, 1)
         ));
     }

@@ -46,10 +46,15 @@ pub fn unload(report: &UnloadReport) -> String {
         let _ = writeln!(text, "note: {note}");
     }
     text.push('\n');
+    if report.events.is_empty() {
+        text.push_str("no instabilities\n");
+    }
     let heads = ["#", "event", "delta", "> delta", "P", "> P", "s", "> s", "crest", "lost", "by area"];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     rows.extend(report.events.iter().enumerate().map(|(i, event)| row(i + 1, event)));
-    text.push_str(&aligned(&rows, 2));
+    if rows.len() > 1 {
+        text.push_str(&aligned(&rows, 2));
+    }
     let _ = writeln!(
         text,
         "\nsmallest force on the path: {}{}",

@@ -69,9 +69,7 @@ pub struct ExactReport {
     pub force: f64,
     /// U.
     pub energy: f64,
-    /// P of the point less the exact P, over the larger of the two forces whose difference the exact P is: that of the
-    /// gap, 2E*|∫a g' da|, and that of the adhesive edge, √(8πγE*s³). P itself passes through zero, these do not at
-    /// once.
+    /// P of the point less the exact P, over the exact P: near P = 0 rounding is seen.
     pub relative_difference: f64,
 }
 
@@ -82,7 +80,7 @@ impl ExactReport {
             approach: exact.approach,
             force: exact.force,
             energy: exact.energy,
-            relative_difference: (force - exact.force) / exact.force_scale,
+            relative_difference: (force - exact.force) / exact.force.abs(),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
             "cancelled: the control is as before"
         }
         (Some(_), None) => "cancelled: the curve shown is of the values before; u takes them back",
-        (None, _) => "cancelled: there is no curve yet; change a value, or o opens another preset",
+        (None, _) => "cancelled: there is no curve; 0 computes it again, or change a value",
     };
     if control.is_none() {
         model.curve_error = Some(text.to_owned());

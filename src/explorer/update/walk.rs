@@ -1,6 +1,6 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
-use super::values::adopt_parameters;
+use super::values::{adopt_parameters, want_curve};
 use super::{number, tell};
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::Effect;
@@ -21,7 +21,8 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     }
     let Some(curve) = model.curve.clone() else {
         tell(model, Level::Info, "the curve is being computed");
-        return Vec::new();
+        // Given up before: asked for again.
+        return if model.is_computing() { Vec::new() } else { vec![want_curve(model)] };
     };
     let control = curve.setting.case.control;
     let moves = matches!(action, Action::MoveTo(_) | Action::MoveToLimit(_) | Action::Solve { .. });

@@ -71,8 +71,8 @@ fn title(model: &Model) -> String {
     let on_curve = model.curve.as_ref().and_then(|c| c.report.as_ref()).map_or(0, |r| r.events.len());
     let walked = model.walked_events().len();
     match model.events {
-        EventSource::Curve => format!("Events: on curve {on_curve}, v walked {walked}"),
-        EventSource::Walked => format!("Events: walked {walked}, v on curve {on_curve}"),
+        EventSource::Curve => format!("Events on the curve: {on_curve} (v: walked {walked})"),
+        EventSource::Walked => format!("Events walked: {walked} (v: on the curve {on_curve})"),
     }
 }
 
@@ -91,11 +91,10 @@ fn headline(model: &Model, room: usize) -> String {
     } else {
         significant(report.min_force, 4)
     };
-    let pull_off = if report.events.iter().any(|e| e.after.is_none()) { "pull-off" } else { "least" };
     let bounded = report.events.iter().all(|e| e.dissipated.is_some());
     let parts = [
-        format!("{pull_off} {force}"),
-        format!("δ {}", significant(report.min_approach, 4)),
+        format!("least P {force}"),
+        format!("least δ {}", significant(report.min_approach, 4)),
         lost(report.total_dissipated, bounded),
     ];
     let [force, _, lost] = &parts;

@@ -1,6 +1,7 @@
 //! What the lines and letters of a figure mean, in as many words as there is room for; and the cross-hair in words.
 
 use super::charts::{letter, look};
+use crate::contact::Control;
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
 use crate::tui::stroke::Stroke;
@@ -48,10 +49,12 @@ fn rank(role: Role) -> u8 {
     }
 }
 
-/// What a sign means, and how much that is wanted; the signs of other controls are in the help.
+/// What a sign means, and how much that is wanted.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
-        Sign::OtherLimit(_) | Sign::Stray => return None,
+        Sign::Stray => return None,
+        Sign::OtherLimit(Control::Force) => (3, "limit of P"),
+        Sign::OtherLimit(_) => (3, "limit of δ"),
         Sign::Limit => (1, "limit"),
         Sign::PullOff => (2, "pull-off"),
         Sign::Landing => (2, "landing"),

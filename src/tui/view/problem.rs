@@ -1,7 +1,7 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
 use super::{is_selected, pair, side_panel};
-use crate::contact::Groups;
+use crate::contact::{Control, Groups};
 use crate::explorer::Panel;
 use crate::preset::{Parameter, Value};
 use crate::report::number::short;
@@ -62,6 +62,7 @@ fn knob_line(
     let text = match value {
         None => "auto".to_owned(),
         Some(Value::Number(x)) => short(*x, 7),
+        Some(Value::Control(Control::Stiffness(k))) => format!("k {}", short(*k, 5)),
         Some(value) => theme.text(&value.to_string()),
     };
     let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
