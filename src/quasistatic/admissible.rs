@@ -14,8 +14,7 @@
 //! [`disc`](crate::theory::disc)), which is −√(2πγs) but for the waves of g. The search ends where h stays above δ by
 //! that and a margin for the waves.
 
-use super::curve::Curve;
-use super::equilibrium::{Equilibrium, wave_index};
+use super::equilibrium::wave_index;
 use crate::contact::{Gap, Reduced};
 use crate::ritz::Basis;
 use std::f64::consts::TAU;
@@ -34,10 +33,12 @@ const STEPS_WITHOUT_WAVES: f64 = 24.0;
 const MARGIN: [f64; 2] = [2.0, 0.5];
 /// A gap counts as negative below this share of the lengths whose difference it is: rounding and truncation.
 const ROUNDING: f64 = 1e-9;
-/// Rounds for the ends of an interval, in which halving alone comes to 1e-6 of a step; false position needs a third.
-const ROUNDS: usize = 20;
-/// An end is located when its bracket is this small relative to it.
-const LOCATED: f64 = 2e-7;
+/// Steps per wave, and at least and at most on the whole range, in the search for a falling gap.
+const SLOPE_STEPS_PER_WAVE: f64 = 32.0;
+const SLOPE_STEPS: f64 = 200.0;
+const MOST_SLOPE_STEPS: f64 = 40_000.0;
+/// Halvings of a step for the least slope in it: its value is then good to rounding.
+const HALVINGS: usize = 30;
 
 /// A place outside the contact at which the bodies come near.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,18 +62,12 @@ pub struct Admissibility {
     pub holds: bool,
 }
 
-/// Neighbouring states of a curve that are not admissible.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Overlap {
-    /// The largest contact radius.
-    pub from: f64,
-    /// The smallest contact radius.
-    pub to: f64,
-    /// The crest that overlaps most among the points of the curve; `None` where only the pressure is at fault.
-    pub crest: Option<Crest>,
-}
-
 impl Admissibility {
+    /// The crest that would overlap; `None` where the state is admissible or only the pressure is at fault.
+    pub fn overlapping(&self) -> Option<Crest> {
+        self.nearest.filter(|crest| !self.holds && crest.gap < 0.0)
+    }
+
     /// The admissibility of the state (s, δ).
     pub fn of(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Self {
         let nearest = nearest_crest(problem, basis, s, delta);
@@ -92,74 +87,38 @@ impl Admissibility {
     }
 }
 
+/// Whether h falls somewhere on (0, `largest`]: without adhesion a disc of every radius up to there could then not be
+/// connected, for which h' > 0 is needed (on the wavy sphere λ²/(AR) > 8.5761).
+pub fn falls(gap: &dyn Gap, largest: f64) -> bool {
+    let step = gap.feature_length().map_or(f64::INFINITY, |wave| wave / SLOPE_STEPS_PER_WAVE);
+    let step = step.min(largest / SLOPE_STEPS).max(largest / MOST_SLOPE_STEPS);
+    let outward = std::iter::successors(Some(step), |r| Some(r + step)).take_while(|r| *r < largest);
+    let mut last = 0.0;
+    for r in outward.chain([largest]) {
+        let jet = gap.jet(r);
+        if jet.first < 0.0 {
+            return true;
+        }
+        // Where h'' turns from falling to rising the slope is least, between two radii of the search.
+        if gap.jet(last).second < 0.0 && jet.second > 0.0 {
+            let (mut falling, mut rising) = (last, r);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (falling + rising);
+                let side = if gap.jet(middle).second < 0.0 { &mut falling } else { &mut rising };
+                *side = middle;
+            }
+            if gap.jet(rising).first < 0.0 {
+                return true;
+            }
+        }
+        last = r;
+    }
+    false
+}
+
 /// √(2πγs): by how much adhesion lowers the edge.
 fn opening(problem: &Reduced, s: f64) -> f64 {
     (TAU * problem.work_of_adhesion * s).sqrt()
-}
-
-/// The states of `curve` that are not admissible, from its start inward, their ends located on the curve to about 1e-6.
-///
-/// Every point of the curve is looked at: an interval that fits between two of them is not seen.
-pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
-    let equilibrium = &curve.equilibrium;
-    let (problem, basis) = (&equilibrium.problem, equilibrium.basis.as_ref());
-    let mut found: Vec<Overlap> = Vec::new();
-    let mut open = false;
-    let mut last: Option<f64> = None;
-    for point in &curve.branch.points {
-        let [delta, _, s] = equilibrium.quantities(&point.y);
-        let here = Admissibility::of(problem, basis, s, delta);
-        match (here.holds, found.last_mut().filter(|_| open)) {
-            (true, Some(overlap)) => overlap.to = end(equilibrium, s, overlap.to),
-            (false, Some(overlap)) => {
-                overlap.to = s;
-                let gap = |crest: Option<Crest>| crest.map_or(f64::INFINITY, |crest| crest.gap);
-                if gap(here.nearest) < gap(overlap.crest) {
-                    overlap.crest = here.nearest;
-                }
-            }
-            (false, None) => {
-                let from = last.map_or(s, |good| end(equilibrium, good, s));
-                found.push(Overlap { from, to: s, crest: here.nearest.filter(|crest| crest.gap < 0.0) });
-            }
-            (true, None) => {}
-        }
-        open = !here.holds;
-        last = Some(s);
-    }
-    found
-}
-
-/// The end of an interval between an admissible radius and one that is not: the last that is not.
-fn end(equilibrium: &Equilibrium, mut good: f64, mut bad: f64) -> f64 {
-    let Equilibrium { problem, basis, .. } = equilibrium;
-    // The nearest gap by the straight line between its values on both sides, where it has them.
-    let mut gaps = [None; 2];
-    for round in 0..ROUNDS {
-        if (good - bad).abs() <= LOCATED * bad {
-            break;
-        }
-        let share = match gaps {
-            // Every third round halves, so that neither side can stay.
-            [Some(above), Some(below)] if round % 3 != 2 && above > below => {
-                // A little beyond the zero closes the bracket from the other side.
-                let zero: f64 = above / (above - below);
-                (zero + if zero < 0.5 { 1e-4 } else { -1e-4 }).clamp(1e-4, 1.0 - 1e-4)
-            }
-            _ => 0.5,
-        };
-        let middle = good + share * (bad - good);
-        let found = basis
-            .equilibrium(problem, middle)
-            .map(|e| Admissibility::of(problem, basis.as_ref(), middle, e.approach));
-        let gap = found.and_then(|found| found.nearest).map(|crest| crest.gap);
-        if found.is_some_and(|found| found.holds) {
-            (good, gaps[0]) = (middle, gap);
-        } else {
-            (bad, gaps[1]) = (middle, gap);
-        }
-    }
-    bad
 }
 
 /// The minimum of the deformed gap outside that is smallest; `None` where the gap only grows.
@@ -300,27 +259,6 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_says_where_it_is_inadmissible_and_at_which_crest() {
-        let problem = wavy(0.0025, 0.05, 1e-4).reduced();
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, 0.5).unwrap());
-        let curve = Curve::swept(problem.clone(), Arc::clone(&basis), 0.5, 0.04, || true).unwrap();
-        let found = overlaps(&curve);
-        // One below each crest from the tenth to the second: the edge is between it and the last trough.
-        let crests: Vec<u64> = found.iter().filter_map(|overlap| overlap.crest?.wave).collect();
-        assert_eq!(crests, [10, 9, 8, 7, 6, 5, 4, 3, 2]);
-        for overlap in &found {
-            let holds = |s: f64| at(&problem, basis.as_ref(), s).holds;
-            let (out, inward) = (1.0 + 2e-6, 1.0 - 2e-6);
-            assert!(holds(overlap.from * out) && !holds(overlap.from * inward), "{overlap:?}");
-            assert!(!holds(overlap.to * out) && holds(overlap.to * inward), "{overlap:?}");
-        }
-        // Every state of the figures of the paper is possible.
-        let problem = wavy(0.0025, 0.05, 0.025 / TAU).reduced();
-        let curve = Curve::swept(problem, basis, 0.5, 0.02, || true).unwrap();
-        assert_eq!(overlaps(&curve), []);
-    }
-
-    #[test]
     fn where_the_gap_ends_the_search_ends() {
         /// The wavy sphere up to r = 0.43, at which a crest near 0.445 is not known.
         #[derive(Debug)]
@@ -352,6 +290,17 @@ mod tests {
         let delta = spectral.equilibrium(&measured, 0.42).unwrap().approach;
         let drawn = crate::quasistatic::Profile::of(&measured, &spectral, 0.42, delta).outside;
         assert!(drawn.iter().all(|at| at.gap.is_finite() && at.radius <= 0.43) && drawn.len() > 10);
+    }
+
+    #[test]
+    fn the_wavy_sphere_falls_below_its_connectivity() {
+        // λ²/(AR) just below and above 8.5761; within half a wave every gap rises.
+        for (connectivity, falling) in [(1.0, true), (8.575, true), (8.577, false), (100.0, false)] {
+            let problem = wavy(0.0025 / connectivity, 0.05, 0.0).reduced();
+            assert_eq!(falls(&problem.gap, 0.5), falling, "{connectivity}");
+            assert!(!falls(&problem.gap, 0.024), "{connectivity}");
+        }
+        assert!(!falls(&wavy(0.0, 0.05, 0.0).reduced().gap, 0.5));
     }
 
     #[test]

@@ -19,6 +19,7 @@
 //! −k < dP/dδ < P_δ
 //! ```
 
+use super::admissible::Admissibility;
 use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::system::Matrix;
 use crate::continuation::{Linearization, Point, System, Vector};
@@ -187,6 +188,12 @@ impl Equilibrium {
         let [delta, force, s] = self.quantities(&point.y);
         let energy = self.basis.energy(&self.problem, s, delta);
         State { contact_radius: s, approach: delta, force, energy }
+    }
+
+    /// Whether the state of a point is admissible.
+    pub fn admissibility(&self, point: &Point) -> Admissibility {
+        let [delta, _, s] = self.quantities(&point.y);
+        Admissibility::of(&self.problem, self.basis.as_ref(), s, delta)
     }
 
     /// The slopes of the curve at a point.

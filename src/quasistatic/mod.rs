@@ -10,6 +10,7 @@
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
 //! | [`profile`] | one state across the radius: pressure inside, deformed gap outside |
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
+//! | [`overlap`] | where a curve or a path passes states that are not admissible |
 //! | [`unload`] | the whole unloading: snaps, pull-off, losses |
 //!
 //! All numbers are in reduced units.
@@ -20,6 +21,7 @@ pub mod energy;
 pub mod equilibrium;
 pub mod jump;
 pub mod landscape;
+pub mod overlap;
 pub mod profile;
 pub mod start;
 pub mod unload;
@@ -28,6 +30,7 @@ pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Limit, Turn};
 pub use equilibrium::{Equilibrium, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
+pub use overlap::Overlap;
 pub use profile::Profile;
 pub use start::StartError;
 pub use unload::{Event, EventKind, PathStop, Unloading};

@@ -93,6 +93,8 @@ pub struct Unloading {
     pub asked: Option<State>,
     /// The instabilities in order.
     pub events: Vec<Event>,
+    /// The stable pieces it follows, each from its largest contact radius to its smallest.
+    pub pieces: Vec<[f64; 2]>,
     /// Why it ended.
     pub stop: PathStop,
     /// The state of smallest force on the path.
@@ -182,6 +184,7 @@ pub fn unload_while(
 
     let mut path = Vec::new();
     let mut events = Vec::new();
+    let mut pieces = Vec::new();
     let stop = loop {
         let minimum = nodes.next_minimum(here.node + 1);
         let last = minimum.unwrap_or(nodes.points().len() - 1);
@@ -192,6 +195,8 @@ pub fn unload_while(
                 .take_while(|p| curve.equilibrium.contact_radius(p) >= end_radius * (1.0 - 1e-12))
                 .cloned(),
         );
+        let radius = |point: &Point| curve.equilibrium.contact_radius(point);
+        pieces.push([radius(&here.point), path.last().map_or(0.0, radius)]);
         let Some(limit) =
             minimum.filter(|&at| curve.equilibrium.contact_radius(&nodes.points()[at]) >= end_radius)
         else {
@@ -221,6 +226,8 @@ pub fn unload_while(
         match landing {
             None => break PathStop::PullOff,
             Some(landing) if curve.equilibrium.contact_radius(&landing.point) < end_radius => {
+                let s = curve.equilibrium.contact_radius(&landing.point);
+                pieces.push([s, s]);
                 path.push(landing.point);
                 break PathStop::End;
             }
@@ -231,7 +238,7 @@ pub fn unload_while(
         |of| least(curve, &nodes, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked_state.filter(|_| unstable_start);
-    Ok(Unloading { control, start, asked, events, stop, min_force, min_approach })
+    Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
 }
 
 /// Where the edge lands when it runs inward from the limit point at node `limit`; the curve is extended, and the
