@@ -3,8 +3,9 @@
 //! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
 //! they all see the same numbers.
 
-use crate::contact::{Control, Gap, Problem, Reduced, Start, Units};
+use crate::contact::{Control, Problem, Reduced, Start, Units};
 use crate::preset::{BasisSpec, Functions, Preset};
+use crate::quasistatic::admissible::falls;
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Unloading};
@@ -178,15 +179,14 @@ impl Case {
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings: Vec<String> =
-            self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string).collect();
-        if self.reduced.work_of_adhesion == 0.0 && self.reduced.gap.feature_length().is_some() {
-            warnings.push(
-                "without adhesion one connected disc is assumed, not checked: tension in it means nothing"
-                    .to_owned(),
-            );
-        }
-        warnings
+        self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string).collect()
+    }
+
+    /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
+    pub fn notes(&self, largest: f64) -> Vec<String> {
+        let text = "the gap falls within the contact: without adhesion it would not be one connected disc, and each state \
+                    shown is checked";
+        falls(&self.reduced.gap, largest).then(|| text.to_owned()).into_iter().collect()
     }
 
     fn no_start(&self) -> CaseError {

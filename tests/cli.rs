@@ -105,10 +105,10 @@ fn records(text: &str) -> Vec<Vec<String>> {
 
 const TRACE_HEADER: &str = "step,contact_radius,approach,force,energy,newton_iterations,\
                             stable_displacement,stable_force,stable_chosen,\
-                            contact_stiffness,tangent_stiffness,area_slope";
+                            contact_stiffness,tangent_stiffness,area_slope,admissible";
 const UNLOAD_HEADER: &str = "kind,control_value,before_contact_radius,before_approach,before_force,before_wave,\
                              after_contact_radius,after_approach,after_force,after_wave,dissipated,\
-                             dissipated_by_area,reason";
+                             dissipated_by_area,reason,admissible";
 /// A short case: rings enough for the few waves it crosses.
 const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.25"];
 
@@ -160,7 +160,8 @@ fn trace_writes_one_csv_row_per_point() {
         assert!(row[1..5].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
         assert!(row[5].parse::<u32>().is_ok());
         assert!(row[6..9].iter().all(|cell| cell == "true" || cell == "false"), "{row:?}");
-        assert!(row[9..].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
+        assert!(row[9..12].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
+        assert_eq!(row[12], "true");
     }
     // From the start to exactly the end.
     assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.25f64.to_bits());
@@ -178,10 +179,12 @@ fn trace_json_has_the_fields_of_the_contract() {
             "program_version",
             "problem",
             "warnings",
+            "notes",
             "stop",
             "curve_min_force",
             "curve_min_approach",
             "limit_points",
+            "inadmissible",
             "points"
         ]
     );
@@ -202,7 +205,8 @@ fn trace_json_has_the_fields_of_the_contract() {
             "stable",
             "contact_stiffness",
             "tangent_stiffness",
-            "area_slope"
+            "area_slope",
+            "admissible"
         ]
     );
     assert_eq!(keys(&first["stable"]), ["displacement", "force", "chosen"]);
@@ -280,7 +284,7 @@ fn theory_adds_the_exact_columns_behind_the_others() {
     }
     for (row, point) in records(&text).iter().zip(points) {
         let members = ["approach", "force", "energy", "relative_difference"];
-        for (cell, key) in row[12..].iter().zip(members) {
+        for (cell, key) in row[13..].iter().zip(members) {
             assert_eq!(
                 cell.parse::<f64>().unwrap().to_bits(),
                 number(point, &format!("/exact/{key}")).to_bits()
@@ -293,7 +297,7 @@ fn theory_adds_the_exact_columns_behind_the_others() {
     assert!(home.json(&short("trace", &[]))["points"][0].get("exact").is_none());
     for preset in ["fig-1-hertz", "fig-3-jkr"] {
         let rows = records(&home.quiet(&["trace", preset, "--theory"]));
-        assert!(rows.iter().all(|row| row[15].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
+        assert!(rows.iter().all(|row| row[16].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
     }
 }
 
@@ -326,12 +330,14 @@ fn unload_json_has_the_fields_of_the_contract() {
             "program_version",
             "problem",
             "warnings",
+            "notes",
             "stop",
             "control",
             "start",
             "min_force",
             "min_approach",
             "total_dissipated",
+            "inadmissible",
             "events"
         ]
     );
@@ -342,7 +348,16 @@ fn unload_json_has_the_fields_of_the_contract() {
     for event in events {
         assert_eq!(
             keys(event),
-            ["kind", "control_value", "before", "after", "dissipated", "dissipated_by_area", "reason"]
+            [
+                "kind",
+                "control_value",
+                "before",
+                "after",
+                "dissipated",
+                "dissipated_by_area",
+                "reason",
+                "admissible"
+            ]
         );
         assert_eq!(keys(&event["before"]), ["contact_radius", "approach", "force", "wave"]);
         let (drop, area) = (number(event, "/dissipated"), number(event, "/dissipated_by_area"));
@@ -488,13 +503,10 @@ fn without_adhesion_nothing_snaps_on_a_sphere() {
     assert!((number(&preload, "/start/force") - 0.1).abs() < 1e-12);
     // Nor on waves so shallow that the curve rises all the way.
     let shallow = ["--set", "material.work_of_adhesion=0", "--set", "gap.amplitude=0.0005"];
-    let shallow = [["unload", "fig-8", "--format", "json"].as_slice(), &shallow].concat();
-    let ended = home.run(&shallow);
-    assert_eq!(ended.status, 0);
-    // The connected disc is assumed there, which is said.
-    assert!(ended.err.contains("connected disc is assumed"), "{}", ended.err);
-    let wavy: Value = serde_json::from_str(&ended.out).unwrap();
+    // The gap rises throughout: the disc is connected, and nothing is to be said.
+    let wavy = home.json(&[["unload", "fig-8"].as_slice(), &shallow].concat());
     assert_eq!(events(&wavy).len(), 0);
+    assert_eq!((&wavy["notes"], &wavy["inadmissible"]), (&Value::Array(vec![]), &Value::Array(vec![])));
 }
 
 #[test]
@@ -682,6 +694,108 @@ fn a_curve_that_ends_is_no_pull_off() {
     // The radius it ends at, in the units of the preset.
     assert!(stop.contains("no equilibrium") && stop.contains("e-8"), "{stop}");
     assert!(ended.err.contains("stopped early") && ended.err.contains(stop), "{}", ended.err);
+}
+
+// ---- admissibility ----
+
+#[test]
+fn the_states_of_the_paper_are_all_possible() {
+    let home = Home::new();
+    for preset in ["fig-8", "fig-9"] {
+        let trace = home.json(&["trace", preset, "--strict"]);
+        assert_eq!(trace["inadmissible"], Value::Array(Vec::new()), "{preset}");
+        assert!(trace["points"].as_array().unwrap().iter().all(|point| point["admissible"] == true));
+        let unload = home.json(&["unload", preset, "--strict"]);
+        assert_eq!(unload["inadmissible"], Value::Array(Vec::new()), "{preset}");
+        assert!(events(&unload).iter().all(|event| event["admissible"] == true));
+    }
+    // The waves of Fig. 9 fall, which matters without adhesion only; those of Fig. 8 rise.
+    let notes = |preset: &str| home.json(&["unload", preset])["notes"].as_array().unwrap().len();
+    assert_eq!((notes("fig-8"), notes("fig-9"), notes("fig-3-jkr")), (0, 1, 0));
+    assert!(home.quiet(&["unload", "fig-9"]).contains("note: the gap falls within the contact"));
+}
+
+/// Fig. 9 with adhesion so weak that the next crest would touch.
+const WEAK: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=1e-4", "--set", "basis.kind=spectral"];
+/// Without adhesion, where the disc would have to pull.
+const BARE: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=0"];
+
+/// The result of a command with inadmissible states, which are said, and with `--strict` a status of their own.
+fn inadmissible(home: &Home, command: &str, of: &[&str], passes: &str) -> Value {
+    let run = |more: &[&str]| home.run(&[&[command], of, more].concat());
+    let ended = run(&["--format", "json"]);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    let count = document["inadmissible"].as_array().unwrap().len();
+    let told = format!("pulloff: warning: {passes} crosses {count} intervals of inadmissible states: s = ");
+    assert_eq!(ended.status, 0);
+    assert!(ended.err.starts_with(&told) && ended.err.lines().count() == 1, "{}", ended.err);
+    let strict = run(&["--format", "json", "--strict"]);
+    assert_eq!((strict.status, &strict.out), (3, &ended.out), "{}", strict.err);
+    assert!(strict.err.contains("--strict"), "{}", strict.err);
+    let mut outside = f64::INFINITY;
+    for interval in document["inadmissible"].as_array().unwrap() {
+        assert_eq!(
+            keys(interval),
+            ["from_contact_radius", "to_contact_radius", "crest_radius", "crest_wave"]
+        );
+        let [from, to] = ["/from_contact_radius", "/to_contact_radius"].map(|key| number(interval, key));
+        assert!(to < from && from < outside, "{interval}");
+        outside = to;
+    }
+    document
+}
+
+/// Whether the state of contact radius `s` is in one of the intervals of `document`.
+fn is_inside(document: &Value, s: f64) -> bool {
+    let of = |interval: &Value, key: &str| interval[key].as_f64().unwrap();
+    let holds = |i: &Value| of(i, "to_contact_radius") <= s && s <= of(i, "from_contact_radius");
+    document["inadmissible"].as_array().unwrap().iter().any(holds)
+}
+
+#[test]
+fn a_trace_says_where_the_next_crest_would_touch() {
+    let home = Home::new();
+    let document = inadmissible(&home, "trace", WEAK, "the curve");
+    for interval in document["inadmissible"].as_array().unwrap() {
+        let [from, crest] = ["/from_contact_radius", "/crest_radius"].map(|key| number(interval, key));
+        assert!(from < crest && crest < from + 0.05, "{interval}");
+        assert!((crest / 0.05 - number(interval, "/crest_wave")).abs() < 0.5, "{interval}");
+    }
+    let rows = records(&home.run(&[&["trace"], WEAK].concat()).out);
+    let mut seen = [0, 0];
+    for (point, row) in document["points"].as_array().unwrap().iter().zip(&rows) {
+        let admissible = !is_inside(&document, number(point, "/contact_radius"));
+        assert_eq!(point["admissible"], admissible);
+        assert_eq!(row[12], admissible.to_string());
+        seen[usize::from(admissible)] += 1;
+    }
+    // As many as the radii that were counted by themselves: about a quarter.
+    assert!(seen[0] > 10 && seen[1] > seen[0], "{seen:?}");
+    // The jumps of the unloading lead past them all.
+    let path = home.json(&[&["unload"], WEAK, &["--strict"]].concat());
+    assert_eq!(path["inadmissible"], Value::Array(Vec::new()));
+    assert!(events(&path).iter().all(|event| event["admissible"] == true));
+}
+
+#[test]
+fn an_unloading_marks_the_events_that_cannot_be() {
+    let home = Home::new();
+    let document = inadmissible(&home, "unload", BARE, "the path");
+    let run = |more: &[&str]| home.run(&[&["unload"], BARE, more].concat()).out;
+    let rows = records(&run(&["--format", "csv"]));
+    let mut marked = 0;
+    for (event, row) in events(&document).iter().zip(&rows) {
+        let landing = event.pointer("/after/contact_radius").and_then(Value::as_f64);
+        let touched = is_inside(&document, number(event, "/before/contact_radius"))
+            || landing.is_some_and(|s| is_inside(&document, s));
+        assert_eq!(event["admissible"], !touched);
+        assert_eq!(row[13], (!touched).to_string());
+        marked += usize::from(touched);
+    }
+    let table = run(&[]);
+    let lines = table.lines().filter(|line| line.contains(" snap ! ") || line.contains(" pull-off ! "));
+    assert!(marked > 0 && lines.count() == marked, "{table}");
+    assert!(table.contains("\n! limit point or landing inadmissible"), "{table}");
 }
 
 // ---- where it goes ----

@@ -40,6 +40,9 @@ pub enum Failure {
     /// Numbers that are not what theory says; the comparison was written.
     #[error("{0}")]
     Disagreement(String),
+    /// Inadmissible states where none are allowed; the result was written.
+    #[error("{0}")]
+    Inadmissible(String),
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),
@@ -66,6 +69,7 @@ impl Failure {
                 | CaseError::Basis(_)
                 | CaseError::Start(StartError::OutOfReach { .. } | StartError::NotReached { .. }),
             ) => 2,
+            Self::Inadmissible(_) => 3,
             _ => 1,
         })
     }

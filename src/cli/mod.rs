@@ -5,6 +5,7 @@
 //! | 0 | success |
 //! | 1 | the computation, or writing its result, failed |
 //! | 2 | bad usage or bad input |
+//! | 3 | with `--strict`: the result has inadmissible states |
 //!
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
@@ -20,6 +21,7 @@ mod verify;
 pub use failure::Failure;
 
 use crate::preset::{Loaded, Store};
+use crate::report::OverlapReport;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
@@ -107,6 +109,15 @@ pub fn run() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// With `--strict` a failure where the result, which has been written, has inadmissible states.
+fn admissible(strict: bool, overlaps: &[OverlapReport]) -> Result<ExitCode, Failure> {
+    if strict && !overlaps.is_empty() {
+        let text = "the result was written, but has inadmissible states, which --strict forbids";
+        return Err(Failure::Inadmissible(text.to_owned()));
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes warnings to standard error, one line each.

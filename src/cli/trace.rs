@@ -1,6 +1,6 @@
 //! `pulloff trace`: the equilibrium curve by arc-length continuation.
 
-use super::{Failure, Problem, output, warn};
+use super::{Failure, Problem, admissible, output, warn};
 use crate::quasistatic::CurveStop;
 use crate::report::{TraceReport, json};
 use crate::theory::Exact;
@@ -19,6 +19,9 @@ pub struct Arguments {
     /// Add the exact solution at the same contact radius, and the relative difference of the force
     #[arg(long)]
     theory: bool,
+    /// Exit with status 3 where a state is inadmissible: the next crest would already touch
+    #[arg(long)]
+    strict: bool,
     /// Write to this file instead of standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -43,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     output::write(&text, arguments.output.as_deref())?;
     if report.stop == CurveStop::End.to_string() {
-        return Ok(ExitCode::SUCCESS);
+        return admissible(arguments.strict, &report.inadmissible);
     }
     Err(Failure::Incomplete(format!(
         "the trace stopped early, its {} points were written: {}",

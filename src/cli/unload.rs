@@ -1,6 +1,6 @@
 //! `pulloff unload`: the quasi-static unloading, instability by instability.
 
-use super::{Failure, Problem, output, warn};
+use super::{Failure, Problem, admissible, output, warn};
 use crate::contact::Control;
 use crate::quasistatic::PathStop;
 use crate::report::{UnloadReport, json, table};
@@ -19,6 +19,9 @@ pub struct Arguments {
     /// table is for reading; csv has one row per instability; json has everything
     #[arg(long, value_enum, default_value = "table")]
     format: Format,
+    /// Exit with status 3 where a state is inadmissible: the next crest would already touch
+    #[arg(long)]
+    strict: bool,
     /// Write to this file instead of standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -47,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     output::write(&text, arguments.output.as_deref())?;
     if [PathStop::PullOff, PathStop::End].iter().any(|end| report.stop == end.to_string()) {
-        return Ok(ExitCode::SUCCESS);
+        return admissible(arguments.strict, report.inadmissible.as_deref().unwrap_or_default());
     }
     Err(Failure::Incomplete(format!(
         "the unloading stopped early, its {} events were written: {}",

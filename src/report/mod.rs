@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`number`] | how numbers are written for people |
 //! | [`problem`] | the problem that a trace and an unloading carry |
+//! | [`overlap`] | the states that are not admissible, as part of a document |
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`unload`] | the unloading as a document |
 //! | [`verify`] | our numbers against theory as a document |
@@ -14,6 +15,7 @@
 //! read the same documents.
 
 pub mod number;
+pub mod overlap;
 pub mod problem;
 pub mod rows;
 pub mod table;
@@ -21,6 +23,7 @@ pub mod trace;
 pub mod unload;
 pub mod verify;
 
+pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;
 pub use unload::UnloadReport;

@@ -45,6 +45,9 @@ pub fn unload(report: &UnloadReport) -> String {
     if let Some(note) = &start.note {
         let _ = writeln!(text, "note: {note}");
     }
+    for note in &report.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
     text.push('\n');
     if report.events.is_empty() {
         text.push_str("no instabilities\n");
@@ -54,6 +57,10 @@ pub fn unload(report: &UnloadReport) -> String {
     rows.extend(report.events.iter().enumerate().map(|(i, event)| row(i + 1, event)));
     if rows.len() > 1 {
         text.push_str(&aligned(&rows, 2));
+    }
+    if report.events.iter().any(|event| event.admissible == Some(false)) {
+        text.push_str("! limit point or landing inadmissible: the next crest would touch, or without adhesion the disc pull
+");
     }
     let _ = writeln!(
         text,
@@ -88,7 +95,7 @@ fn row(number: usize, event: &EventReport) -> Vec<String> {
     };
     vec![
         number.to_string(),
-        event.kind.to_owned(),
+        if event.admissible == Some(false) { format!("{} !", event.kind) } else { event.kind.to_owned() },
         significant(before.approach, 5),
         landed(|a| a.approach),
         significant(before.force, 5),

@@ -1,11 +1,13 @@
 //! The equilibrium curve as a document.
 
+use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
 use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::contact::Control;
 use crate::preset::Preset;
 use crate::quasistatic::Curve;
+use crate::quasistatic::overlap::overlaps;
 use crate::theory::{Equilibrium, Exact};
 use serde::Serialize;
 
@@ -20,6 +22,8 @@ pub struct TraceReport {
     pub problem: ProblemReport,
     /// What to be careful about.
     pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
     /// Why the trace ended, in words.
     pub stop: String,
     /// The smallest force on the curve.
@@ -28,6 +32,8 @@ pub struct TraceReport {
     pub curve_min_approach: Option<f64>,
     /// The limit points under displacement, force and the device, each from the start inward.
     pub limit_points: Vec<LimitReport>,
+    /// Where the curve is not admissible, from the start inward.
+    pub inadmissible: Vec<OverlapReport>,
     /// The points.
     pub points: Vec<PointReport>,
 }
@@ -55,6 +61,8 @@ pub struct PointReport {
     pub tangent_stiffness: Option<f64>,
     /// dA/dδ along the curve, A = πs², a length; null where it is infinite.
     pub area_slope: Option<f64>,
+    /// Whether the bodies stay apart outside the disc and, without adhesion, nothing pulls inside.
+    pub admissible: bool,
     /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExactReport>,
@@ -125,6 +133,7 @@ pub const COLUMNS: &[&str] = &[
     "contact_stiffness",
     "tangent_stiffness",
     "area_slope",
+    "admissible",
 ];
 
 /// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
@@ -165,6 +174,8 @@ impl TraceReport {
     pub fn new(preset: &Preset, case: &Case, curve: &Curve) -> Self {
         let units = case.units();
         let equilibrium = &curve.equilibrium;
+        let overlapping = overlaps(curve);
+        let inadmissible = OverlapReport::all(&overlapping, units);
         let points: Vec<PointReport> = curve
             .branch
             .points
@@ -190,6 +201,10 @@ impl TraceReport {
                     contact_stiffness: stiffness.contact,
                     tangent_stiffness: finite(stiffness.tangent),
                     area_slope: finite(stiffness.area_slope),
+                    admissible: {
+                        let s = equilibrium.contact_radius(point);
+                        !overlapping.iter().any(|overlap| overlap.contains(s))
+                    },
                     exact: None,
                 }
             })
@@ -218,11 +233,17 @@ impl TraceReport {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(preset, case),
-            warnings: case.warnings(curve.outermost()),
+            warnings: case
+                .warnings(curve.outermost())
+                .into_iter()
+                .chain(overlap::warning("the curve", &inadmissible))
+                .collect(),
+            notes: case.notes(curve.outermost()),
             stop: curve.stop.in_units(units).to_string(),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,
+            inadmissible,
             points,
         }
     }

@@ -1,6 +1,7 @@
 //! The unloading as a document.
 
 use super::number::significant;
+use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
 use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
@@ -8,7 +9,8 @@ use crate::contact::Control;
 use crate::contact::Gap;
 use crate::preset::Preset;
 use crate::quasistatic::equilibrium::wave_index;
-use crate::quasistatic::{Event, EventKind, State, Unloading};
+use crate::quasistatic::overlap::passed_while;
+use crate::quasistatic::{Event, EventKind, Overlap, State, Unloading};
 use serde::Serialize;
 
 /// A quasi-static unloading.
@@ -22,6 +24,8 @@ pub struct UnloadReport {
     pub problem: ProblemReport,
     /// What to be careful about.
     pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
     /// Why the path ended, in words.
     pub stop: String,
     /// What was controlled.
@@ -34,6 +38,9 @@ pub struct UnloadReport {
     pub min_approach: f64,
     /// The sum of the losses that are defined.
     pub total_dissipated: f64,
+    /// Where the path, its stable pieces and landings, is not admissible, from the start inward; null where that is
+    /// not known yet.
+    pub inadmissible: Option<Vec<OverlapReport>>,
     /// The instabilities in order.
     pub events: Vec<EventReport>,
 }
@@ -83,6 +90,8 @@ pub struct EventReport {
     pub dissipated_by_area: Option<f64>,
     /// Why it happens, or why no loss is given.
     pub reason: String,
+    /// Whether limit point and landing are admissible; null where that is not known yet.
+    pub admissible: Option<bool>,
 }
 
 /// The columns of the events as CSV; they never change, new ones come behind them.
@@ -100,6 +109,7 @@ pub const COLUMNS: &[&str] = &[
     "dissipated",
     "dissipated_by_area",
     "reason",
+    "admissible",
 ];
 
 impl UnloadReport {
@@ -111,10 +121,12 @@ impl UnloadReport {
         let case = Case::new(preset)?;
         let mut curve = case.sweep(|| true)?;
         let unloading = case.unload(&mut curve, case.control)?;
-        Ok(Self::new(preset, &case, &unloading))
+        let passed = passed_while(&curve.equilibrium, &unloading.pieces, &mut || true).unwrap_or_default();
+        Ok(Self::new(preset, &case, &unloading).checked(&case, &unloading, &passed))
     }
 
-    /// The document of an unloading of `case`.
+    /// The document of an unloading of `case`, whose admissibility is not known yet: to find it takes longer than all
+    /// the rest.
     pub fn new(preset: &Preset, case: &Case, unloading: &Unloading) -> Self {
         let units = case.units();
         let start = StateReport::new(case, &unloading.start);
@@ -139,18 +151,34 @@ impl UnloadReport {
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(preset, case),
             warnings: case.warnings(unloading.start.contact_radius.max(case.start)),
+            notes: case.notes(unloading.start.contact_radius.max(case.start)),
             stop: unloading.stop.in_units(units).to_string(),
             control: case.shown_control(unloading.control),
             start,
             min_force: unloading.min_force.in_units(units).force,
             min_approach: unloading.min_approach.in_units(units).approach,
             total_dissipated: unloading.total_dissipated() * units.energy,
+            inadmissible: None,
             events: unloading
                 .events
                 .iter()
                 .map(|event| EventReport::new(case, unloading.control, event))
                 .collect(),
         }
+    }
+
+    /// The same document with the inadmissible states that its path passes, reduced: those of
+    /// [`passed_while`] on the pieces of `unloading`.
+    #[must_use]
+    pub fn checked(mut self, case: &Case, unloading: &Unloading, passed: &[Overlap]) -> Self {
+        let holds = |state: &State| !passed.iter().any(|overlap| overlap.contains(state.contact_radius));
+        for (report, event) in self.events.iter_mut().zip(&unloading.events) {
+            report.admissible = Some(holds(&event.before) && event.after.as_ref().is_none_or(holds));
+        }
+        let inadmissible = OverlapReport::all(passed, case.units());
+        self.warnings.extend(overlap::warning("the path", &inadmissible));
+        self.inadmissible = Some(inadmissible);
+        self
     }
 
     /// The events as CSV.
@@ -184,6 +212,7 @@ impl EventReport {
             dissipated: event.dissipated.map(|loss| loss * units.energy),
             dissipated_by_area: event.dissipated_by_area.map(|loss| loss * units.energy),
             reason: reason(control, event).to_owned(),
+            admissible: None,
         }
     }
 }
