@@ -6,7 +6,7 @@ mod session;
 use pulloff::explorer::files::Document;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::{
-    Axes, Command, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
+    Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
 };
 use pulloff::preset::Source;
 use pulloff::quasistatic::EventKind;
@@ -342,6 +342,85 @@ fn a_problem_without_adhesion_or_waves_can_be_walked() {
     assert!(session.status().contains("end contact radius"), "{}", session.status());
     session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
     assert!(session.model.curve_error.is_none());
+}
+
+#[test]
+fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events() {
+    let mut session = Session::new("wavy-sphere");
+    assert!(session.model.curve.as_ref().unwrap().is_checked());
+    assert!(session.model.shown_inadmissible().is_empty());
+    let events = session.model.shown_events();
+    assert!(events.iter().all(|event| event.admissible == Some(true)));
+
+    let effects = update(
+        &mut session.model,
+        Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() },
+    );
+    // While a newer curve is on its way nothing is asked about the old one.
+    let [Effect::Curve(_)] = effects.as_slice() else { panic!("{effects:?}") };
+    let curve = session.driver.run(effects[0].clone()).unwrap();
+    let effects = answer(&mut session.model, curve);
+    // The curve is on the screen first.
+    assert!(!session.model.curve.as_ref().unwrap().is_checked() && !session.model.is_computing());
+    let (check, walk): (Vec<_>, Vec<_>) =
+        effects.into_iter().partition(|effect| matches!(effect, Effect::Check(_)));
+    session.driver.settle(&mut session.model, walk);
+    assert!(!session.model.curve.as_ref().unwrap().is_checked());
+    // A curve that is wanted meanwhile makes the answer void, and giving it up has it asked again.
+    let late = session.driver.run(check[0].clone()).unwrap();
+    update(&mut session.model, Command::Set { key: "gap.amplitude", text: "0.003".to_owned() });
+    answer(&mut session.model, late);
+    assert!(!session.model.curve.as_ref().unwrap().is_checked());
+    let effects = update(&mut session.model, Id::Cancel.into());
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Check(_))), "{effects:?}");
+    session.driver.settle(&mut session.model, effects);
+    session.does(Id::Undo);
+
+    let parts = session.model.shown_inadmissible().to_vec();
+    assert!(parts.len() > 3, "{parts:?}");
+    let mut last = f64::INFINITY;
+    for part in &parts {
+        let (from, to) = (part.report.from_contact_radius, part.report.to_contact_radius);
+        assert!(to < from && from < last && part.report.crest_radius.unwrap() > from, "{part:?}");
+        let ends = [part.places[0], *part.places.last().unwrap()].map(|[_, _, s]| s);
+        assert!((ends[0] / from - 1.0).abs() < 1e-12 && (ends[1] / to - 1.0).abs() < 1e-12);
+        last = to;
+    }
+    assert!(session.model.shown_events().iter().all(|event| event.admissible.is_some()));
+
+    // The log goes on to them, but they are no place to go to.
+    session.model.panel = Panel::Events;
+    let count = session.model.shown_events().len();
+    for _ in 0..50 {
+        session.does(Id::Down);
+    }
+    assert_eq!(session.model.event, count + parts.len() - 1);
+    let before = session.radius();
+    session.does(Id::Edit);
+    assert!(session.status().contains("crest would touch"), "{}", session.status());
+    assert!((session.radius() - before).abs() < f64::EPSILON);
+    session.does(Id::Events);
+    assert!(session.model.shown_inadmissible().is_empty());
+
+    // Another control keeps what is known of the curve.
+    session.does(Id::Control);
+    assert_eq!(session.model.events, EventSource::Walked);
+    session.does(Id::Events);
+    assert_eq!(session.model.shown_inadmissible(), parts);
+    // Where the walker is told so, the curve is drawn so.
+    let part = parts[0].report;
+    let mut told = [0, 0];
+    session.does(Id::Restart).does(Id::Halve).does(Id::Halve);
+    for _ in 0..150 {
+        session.does(Id::Step);
+        let node = session.model.walker().unwrap();
+        let inside = (part.to_contact_radius..=part.from_contact_radius).contains(&node.state.contact_radius);
+        if inside || node.state.contact_radius > part.from_contact_radius {
+            assert_eq!(node.admissibility.holds, !inside);
+            told[usize::from(inside)] += 1;
+        }
+    }
+    assert!(told[0] > 0 && told[1] > 0, "{told:?}");
 }
 
 #[test]

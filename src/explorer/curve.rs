@@ -3,15 +3,19 @@
 //! It comes in two parts. A [`Sweep`] belongs to the problem: the curve itself does not know what is controlled. A
 //! [`CurveData`] adds what belongs to the control: limit points, stability, events. Another control, or another
 //! stiffness of the device, needs the second part only.
+//!
+//! Which states are admissible takes longer than both, and is added to a curve that is on the screen already.
 
 use super::history::Setting;
 use super::model::same_curve;
 use super::theory::Theory;
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
+use crate::continuation::Point;
 use crate::preset::Preset;
-use crate::quasistatic::{Curve, Limit, Stiffness, Unloading};
-use crate::report::UnloadReport;
+use crate::quasistatic::overlap::{overlaps_while, passed_while};
+use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Stiffness, Unloading};
+use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
 /// One point of the curve in the user's units.
@@ -25,6 +29,15 @@ pub struct CurvePoint {
     pub contact_radius: f64,
     /// Stable under the chosen control.
     pub stable: bool,
+}
+
+/// Neighbouring states of the curve that are not admissible.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inadmissible {
+    /// Where, and at which crest.
+    pub report: OverlapReport,
+    /// δ, P and s of its states in the user's units, both ends included.
+    pub places: Vec<[f64; 3]>,
 }
 
 /// What belongs to the problem, whatever is controlled: the curve, swept once, and all that follows from it alone.
@@ -48,8 +61,14 @@ pub struct Sweep {
     pub stiffness: Option<Stiffness>,
     /// `P_c`; 0 without adhesion.
     pub critical_force: f64,
+    /// The admissibility of the start; `None` for an empty curve.
+    pub start: Option<Admissibility>,
+    /// Where the curve is not admissible, from the start inward; `None` until that has been looked at.
+    pub inadmissible: Option<Vec<Inadmissible>>,
     /// What to be careful about.
     pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
 }
 
 /// What the screen shows of a preset: the sweep of its problem, and what belongs to its control.
@@ -81,15 +100,19 @@ impl Sweep {
         let curve = case.sweep(go_on)?;
         let held =
             [Control::Displacement, Control::Force].map(|control| (control, curve.limit_points(control)));
+        let start = curve.branch.points.first().map(|point| curve.equilibrium.admissibility(point));
         Ok(Self {
             preset: preset.clone(),
             held,
+            start,
+            inadmissible: None,
             theory: Theory::of(&case),
             groups: Groups::of(&case.problem),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
             critical_force: case.smooth().pull_off_force(),
             warnings: case.warnings(curve.outermost()),
+            notes: case.notes(curve.outermost()),
             curve,
             case,
         })
@@ -98,6 +121,22 @@ impl Sweep {
     /// Whether it is the sweep of `preset`, whose control may be another.
     pub fn is_of(&self, preset: &Preset) -> bool {
         same_curve(&self.preset, preset)
+    }
+
+    /// An inadmissible part of the curve with its states.
+    fn part(&self, overlap: &Overlap, report: OverlapReport) -> Inadmissible {
+        let (equilibrium, units) = (&self.curve.equilibrium, self.case.units());
+        let between = |point: &&Point| {
+            let s = equilibrium.contact_radius(point);
+            overlap.to < s && s < overlap.from
+        };
+        let inner = self.curve.branch.points.iter().filter(between).cloned();
+        let [from, to] = [overlap.from, overlap.to].map(|s| equilibrium.explicit(s));
+        let place = |point: Point| {
+            let [delta, force, s] = equilibrium.quantities(&point.y);
+            [delta * units.length, force * units.force, s * units.length]
+        };
+        Inadmissible { report, places: from.into_iter().chain(inner).chain(to).map(place).collect() }
     }
 
     /// The limit points of `control` (reduced), from the start inward.
@@ -127,7 +166,7 @@ impl CurveData {
         let units = *sweep.case.units();
         let control = preset.path.control.in_units(units.stiffness);
         let case = Case { control, ..sweep.case.clone() };
-        let shown = |point: &crate::continuation::Point, control: Control| {
+        let shown = |point: &Point, control: Control| {
             let [delta, force, s] = curve.equilibrium.quantities(&point.y);
             CurvePoint {
                 approach: delta * units.length,
@@ -153,5 +192,29 @@ impl CurveData {
         let equilibrium = curve.equilibrium.clone();
         let setting = Arc::new(Setting { preset: preset.clone(), equilibrium, case });
         Ok(Self { sweep, setting, points, limits, other_limits, unloading, report })
+    }
+    /// Whether it is known which of its states, and of its path's, are admissible.
+    pub fn is_checked(&self) -> bool {
+        let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());
+        self.sweep.inadmissible.is_some() && path
+    }
+
+    /// The same curve with its inadmissible states and those of its path; `go_on` is asked before each state, `None`
+    /// when it said no.
+    #[must_use]
+    pub fn checked(&self, go_on: &mut dyn FnMut() -> bool) -> Option<Self> {
+        let mut sweep = Arc::clone(&self.sweep);
+        if sweep.inadmissible.is_none() {
+            let overlaps = overlaps_while(&sweep.curve, go_on)?;
+            let reports = OverlapReport::all(&overlaps, sweep.case.units());
+            let parts = overlaps.iter().zip(reports).map(|(overlap, report)| sweep.part(overlap, report));
+            sweep = Arc::new(Sweep { inadmissible: Some(parts.collect()), ..(*sweep).clone() });
+        }
+        let mut report = self.report.clone();
+        if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
+            let passed = passed_while(&sweep.curve.equilibrium, &unloading.pieces, go_on)?;
+            report = Some(unchecked.clone().checked(&self.setting.case, unloading, &passed));
+        }
+        Some(Self { sweep, report, ..self.clone() })
     }
 }

@@ -26,6 +26,8 @@ pub enum Effect {
     Curve(Box<Wish>),
     /// Give up the curves up to this number.
     StopCurve(u64),
+    /// Find which states of a curve are admissible; given up as soon as another curve is wanted.
+    Check(Check),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     /// Walk.
@@ -47,6 +49,15 @@ pub struct Wish {
     pub sweep: Option<Arc<Sweep>>,
 }
 
+/// A curve whose admissibility is wanted.
+#[derive(Debug, Clone)]
+pub struct Check {
+    /// The number.
+    pub id: u64,
+    /// The curve.
+    pub curve: Arc<CurveData>,
+}
+
 /// What came of it.
 #[derive(Debug, Clone)]
 pub enum Reply {
@@ -56,6 +67,13 @@ pub enum Reply {
         id: u64,
         /// The curve.
         result: Result<Arc<CurveData>, String>,
+    },
+    /// The same curve with what is not admissible on it.
+    Checked {
+        /// The number it was asked for under.
+        id: u64,
+        /// The curve.
+        curve: Arc<CurveData>,
     },
     /// The inside of a state.
     Profile(Arc<Inside>),
@@ -98,6 +116,7 @@ impl Inline {
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
             Effect::Curve(wish) => compute(&wish, || true),
+            Effect::Check(check) => check.run(|| true),
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -110,6 +129,13 @@ impl Inline {
             Effect::StopWalk(_) | Effect::StopCurve(_) => None,
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
+    }
+}
+
+impl Check {
+    fn run(&self, mut go_on: impl FnMut() -> bool) -> Option<Reply> {
+        let curve = self.curve.checked(&mut go_on)?;
+        Some(Reply::Checked { id: self.id, curve: Arc::new(curve) })
     }
 }
 
@@ -133,12 +159,19 @@ const CHUNK: Duration = Duration::from_millis(30);
 /// Runs effects on threads of their own; replies go to one function.
 #[derive(Debug)]
 pub struct Workers {
-    curve: Arc<Slot<Box<Wish>>>,
+    curve: Arc<Slot<Task>>,
     profile: Arc<Slot<Box<Ask>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     stopped: Arc<AtomicU64>,
     given_up: Arc<AtomicU64>,
+}
+
+/// What the curve lane does: a curve that waits takes the place of a check, which is asked for only when none does.
+#[derive(Debug)]
+enum Task {
+    Curve(Box<Wish>),
+    Check(Check),
 }
 
 /// One place for the newest wish.
@@ -210,7 +243,8 @@ impl Workers {
     pub fn submit(&self, effect: Effect) {
         // A lane that has ended took the process with it: there is nobody to tell.
         match effect {
-            Effect::Curve(wish) => self.curve.put(wish),
+            Effect::Curve(wish) => self.curve.put(Task::Curve(wish)),
+            Effect::Check(check) => self.curve.put(Task::Check(check)),
             Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Walk(request) => drop(self.walks.send(request)),
@@ -220,10 +254,19 @@ impl Workers {
     }
 }
 
-fn curves(slot: &Slot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
+fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
     let mut last: Option<Arc<Sweep>> = None;
     loop {
-        let mut wish = slot.take();
+        let mut wish = match slot.take() {
+            Task::Curve(wish) => wish,
+            Task::Check(check) => {
+                // Without patience: a knob that is turned further is not slowed.
+                if let Some(answer) = check.run(|| !slot.waiting.load(Ordering::Acquire)) {
+                    reply(answer);
+                }
+                continue;
+            }
+        };
         // A control changed while its problem was swept: the sweep is here, though nobody could know.
         let known = last.take_if(|sweep| wish.sweep.is_none() && sweep.is_of(&wish.preset));
         wish.sweep = wish.sweep.or(known);

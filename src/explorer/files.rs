@@ -198,6 +198,8 @@ pub struct WalkRow {
     pub amplitude: Option<f64>,
     /// λ when it was solved.
     pub wavelength: Option<f64>,
+    /// Whether it is admissible; nothing once the bodies are apart.
+    pub admissible: Option<bool>,
 }
 
 /// The columns of the walk as CSV.
@@ -220,6 +222,7 @@ pub const WALK_COLUMNS: &[&str] = &[
     "radius_of_curvature",
     "amplitude",
     "wavelength",
+    "admissible",
 ];
 
 impl WalkRow {
@@ -254,6 +257,7 @@ impl WalkRow {
             radius_of_curvature: case.problem.shape.radius_of_curvature(),
             amplitude: wave.map(|(a, _)| a),
             wavelength: wave.map(|(_, l)| l),
+            admissible: Some(node.admissibility.holds).filter(|_| !apart),
         }
     }
 }
@@ -278,6 +282,7 @@ struct Walked<'a, R> {
     program_version: &'static str,
     problem: ProblemReport,
     warnings: &'a [String],
+    notes: &'a [String],
     #[serde(skip_serializing_if = "<[R]>::is_empty")]
     points: &'a [R],
     #[serde(skip_serializing_if = "<[EventReport]>::is_empty")]
@@ -299,6 +304,7 @@ fn text(
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(&setting.preset, &setting.case),
             warnings: &curve.sweep.warnings,
+            notes: &curve.sweep.notes,
             points,
             events,
         })

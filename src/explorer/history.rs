@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::contact::Control;
 use crate::continuation::Point;
 use crate::preset::Preset;
-use crate::quasistatic::{Equilibrium, Event, Stability, State, Stiffness};
+use crate::quasistatic::{Admissibility, Equilibrium, Event, Stability, State, Stiffness};
 use std::sync::Arc;
 
 /// The problem a node was solved in: the parameters may change from node to node.
@@ -67,6 +67,8 @@ pub struct Node {
     pub stiffness: Stiffness,
     /// At a limit point of the control: where the jump leads, if that is known.
     pub ahead: Option<Ahead>,
+    /// Whether the state is admissible, and the nearest crest.
+    pub admissibility: Admissibility,
     /// Decimal digits the basis can be trusted for here.
     pub digits: f64,
     /// The relative difference of P from the exact solution at the same contact radius.

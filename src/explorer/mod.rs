@@ -41,8 +41,8 @@ pub mod view;
 pub mod walk;
 
 pub use command::{Command, Id};
-pub use curve::{CurveData, Sweep};
-pub use driver::{Effect, Inline, Reply, Wish, Workers};
+pub use curve::{CurveData, Inadmissible, Sweep};
+pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
 pub use model::{Axes, EventSource, Level, Model, Panel};
 pub use update::{answer, open, update};

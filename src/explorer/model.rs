@@ -1,6 +1,6 @@
 //! The state of a session, without terminals, keys or colours.
 
-use super::curve::CurveData;
+use super::curve::{CurveData, Inadmissible};
 use super::history::{History, Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
@@ -87,6 +87,8 @@ pub struct Model {
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
+    /// The number under which the admissibility of the curve was asked for, while it is.
+    pub checking: Option<u64>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -170,6 +172,7 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
+            checking: None,
             stiffness: None,
             device: None,
             history: History::default(),
@@ -295,11 +298,22 @@ impl Model {
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
         let event = |(number, node): (usize, &Node)| match &node.kind {
             NodeKind::Jump(event) => {
-                Some((number, EventReport::new(&node.setting.case, node.control, event)))
+                let mut report = EventReport::new(&node.setting.case, node.control, event);
+                let before = node.parent.and_then(|parent| self.history.nodes().get(parent));
+                let landed = node.is_apart() || node.admissibility.holds;
+                report.admissible = before.map(|before| before.admissibility.holds && landed);
+                Some((number, report))
             }
             _ => None,
         };
         self.history.path().into_iter().filter_map(event).collect()
+    }
+
+    /// The inadmissible parts of the curve, where the events shown are the curve's; they stand behind those.
+    pub fn shown_inadmissible(&self) -> &[Inadmissible] {
+        let sweep =
+            self.curve.as_ref().map(|curve| &curve.sweep).filter(|_| self.events == EventSource::Curve);
+        sweep.and_then(|sweep| sweep.inadmissible.as_deref()).unwrap_or_default()
     }
 
     /// The events of the source shown.

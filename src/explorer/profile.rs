@@ -37,7 +37,7 @@ impl Ask {
     /// Whether the answer to the one is the answer to the other.
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.setting, &other.setting)
-            && Arc::ptr_eq(&self.curve, &other.curve)
+            && Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
             && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
     }
 

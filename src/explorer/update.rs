@@ -26,7 +26,10 @@ use super::view::View;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
 use files::{export, file, file_done, save, save_back};
-use values::{adopt_parameters, change_control, curve_came, give_up, set, take_back, turn, want_curve};
+use values::{
+    adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, turn, want_check,
+    want_curve,
+};
 use walk::{restart, scale_length, stop, travel, walk, walked};
 use words::unavailable;
 
@@ -47,6 +50,7 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     model.message = None;
     let mut effects = obey(model, command);
     effects.extend(look::want_profile(model));
+    effects.extend(want_check(model));
     effects
 }
 
@@ -82,6 +86,10 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result),
         Reply::Walked { id, made, outcome } => walked(model, id, made, outcome),
+        Reply::Checked { id, curve } => {
+            checked(model, id, curve);
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -89,6 +97,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
         Reply::File(done) => file_done(model, *done),
     };
     effects.extend(look::want_profile(model));
+    effects.extend(want_check(model));
     effects
 }
 
@@ -171,7 +180,10 @@ fn move_selection(model: &mut Model, down: bool) {
     };
     match model.panel {
         Panel::Problem => model.parameter = moved(model.parameter, model.knobs().len()),
-        Panel::Events => model.event = moved(model.event, model.shown_events().len()),
+        Panel::Events => {
+            let lines = model.shown_events().len() + model.shown_inadmissible().len();
+            model.event = moved(model.event, lines);
+        }
         Panel::Walker | Panel::Charts => {}
     }
 }
@@ -191,7 +203,12 @@ fn select(model: &mut Model) -> Vec<Effect> {
     }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
-    let Some(event) = unloading.events.get(model.event) else { return Vec::new() };
+    let Some(event) = unloading.events.get(model.event) else {
+        if !model.shown_inadmissible().is_empty() {
+            tell(model, Level::Info, "no state to go to: the next crest would touch before");
+        }
+        return Vec::new();
+    };
     let away = |s: f64| (s - event.before.contact_radius).abs();
     let radius = |i: &usize| curve.sweep.curve.equilibrium.contact_radius(&curve.limits[*i].point);
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));

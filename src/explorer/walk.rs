@@ -12,7 +12,7 @@ use crate::quasistatic::curve::settings;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{Nodes, Run};
 use crate::quasistatic::unload::INWARD_REACH;
-use crate::quasistatic::{Equilibrium, Event, State, Stiffness};
+use crate::quasistatic::{Admissibility, Equilibrium, Event, State, Stiffness};
 use crate::ritz::{self, NewtonSettings};
 use crate::theory::Exact;
 use std::sync::Arc;
@@ -81,6 +81,8 @@ pub struct Made {
     pub stiffness: Stiffness,
     /// At a limit point: where the jump leads, if that is known.
     pub ahead: Option<Ahead>,
+    /// Whether the state is admissible, and the nearest crest.
+    pub admissibility: Admissibility,
     /// Decimal digits the basis can be trusted for there.
     pub digits: f64,
     /// The difference of P from the exact solution at the same contact radius, relative to its force scale.
@@ -147,6 +149,7 @@ fn made(request: &Request, kind: NodeKind, point: Point) -> Made {
     Made {
         setting: Arc::clone(&request.curve.setting),
         stiffness: equilibrium.stiffness(&point),
+        admissibility: equilibrium.admissibility(&point),
         ahead: if kind == NodeKind::Limit { ahead(request, &point) } else { None },
         digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
         from_exact: from_exact(request.case(), &state),

@@ -19,6 +19,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     theory(subject, scale, &mut figure);
     let pinned = pins(subject, &mut figure);
     figure.lines.extend(pieces(&subject.curve.points, &points));
+    inadmissible(subject, scale, &mut figure);
     limit_marks(subject, scale, &mut figure);
     device(subject, scale, &mut figure);
     walk(subject, scale, &mut figure);
@@ -54,6 +55,16 @@ pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
     }
     pieces.sort_by_key(|piece| piece.role);
     pieces
+}
+
+/// The inadmissible parts, over the curve: whether they are stable is still seen beneath.
+pub fn inadmissible(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+    let view = figure.view;
+    let lines = subject.curve.sweep.inadmissible.iter().flatten().map(|part| {
+        let points = part.places.iter().map(|at| scale.place(view, *at));
+        Line::new(Role::Inadmissible, "inadmissible", points.collect())
+    });
+    figure.lines.extend(lines);
 }
 
 /// The line of the loading device, where it is shown; it has no radius.

@@ -23,6 +23,8 @@ pub enum Role {
     Unstable,
     /// Equilibrium, stable under the control.
     Stable,
+    /// Equilibrium that cannot be: the next crest would already touch.
+    Inadmissible,
     /// A computed profile or landscape: pressure, deformed gap, potential.
     Body,
     /// The disc of contact.

@@ -72,6 +72,28 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
 }
 
 #[test]
+fn what_is_not_admissible_is_drawn_over_the_curve() {
+    let mut session = Session::new("wavy-sphere");
+    let drawn = |session: &Session, view| count(&session.figure(view), Role::Inadmissible);
+    assert_eq!(drawn(&session, View::ForceApproach), 0);
+    session.does(Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() });
+    let parts = session.model.shown_inadmissible().len();
+    for view in [View::ForceApproach, View::RadiusForce, View::RadiusApproach, View::Unloading] {
+        assert!(parts > 3 && drawn(&session, view) == parts, "{view:?} {parts}");
+    }
+    // Over the curve, from end to end.
+    let figure = session.figure(View::RadiusApproach);
+    let scale = Subject::of(&session.model).unwrap().scale();
+    let lines = figure.lines.iter().filter(|line| line.role == Role::Inadmissible);
+    for (line, part) in lines.zip(session.model.shown_inadmissible()) {
+        let s = |radius| scale.place(View::RadiusApproach, [0.0, 0.0, radius]).1;
+        let ends = [part.report.from_contact_radius, part.report.to_contact_radius].map(s);
+        assert!((line.points[0].1 - ends[0]).abs() < 1e-9 * ends[0]);
+        assert!((line.points.last().unwrap().1 - ends[1]).abs() < 1e-9 * ends[0]);
+    }
+}
+
+#[test]
 fn overlays_are_drawn_where_they_exist() {
     let mut session = Session::new("wavy-sphere");
     for overlay in [Overlay::Exact, Overlay::Envelope] {

@@ -6,7 +6,7 @@
 
 use super::Subject;
 use super::bounds::Bounds;
-use super::curves::place;
+use super::curves::{inadmissible, place};
 use super::parts::{Area, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::walk::{apart, events_before, quantities};
@@ -49,6 +49,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     if unloading.events.last().is_none_or(|event| event.after.is_some()) {
         figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, None)));
     }
+    inadmissible(subject, scale, &mut figure);
     figure.marks.extend(events_before(subject, scale, VIEW));
     let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
     let bounded = figure.areas.len() == unloading.events.len();

@@ -150,8 +150,8 @@ impl Chart {
         let x = inner.right().saturating_sub(title_width);
         buffer.set_stringn(x, below, title, usize::from(inner.width), theme.strong());
         for series in &self.series {
-            let Stroke::Lettered(letter) = series.stroke else { continue };
-            for (x, y) in letters(&series.points, &self.bounds, plot) {
+            let Some((letter, apart)) = series.stroke.letter() else { continue };
+            for (x, y) in letters(&series.points, &self.bounds, plot, apart) {
                 buffer.set_stringn(x, y, letter, 1, Style::new().fg(series.color));
             }
         }

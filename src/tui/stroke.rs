@@ -26,10 +26,13 @@ pub enum Stroke {
     LongDashed,
     /// Dots with this letter between.
     Lettered(&'static str),
+    /// This letter again and again, over what else is there.
+    Repeated(&'static str),
 }
 
-/// Letters of a curve are so far apart.
+/// Letters between dots are so far apart, and those alone.
 const LETTERS: f64 = 14.0;
+const REPEATED: f64 = 2.0;
 /// Beyond so many widths from the window lengths mean nothing.
 const FAR: f64 = 1e12;
 
@@ -41,9 +44,19 @@ impl Stroke {
             Self::Dotted => (0.75, [1.0, 1.0]),
             Self::Sparse => (2.5, [1.0, 1.0]),
             Self::Lettered(_) => (1.5, [1.0, 1.0]),
+            Self::Repeated(_) => (REPEATED, [1.0, 1.0]),
             Self::Dashed => (0.25, [3.5, 2.0]),
             Self::ShortDashed => (0.25, [2.0, 1.0]),
             Self::LongDashed => (0.25, [8.0, 6.0]),
+        }
+    }
+
+    /// The letter of a curve, and how far apart it stands.
+    pub fn letter(self) -> Option<(&'static str, f64)> {
+        match self {
+            Self::Lettered(letter) => Some((letter, LETTERS)),
+            Self::Repeated(letter) => Some((letter, REPEATED)),
+            _ => None,
         }
     }
 
@@ -54,7 +67,7 @@ impl Stroke {
         }
         Marker::Custom(match self {
             Self::Solid => 'o',
-            Self::Dotted | Self::Sparse | Self::Lettered(_) => '.',
+            Self::Dotted | Self::Sparse | Self::Lettered(_) | Self::Repeated(_) => '.',
             Self::Dashed => '-',
             Self::ShortDashed => ':',
             Self::LongDashed => '~',
@@ -109,9 +122,9 @@ pub fn spots(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, stroke: Stroke)
         .collect()
 }
 
-/// The cells in which the letters of a curve stand.
-pub fn letters(points: &[(f64, f64)], bounds: &Bounds, plot: Rect) -> Vec<(u16, u16)> {
-    along(points, bounds, plot, LETTERS)
+/// The cells in which the letters of a curve stand, so far apart.
+pub fn letters(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, apart: f64) -> Vec<(u16, u16)> {
+    along(points, bounds, plot, apart)
         .into_iter()
         .map(|(_, x, y)| {
             // Inside the window, whose sides are below 2^16.
@@ -141,7 +154,7 @@ mod tests {
             assert!(!a.is_empty() && a.len().abs_diff(b.len()) <= 1, "{stroke:?} {} {}", a.len(), b.len());
             assert!(a.iter().all(|spot| bounds.share(*spot).is_some()), "{stroke:?}");
         }
-        assert_eq!(letters(&coarse, &bounds, PLOT).len(), 4);
+        assert_eq!(letters(&coarse, &bounds, PLOT, LETTERS).len(), 4);
     }
 
     #[test]
@@ -150,6 +163,6 @@ mod tests {
         let line = [(0.0, 0.0), (1.0, 0.0), (f64::NAN, 0.0), (1e300, -1e300), (0.0, f64::INFINITY)];
         let spots = spots(&line, &deep, PLOT, Stroke::Dotted);
         assert!((60..=70).contains(&spots.len()), "{}", spots.len());
-        assert!(letters(&line[2..], &deep, PLOT).is_empty());
+        assert!(letters(&line[2..], &deep, PLOT, LETTERS).is_empty());
     }
 }

@@ -4,7 +4,7 @@ use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
 use crate::contact::Control;
 use crate::explorer::curve::CurveData;
-use crate::explorer::driver::{Effect, Wish};
+use crate::explorer::driver::{Check, Effect, Wish};
 use crate::explorer::history::NodeKind;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::nudge::{Amount, next_control, nudge};
@@ -59,7 +59,8 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
             model.curve_error = None;
             let first = model.history.current().is_none();
             model.curve = Some(Arc::clone(&curve));
-            model.event = model.event.min(model.shown_events().len().saturating_sub(1));
+            let lines = model.shown_events().len() + model.shown_inadmissible().len();
+            model.event = model.event.min(lines.saturating_sub(1));
             if first {
                 begin_walk(model, &curve);
                 return Vec::new();
@@ -71,6 +72,29 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
             let state = node.state.in_units(node.setting.case.units());
             walk(model, Action::Solve { state })
         }
+    }
+}
+
+/// Asks which states of the curve on the screen are admissible, once no newer curve is on its way.
+///
+/// A newer one drops the question with the curve; where it fails or is given up, it is asked again.
+pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
+    let curve = model.curve.as_ref().filter(|curve| !model.is_computing() && !curve.is_checked()).cloned();
+    let Some(curve) = curve else {
+        model.checking = None;
+        return None;
+    };
+    if model.checking.is_some() {
+        return None;
+    }
+    let id = number(model);
+    model.checking = Some(id);
+    Some(Effect::Check(Check { id, curve }))
+}
+
+pub(super) fn checked(model: &mut Model, id: u64, curve: Arc<CurveData>) {
+    if model.checking == Some(id) {
+        model.curve = Some(curve);
     }
 }
 

@@ -119,6 +119,7 @@ fn append(model: &mut Model, state: Made) {
         step,
         stiffness: state.stiffness,
         ahead: state.ahead,
+        admissibility: state.admissibility,
         digits: state.digits,
         from_exact: state.from_exact,
         begins: state.begins,
@@ -163,7 +164,7 @@ pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Eff
 
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
     let Some(point) = curve.sweep.curve.branch.points.first().cloned() else { return };
-    let Some(stiffness) = curve.sweep.stiffness else { return };
+    let (Some(stiffness), Some(admissibility)) = (curve.sweep.stiffness, curve.sweep.start) else { return };
     let state = curve.setting.equilibrium.state(&point);
     let control = curve.setting.case.control;
     model.history.push(Node {
@@ -176,6 +177,7 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         step: 0,
         stiffness,
         ahead: None,
+        admissibility,
         digits: curve.sweep.digits,
         from_exact: from_exact(&curve.setting.case, &state),
         begins: true,

@@ -100,6 +100,7 @@ pub fn look(role: Role) -> (Stroke, Color) {
         }
         Role::Unstable => (Stroke::Dotted, ink::UNSTABLE),
         Role::Stable => (Stroke::Solid, ink::STABLE),
+        Role::Inadmissible => (Stroke::Repeated("!"), ink::MARK),
         Role::Body => (Stroke::Solid, ink::BODY),
         Role::Contact | Role::Walk => (Stroke::Solid, ink::WALK),
         Role::Barrier => (Stroke::Dashed, ink::MARK),

@@ -1,7 +1,8 @@
-//! The instabilities, one line each.
+//! The instabilities, one line each, and behind those of the curve its inadmissible parts.
 
 use super::{is_selected, panel};
-use crate::explorer::{EventSource, Model, Panel};
+use crate::explorer::{EventSource, Inadmissible, Model, Panel};
+use crate::report::OverlapReport;
 use crate::report::number::{fixed, loss, significant};
 use crate::report::unload::EventReport;
 use crate::tui::app::App;
@@ -28,22 +29,30 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
     let wide = inner.width >= WIDE;
     frame.render_widget(Line::styled(theme.text(heads(wide)), theme.dim()), head);
-    if events.is_empty() {
+    let parts = model.shown_inadmissible();
+    if events.is_empty() && parts.is_empty() {
         frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
         return;
     }
     let critical = model.curve.as_ref().map_or(0.0, |curve| curve.sweep.critical_force);
     let rows = usize::from(body.height);
-    let first = (model.event + 1).saturating_sub(rows).min(events.len().saturating_sub(rows));
+    let count = events.len() + parts.len();
+    let first = (model.event + 1).saturating_sub(rows).min(count.saturating_sub(rows));
     let here = here(model, &events);
-    let hidden = events.len().saturating_sub(first + rows);
-    let lines: Vec<Line> = events
-        .iter()
+    let hidden = count.saturating_sub(first + rows);
+    let texts = events.iter().enumerate().map(|(i, event)| {
+        let mut text = row(i + 1, event, critical, wide);
+        if event.admissible == Some(false) {
+            text.push_str(" !");
+        }
+        text
+    });
+    let mut lines: Vec<Line> = texts
+        .chain(parts.iter().map(part))
         .enumerate()
         .skip(first)
         .take(rows)
-        .map(|(i, event)| {
-            let mut text = row(i + 1, event, critical, wide);
+        .map(|(i, mut text)| {
             if here == Some(i) {
                 text.push_str(" @");
             }
@@ -56,7 +65,18 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             Line::styled(format!("{mark}{}", theme.text(&text)), style)
         })
         .collect();
+    // Where there is room; the documents have it too.
+    let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);
+    let notes = notes.flat_map(|curve| &curve.sweep.notes);
+    lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
     frame.render_widget(Paragraph::new(lines), body);
+}
+
+/// An inadmissible part of the curve: no event, so it has no number.
+fn part(part: &Inadmissible) -> String {
+    let OverlapReport { crest_wave, .. } = part.report;
+    let wave = crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
+    format!(" ! inadmissible {}{wave}", part.report.text())
 }
 
 /// The event of the limit point on which the walker stands.

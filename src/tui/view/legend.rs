@@ -43,7 +43,12 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
 fn rank(role: Role) -> u8 {
     match role {
         Role::Pin(_) => 0,
-        Role::Exact | Role::Envelope | Role::Undeformed | Role::Barrier | Role::Device => 1,
+        Role::Inadmissible
+        | Role::Exact
+        | Role::Envelope
+        | Role::Undeformed
+        | Role::Barrier
+        | Role::Device => 1,
         Role::Smooth => 3,
         _ => 4,
     }
@@ -75,7 +80,7 @@ fn glyph(stroke: Stroke, theme: Theme) -> &'static str {
         Stroke::Dashed => theme.glyph("╌", "--"),
         Stroke::ShortDashed => theme.glyph("┅", "::"),
         Stroke::LongDashed => theme.glyph("━ ━", "~~"),
-        Stroke::Lettered(letter) => letter,
+        Stroke::Lettered(letter) | Stroke::Repeated(letter) => letter,
     }
 }
 

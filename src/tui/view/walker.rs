@@ -86,8 +86,9 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         Line::from(force),
         Line::from(radius),
         Line::from(stable),
-        Line::from([pair(theme, " step ", &short(model.length, 3)), pair(theme, "  ", way)].concat()),
     ];
+    lines.extend(inadmissible(theme, node));
+    lines.push(Line::from([pair(theme, " step ", &short(model.length, 3)), pair(theme, "  ", way)].concat()));
     let mut last = Vec::new();
     if let Some(crest) = wave_index(s, wave) {
         last.extend(pair(theme, " crest ", &crest.to_string()));
@@ -99,6 +100,18 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
     lines.extend(stiffness(theme, node));
     lines
+}
+
+/// Said of a state that cannot be: r of the crest that would touch, or where the disc would have to pull.
+fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
+    let found = node.admissibility;
+    let radius = match (found.holds, found.overlapping(), found.least_pressure) {
+        (true, ..) => return None,
+        (false, Some(crest), _) => crest.radius,
+        (false, None, pressure) => pressure?.0,
+    };
+    let radius = significant(radius * node.setting.case.units().length, 4);
+    Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
 /// `P_δ`, dP/dδ and dA/dδ.
