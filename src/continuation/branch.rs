@@ -7,11 +7,11 @@ use serde::Serialize;
 
 /// One solution on a branch.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct Point<const N: usize> {
     /// The unknowns, scaled.
-    pub y: Vector,
+    pub y: Vector<N>,
     /// Tangent, curvature and orientation.
-    pub frame: Frame,
+    pub frame: Frame<N>,
     /// Distance from the previous point (0 for the first).
     pub length: f64,
     /// Newton rounds spent on it.
@@ -20,22 +20,22 @@ pub struct Point {
     pub turning: f64,
 }
 
-impl Point {
+impl<const N: usize> Point<N> {
     /// A point from a linearized solution, its tangent along `forward`; `None` where the curve is singular.
-    pub fn new(y: Vector, linearization: &Linearization, forward: &Vector) -> Option<Self> {
+    pub fn new(y: Vector<N>, linearization: &Linearization<N>, forward: &Vector<N>) -> Option<Self> {
         let frame = frame(linearization, forward)?;
         Some(Self { y, frame, length: 0.0, rounds: 0, turning: 0.0 })
     }
 
     /// A point from a correction.
-    pub fn corrected(corrected: Corrected, forward: &Vector) -> Option<Self> {
+    pub fn corrected(corrected: &Corrected<N>, forward: &Vector<N>) -> Option<Self> {
         let mut point = Self::new(corrected.y, &corrected.linearization, forward)?;
         point.rounds = corrected.rounds;
         Some(point)
     }
 
     /// The slope of the control `row` along the branch, c·t: zero at its limit points.
-    pub fn slope(&self, row: &Vector) -> f64 {
+    pub fn slope(&self, row: &Vector<N>) -> f64 {
         row.dot(&self.frame.tangent)
     }
 
@@ -67,19 +67,19 @@ impl std::ops::AddAssign for Work {
 
 /// Solutions in order along a curve.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Branch {
+pub struct Branch<const N: usize> {
     /// The points.
-    pub points: Vec<Point>,
+    pub points: Vec<Point<N>>,
     /// What they have cost.
     pub work: Work,
 }
 
 /// The cubic Hermite interpolation of the curve between two points at `x` in 0..=1.
-pub fn hermite(from: &Point, to: &Point, x: f64) -> Vector {
-    let h = (&to.y - &from.y).norm();
+pub fn hermite<const N: usize>(from: &Point<N>, to: &Point<N>, x: f64) -> Vector<N> {
+    let h = (to.y - from.y).norm();
     let (a, b) = (1.0 - x, x);
-    &from.y * (a * a * (1.0 + 2.0 * b))
-        + &from.frame.tangent * (h * a * a * b)
-        + &to.y * (b * b * (1.0 + 2.0 * a))
-        - &to.frame.tangent * (h * a * b * b)
+    from.y * (a * a * (1.0 + 2.0 * b))
+        + from.frame.tangent * (h * a * a * b)
+        + to.y * (b * b * (1.0 + 2.0 * a))
+        - to.frame.tangent * (h * a * b * b)
 }

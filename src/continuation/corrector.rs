@@ -7,31 +7,32 @@
 //! plane    c·y − v = 0                   row cᵀ              the fallback, an end value, a control value
 //! ```
 
+use super::closed::Closed;
 use super::settings::Settings;
 use super::system::{Linearization, System, Vector};
 
 /// The equation that closes the system.
 #[derive(Debug, Clone)]
-pub enum Constraint {
+pub enum Constraint<const N: usize> {
     /// At distance `radius` from `centre`.
     Sphere {
         /// The point stepped from.
-        centre: Vector,
+        centre: Vector<N>,
         /// The step length.
         radius: f64,
     },
     /// On the plane `row`·y = `value`.
     Plane {
         /// c.
-        row: Vector,
+        row: Vector<N>,
         /// v.
         value: f64,
     },
 }
 
-impl Constraint {
+impl<const N: usize> Constraint<N> {
     /// Value, scale and row at `y`.
-    fn at(&self, y: &Vector) -> (f64, f64, Vector) {
+    fn at(&self, y: &Vector<N>) -> (f64, f64, Vector<N>) {
         match self {
             Self::Sphere { centre, radius } => {
                 let away = y - centre;
@@ -41,7 +42,7 @@ impl Constraint {
             Self::Plane { row, value } => {
                 // The parts that cancel in c·y − v set its rounding level.
                 let size = row.iter().zip(y.iter()).map(|(c, y)| (c * y).abs()).sum::<f64>() + value.abs();
-                (row.dot(y) - value, size.max(f64::MIN_POSITIVE), row.clone())
+                (row.dot(y) - value, size.max(f64::MIN_POSITIVE), *row)
             }
         }
     }
@@ -49,11 +50,11 @@ impl Constraint {
 
 /// A corrected point.
 #[derive(Debug, Clone)]
-pub struct Corrected {
+pub struct Corrected<const N: usize> {
     /// The solution.
-    pub y: Vector,
+    pub y: Vector<N>,
     /// The equations there.
-    pub linearization: Linearization,
+    pub linearization: Linearization<N>,
     /// Newton rounds used.
     pub rounds: usize,
     /// Length of the last correction.
@@ -97,12 +98,12 @@ pub enum CorrectorFailure {
 ///
 /// # Errors
 /// A [`CorrectorFailure`] with the round and the numbers; nothing is clamped on the way.
-pub fn correct(
-    system: &dyn System,
-    start: Vector,
-    constraint: &Constraint,
+pub fn correct<const N: usize>(
+    system: &dyn System<N>,
+    start: Vector<N>,
+    constraint: &Constraint<N>,
     settings: &Settings,
-) -> Result<Corrected, CorrectorFailure> {
+) -> Result<Corrected<N>, CorrectorFailure> {
     let mut y = start;
     let mut correction = f64::INFINITY;
     let mut residual = f64::INFINITY;
@@ -119,12 +120,7 @@ pub fn correct(
         if round == settings.rounds {
             break;
         }
-        let n = linearization.residual.len();
-        let mut right = Vector::zeros(n + 1);
-        right.rows_mut(0, n).copy_from(&-&linearization.residual);
-        right[n] = -value;
-        let delta =
-            linearization.bordered(&row).lu().solve(&right).ok_or(CorrectorFailure::Singular { round })?;
+        let delta = newton(&linearization, value, &row).ok_or(CorrectorFailure::Singular { round })?;
         let length = delta.norm();
         if !length.is_finite() {
             return Err(CorrectorFailure::Singular { round });
@@ -139,21 +135,27 @@ pub fn correct(
 }
 
 /// The Newton correction of the equations closed by a constraint of this value and row.
-fn newton(linearization: &Linearization, value: f64, row: &Vector) -> Option<Vector> {
-    let n = linearization.residual.len();
-    let mut right = Vector::zeros(n + 1);
-    right.rows_mut(0, n).copy_from(&-&linearization.residual);
-    right[n] = -value;
-    linearization.bordered(row).lu().solve(&right)
+fn newton<const N: usize>(
+    linearization: &Linearization<N>,
+    value: f64,
+    row: &Vector<N>,
+) -> Option<Vector<N>> {
+    let mut right = -linearization.residual;
+    right[N - 1] = -value;
+    Some(Closed::new(&linearization.jacobian, row)?.solve(&right))
 }
 
 /// One more round for a corrected point: quadratic convergence takes it from the tolerance to rounding.
 ///
 /// For landings and end states, whose small differences matter; a path's own points need none.
-pub fn polish(system: &dyn System, corrected: Corrected, constraint: &Constraint) -> Corrected {
+pub fn polish<const N: usize>(
+    system: &dyn System<N>,
+    corrected: Corrected<N>,
+    constraint: &Constraint<N>,
+) -> Corrected<N> {
     let (value, _, row) = constraint.at(&corrected.y);
     let polished = newton(&corrected.linearization, value, &row).and_then(|delta| {
-        let y = &corrected.y + &delta;
+        let y = corrected.y + delta;
         let linearization = system.linearize(&y).filter(Linearization::is_finite)?;
         let better = linearization.relative_residual() <= corrected.linearization.relative_residual();
         better.then(|| Corrected { y, linearization, correction: delta.norm(), ..corrected.clone() })

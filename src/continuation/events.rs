@@ -13,23 +13,23 @@ use super::system::{System, Vector};
 
 /// Two neighbouring points between which the slope of a control changes its sign.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bracket {
+pub struct Bracket<const N: usize> {
     /// The index of the branch point before it.
     pub index: usize,
     /// The point before.
-    pub from: Point,
+    pub from: Point<N>,
     /// The point after.
-    pub to: Point,
+    pub to: Point<N>,
 }
 
 /// All sign changes of the slope of `row` along `points`, in order.
-pub fn brackets(
-    system: &dyn System,
-    points: &[Point],
-    row: &Vector,
+pub fn brackets<const N: usize>(
+    system: &dyn System<N>,
+    points: &[Point<N>],
+    row: &Vector<N>,
     settings: &Settings,
     work: &mut Work,
-) -> Vec<Bracket> {
+) -> Vec<Bracket<N>> {
     let mut found = Vec::new();
     for (index, pair) in points.windows(2).enumerate() {
         let mut search = Search { system, row, settings, work: &mut *work, index, found: &mut found };
@@ -38,40 +38,40 @@ pub fn brackets(
     found
 }
 
-struct Search<'a> {
-    system: &'a dyn System,
-    row: &'a Vector,
+struct Search<'a, const N: usize> {
+    system: &'a dyn System<N>,
+    row: &'a Vector<N>,
     settings: &'a Settings,
     work: &'a mut Work,
     index: usize,
-    found: &'a mut Vec<Bracket>,
+    found: &'a mut Vec<Bracket<N>>,
 }
 
-impl Search<'_> {
-    fn piece(&mut self, from: &Point, to: &Point, depth: usize) {
+impl<const N: usize> Search<'_, N> {
+    fn piece(&mut self, from: &Point<N>, to: &Point<N>, depth: usize) {
         let (f0, f1) = (from.slope(self.row), to.slope(self.row));
         // A slope of exactly zero belongs to the piece that ends with it, so that it counts once.
         if (f0 > 0.0) != (f1 > 0.0) && f0 != 0.0 {
             self.found.push(Bracket { index: self.index, from: from.clone(), to: to.clone() });
             return;
         }
-        let length = (&to.y - &from.y).norm();
+        let length = (to.y - from.y).norm();
         if depth == 0 || length < self.settings.grazing_shortest {
             return;
         }
         let slopes = [from, to].map(|p| length * self.row.dot(&p.frame.curvature));
         let Some(x) = approach_to_zero([f0, f1], slopes, self.settings.grazing) else { return };
         let guess = hermite(from, to, x);
-        let across = &from.frame.tangent * (1.0 - x) + &to.frame.tangent * x;
+        let across = from.frame.tangent * (1.0 - x) + to.frame.tangent * x;
         let plane = Constraint::Plane { value: across.dot(&guess), row: across };
         let Ok(corrected) = correct(self.system, guess, &plane, self.settings) else { return };
         self.work.evaluations += corrected.rounds + 1;
-        let chord = &to.y - &from.y;
-        let Some(mut middle) = Point::corrected(corrected, &chord) else { return };
+        let chord = to.y - from.y;
+        let Some(mut middle) = Point::corrected(&corrected, &chord) else { return };
         if middle.frame.positive != from.frame.positive {
             middle = middle.reversed();
         }
-        let share = (&middle.y - &from.y).dot(&chord) / chord.norm_squared();
+        let share = (middle.y - from.y).dot(&chord) / chord.norm_squared();
         if share > 0.0 && share < 1.0 {
             self.piece(from, &middle, depth - 1);
             self.piece(&middle, to, depth - 1);
@@ -110,7 +110,7 @@ mod tests {
     fn a_pair_inside_one_step_is_found() {
         // Both folds of the cubic between two points whose p-slopes have the same sign.
         let points = [Cubic.point(-1.2), Cubic.point(1.2)];
-        let row = Vector::from_vec(vec![0.0, 1.0]);
+        let row = Vector::from([0.0, 1.0]);
         let found = brackets(&Cubic, &points, &row, &Settings::new(2), &mut Work::default());
         assert_eq!(found.len(), 2);
     }
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_monotone_piece_has_none() {
         let points = [Cubic.point(1.5), Cubic.point(2.0), Cubic.point(3.0)];
-        let row = Vector::from_vec(vec![0.0, 1.0]);
+        let row = Vector::from([0.0, 1.0]);
         assert!(brackets(&Cubic, &points, &row, &Settings::new(2), &mut Work::default()).is_empty());
     }
 

@@ -12,24 +12,20 @@ impl Cubic {
         u * u * u - 3.0 * u
     }
 
-    pub fn point(&self, u: f64) -> Point {
-        let y = Vector::from_vec(vec![u, Self::p(u)]);
-        Point::new(y.clone(), &self.linearize(&y).unwrap(), &Vector::from_vec(vec![1.0, 0.0])).unwrap()
+    pub fn point(&self, u: f64) -> Point<2> {
+        let y = Vector::from([u, Self::p(u)]);
+        Point::new(y, &self.linearize(&y).unwrap(), &Vector::from([1.0, 0.0])).unwrap()
     }
 }
 
-impl System for Cubic {
-    fn unknowns(&self) -> usize {
-        2
-    }
-
-    fn linearize(&self, y: &Vector) -> Option<Linearization> {
+impl System<2> for Cubic {
+    fn linearize(&self, y: &Vector<2>) -> Option<Linearization<2>> {
         let (u, p) = (y[0], y[1]);
         Some(Linearization {
-            residual: Vector::from_element(1, Self::p(u) - p),
-            scale: Vector::from_element(1, 1.0),
-            jacobian: Matrix::from_row_slice(1, 2, &[3.0 * u * u - 3.0, -1.0]),
-            second: vec![Matrix::from_row_slice(2, 2, &[6.0 * u, 0.0, 0.0, 0.0])],
+            residual: Vector::from([Self::p(u) - p, 0.0]),
+            scale: Vector::from([1.0, 0.0]),
+            jacobian: Matrix::<2>::new(3.0 * u * u - 3.0, -1.0, 0.0, 0.0),
+            second: [Matrix::<2>::new(6.0 * u, 0.0, 0.0, 0.0), Matrix::zeros()],
         })
     }
 }
@@ -39,24 +35,20 @@ impl System for Cubic {
 pub struct Circle;
 
 impl Circle {
-    pub fn point(&self, angle: f64) -> Point {
-        let y = Vector::from_vec(vec![angle.cos(), angle.sin()]);
-        let on = Vector::from_vec(vec![-angle.sin(), angle.cos()]);
-        Point::new(y.clone(), &self.linearize(&y).unwrap(), &on).unwrap()
+    pub fn point(&self, angle: f64) -> Point<2> {
+        let y = Vector::from([angle.cos(), angle.sin()]);
+        let on = Vector::from([-angle.sin(), angle.cos()]);
+        Point::new(y, &self.linearize(&y).unwrap(), &on).unwrap()
     }
 }
 
-impl System for Circle {
-    fn unknowns(&self) -> usize {
-        2
-    }
-
-    fn linearize(&self, y: &Vector) -> Option<Linearization> {
+impl System<2> for Circle {
+    fn linearize(&self, y: &Vector<2>) -> Option<Linearization<2>> {
         Some(Linearization {
-            residual: Vector::from_element(1, y.norm_squared() - 1.0),
-            scale: Vector::from_element(1, 1.0),
-            jacobian: Matrix::from_row_slice(1, 2, &[2.0 * y[0], 2.0 * y[1]]),
-            second: vec![Matrix::identity(2, 2) * 2.0],
+            residual: Vector::from([y.norm_squared() - 1.0, 0.0]),
+            scale: Vector::from([1.0, 0.0]),
+            jacobian: Matrix::<2>::new(2.0 * y[0], 2.0 * y[1], 0.0, 0.0),
+            second: [Matrix::identity() * 2.0, Matrix::zeros()],
         })
     }
 }

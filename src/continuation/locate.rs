@@ -1,28 +1,30 @@
 //! Guarded Newton on a limit point, or on a control value, inside its bracket.
 //!
-//! At a limit point of the control c the matrix M = (J; cᵀ) is singular. With borders b, d
+//! With the matrix M = (J; dᵀ) closed by a row d along the curve, v and w from
 //!
 //! ```text
-//! [M b; dᵀ 0] (v, ψ) = (0, 1),     [M b; dᵀ 0]ᵀ (w, ψ) = (0, 1)
+//! M v = (0, 1),     Mᵀ w = c        φ = c·v,     φ_y[z] = −w_gᵀ g_yy[v, z]
 //! ```
 //!
-//! ψ vanishes exactly there and `ψ_y[z] = −w_gᵀ g_yy[v, z]` because c is constant (W. Govaerts, Numerical
-//! Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, doi:10.1137/1.9780898719543, ch. 3). Newton on
-//! (g, ψ) converges quadratically; the guard keeps it inside the bracket, which is halved otherwise.
+//! v is a tangent of length about one, so φ is the slope of the control c along the curve and vanishes at its limit
+//! points, where M, unlike (J; cᵀ), is regular (W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
+//! SIAM 2000, doi:10.1137/1.9780898719543, ch. 3, on such test functions). Newton on (g, φ) converges quadratically; the
+//! guard keeps it inside the bracket, which is halved otherwise.
 
 use super::branch::{Point, Work, hermite};
+use super::closed::Closed;
 use super::corrector::{Constraint, correct, polish};
 use super::events::Bracket;
 use super::settings::Settings;
-use super::system::{Linearization, Matrix, System, Vector};
+use super::system::{Linearization, System, Vector};
 
 /// A located limit point of a control.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LimitPoint {
+pub struct LimitPoint<const N: usize> {
     /// The branch point before it.
     pub index: usize,
     /// The point.
-    pub point: Point,
+    pub point: Point<N>,
     /// Length of the last correction: the error of the state.
     pub correction: f64,
     /// c·k there: positive for a minimum of the control along the branch, negative for a maximum, near
@@ -33,18 +35,18 @@ pub struct LimitPoint {
 /// Locates the limit point of the control `row` inside `bracket`, to rounding.
 ///
 /// `None` when not even halving finds it, which a smooth curve does not do.
-pub fn limit_point(
-    system: &dyn System,
-    bracket: &Bracket,
-    row: &Vector,
+pub fn limit_point<const N: usize>(
+    system: &dyn System<N>,
+    bracket: &Bracket<N>,
+    row: &Vector<N>,
     settings: &Settings,
     work: &mut Work,
-) -> Option<LimitPoint> {
+) -> Option<LimitPoint<N>> {
     let (mut from, mut to) = (bracket.from.clone(), bracket.to.clone());
     for _ in 0..settings.locate_rounds {
         let x = root_of_slope(&from, &to, row);
         if let Some((y, lin, correction)) = newton(system, &from, &to, x, row, settings, work) {
-            let point = Point::new(y, &lin, &(&to.y - &from.y))?;
+            let point = Point::new(y, &lin, &(to.y - from.y))?;
             let bend = row.dot(&point.frame.curvature);
             return Some(LimitPoint { index: bracket.index, point, correction, bend });
         }
@@ -61,17 +63,17 @@ pub fn limit_point(
 /// The point between two neighbours at which the control `row` takes `value`, to rounding.
 ///
 /// The control must differ from `value` in sign at the two; `None` when not even halving finds it.
-pub fn control_value(
-    system: &dyn System,
-    from: &Point,
-    to: &Point,
-    row: &Vector,
+pub fn control_value<const N: usize>(
+    system: &dyn System<N>,
+    from: &Point<N>,
+    to: &Point<N>,
+    row: &Vector<N>,
     value: f64,
     settings: &Settings,
     work: &mut Work,
-) -> Option<Point> {
+) -> Option<Point<N>> {
     let (mut from, mut to) = (from.clone(), to.clone());
-    let miss = |p: &Point| row.dot(&p.y) - value;
+    let miss = |p: &Point<N>| row.dot(&p.y) - value;
     for _ in 0..settings.locate_rounds {
         let (a, b) = (miss(&from), miss(&to));
         if a == 0.0 {
@@ -81,14 +83,14 @@ pub fn control_value(
             return Some(to);
         }
         let x = (a / (a - b)).clamp(0.02, 0.98);
-        let plane = Constraint::Plane { row: row.clone(), value };
-        let chord = &to.y - &from.y;
+        let plane = Constraint::Plane { row: *row, value };
+        let chord = to.y - from.y;
         if let Ok(corrected) = correct(system, hermite(&from, &to, x), &plane, settings) {
             work.evaluations += corrected.rounds + 1;
-            let share = (&corrected.y - &from.y).dot(&chord) / chord.norm_squared();
+            let share = (corrected.y - from.y).dot(&chord) / chord.norm_squared();
             if (0.0..=1.0).contains(&share) {
                 work.evaluations += 1;
-                return Point::corrected(polish(system, corrected, &plane), &chord);
+                return Point::corrected(&polish(system, corrected, &plane), &chord);
             }
         }
         let middle = near(system, &from, &to, x, settings, work)?;
@@ -102,34 +104,34 @@ pub fn control_value(
 }
 
 /// The point of the curve on the plane across the chord at share `x`.
-pub fn between(
-    system: &dyn System,
-    from: &Point,
-    to: &Point,
+pub fn between<const N: usize>(
+    system: &dyn System<N>,
+    from: &Point<N>,
+    to: &Point<N>,
     x: f64,
     settings: &Settings,
     work: &mut Work,
-) -> Option<Point> {
+) -> Option<Point<N>> {
     let guess = hermite(from, to, x);
-    let chord = &to.y - &from.y;
-    let plane = Constraint::Plane { row: chord.clone(), value: chord.dot(&guess) };
+    let chord = to.y - from.y;
+    let plane = Constraint::Plane { row: chord, value: chord.dot(&guess) };
     let corrected = correct(system, guess, &plane, settings).ok()?;
     work.evaluations += corrected.rounds + 1;
-    Point::corrected(corrected, &chord)
+    Point::corrected(&corrected, &chord)
 }
 
 /// A point of the curve inside the piece, at share `x` if it can be had, nearer to an end otherwise.
 ///
 /// The interpolation is best near the ends. Under weak adhesion its error in the middle of a long piece can exceed
 /// the whole adhesion term, and the equations are not defined there.
-fn near(
-    system: &dyn System,
-    from: &Point,
-    to: &Point,
+fn near<const N: usize>(
+    system: &dyn System<N>,
+    from: &Point<N>,
+    to: &Point<N>,
     x: f64,
     settings: &Settings,
     work: &mut Work,
-) -> Option<Point> {
+) -> Option<Point<N>> {
     [1.0, 0.5, 0.2, 0.05, 0.01]
         .into_iter()
         .flat_map(|share| [x * share, 1.0 - (1.0 - x) * share])
@@ -137,8 +139,8 @@ fn near(
 }
 
 /// Where the cubic of the slope of `row` between two points vanishes, as a share of the piece.
-fn root_of_slope(from: &Point, to: &Point, row: &Vector) -> f64 {
-    let length = (&to.y - &from.y).norm();
+fn root_of_slope<const N: usize>(from: &Point<N>, to: &Point<N>, row: &Vector<N>) -> f64 {
+    let length = (to.y - from.y).norm();
     let (f0, f1) = (from.slope(row), to.slope(row));
     let (d0, d1) = (length * row.dot(&from.frame.curvature), length * row.dot(&to.frame.curvature));
     let a = 2.0 * (f0 - f1) + d0 + d1;
@@ -154,58 +156,35 @@ fn root_of_slope(from: &Point, to: &Point, row: &Vector) -> f64 {
 }
 
 /// Newton on (g, ψ) from the Hermite point at share `x`, guarded by the bracket.
-fn newton(
-    system: &dyn System,
-    from: &Point,
-    to: &Point,
+fn newton<const N: usize>(
+    system: &dyn System<N>,
+    from: &Point<N>,
+    to: &Point<N>,
     x: f64,
-    row: &Vector,
+    row: &Vector<N>,
     settings: &Settings,
     work: &mut Work,
-) -> Option<(Vector, Linearization, f64)> {
-    let chord = &to.y - &from.y;
+) -> Option<(Vector<N>, Linearization<N>, f64)> {
+    let chord = to.y - from.y;
     let length = chord.norm();
     let mut y = hermite(from, to, x);
-    let mut right_null = (&from.frame.tangent * (1.0 - x) + &to.frame.tangent * x).normalize();
-    let mut left_null: Option<Vector> = None;
+    let mut along = (from.frame.tangent * (1.0 - x) + to.frame.tangent * x).normalize();
     let mut last = f64::INFINITY;
     for _ in 0..settings.rounds {
         let lin = system.linearize(&y).filter(Linearization::is_finite)?;
         work.evaluations += 1;
-        let m = lin.bordered(row);
-        let size = m.nrows();
-        let left = left_null.take().or_else(|| {
-            // The left null vector guess: the smallest left singular vector.
-            let svd = m.clone().svd(true, false);
-            let smallest = svd.singular_values.imin();
-            svd.u.map(|u| u.column(smallest).into_owned())
-        })?;
-        let mut bordered = Matrix::zeros(size + 1, size + 1);
-        bordered.view_mut((0, 0), (size, size)).copy_from(&m);
-        bordered.view_mut((0, size), (size, 1)).copy_from(&left);
-        bordered.view_mut((size, 0), (1, size)).copy_from(&right_null.transpose());
-        let mut unit = Vector::zeros(size + 1);
-        unit[size] = 1.0;
-        let v = bordered.clone().lu().solve(&unit)?;
-        let w = bordered.transpose().lu().solve(&unit)?;
-        let psi = v[size];
-        let v = v.rows(0, size).into_owned();
-        let w = w.rows(0, size).into_owned();
-        // ψ_y = −Σ_i w_i g_i,yy v over the n equations; the control row has no second derivative.
-        let mut gradient = Vector::zeros(size);
-        for (i, hessian) in lin.second.iter().enumerate() {
-            gradient -= hessian * &v * w[i];
-        }
-        let mut rhs = Vector::zeros(size);
-        rhs.rows_mut(0, size - 1).copy_from(&-&lin.residual);
-        rhs[size - 1] = -psi;
-        let correction = lin.bordered(&gradient).lu().solve(&rhs)?;
+        let closed = Closed::new(&lin.jacobian, &along)?;
+        let v = closed.null_vector();
+        let gradient = -lin.contracted(&closed.solve_transposed(row), &v);
+        let mut right = -lin.residual;
+        right[N - 1] = -row.dot(&v);
+        let correction = Closed::new(&lin.jacobian, &gradient)?.solve(&right);
         let moved = correction.norm();
         if moved.is_nan() || moved > length {
             return None;
         }
         y += correction;
-        let share = (&y - &from.y).dot(&chord) / (length * length);
+        let share = (y - from.y).dot(&chord) / (length * length);
         if !(0.0..=1.0).contains(&share) {
             return None;
         }
@@ -219,8 +198,7 @@ fn newton(
             return (lin.relative_residual() <= settings.tolerance).then_some((y, lin, moved));
         }
         last = moved;
-        right_null = v.normalize();
-        left_null = Some(w.normalize());
+        along = v.normalize();
     }
     None
 }
@@ -232,7 +210,7 @@ mod tests {
 
     #[test]
     fn the_folds_of_the_cubic_to_rounding() {
-        let row = Vector::from_vec(vec![0.0, 1.0]);
+        let row = Vector::from([0.0, 1.0]);
         for (a, b, u, p) in [(-1.4, -0.7, -1.0, 2.0), (0.5, 1.9, 1.0, -2.0), (0.999_999, 1.9, 1.0, -2.0)] {
             let bracket = Bracket { index: 0, from: Cubic.point(a), to: Cubic.point(b) };
             let mut work = Work::default();
@@ -246,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_control_value_inside_its_bracket() {
-        let row = Vector::from_vec(vec![0.0, 1.0]);
+        let row = Vector::from([0.0, 1.0]);
         let (from, to) = (Cubic.point(1.2), Cubic.point(2.5));
         let found =
             control_value(&Cubic, &from, &to, &row, 3.0, &Settings::new(2), &mut Work::default()).unwrap();

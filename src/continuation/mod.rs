@@ -1,11 +1,12 @@
 //! Following a curve of solutions, and what is special on it. Knows no contact.
 //!
-//! n equations g(y) = 0 in n + 1 unknowns define a curve. The caller scales its unknowns so that a unit
+//! N − 1 equations g(y) = 0 in N unknowns define a curve. The caller scales its unknowns so that a unit
 //! change of any of them matters equally: every length, angle and step here is Euclidean in y.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`system`] | the equations with exact first and second derivatives |
+//! | [`closed`] | the equations closed by one more: a square system, factored |
 //! | [`settings`] | every number of this module, with its reason |
 //! | [`tangent`] | tangent, curvature and the orientation sign |
 //! | [`corrector`] | Newton-Raphson on the sphere, on a plane, or at a control value |
@@ -21,6 +22,7 @@
 //! unit tangent t. All controls share one branch.
 
 pub mod branch;
+pub mod closed;
 pub mod corrector;
 pub mod events;
 pub mod locate;

@@ -4,7 +4,7 @@ use super::branch::{Point, Work};
 use super::corrector::{Constraint, Corrected, CorrectorFailure, correct};
 use super::settings::Settings;
 use super::step_size;
-use super::system::System;
+use super::system::{System, Vector};
 
 /// Walks a curve step by step; failures leave its caller's points untouched.
 #[derive(Debug, Clone)]
@@ -55,7 +55,11 @@ impl Stepper {
     ///
     /// # Errors
     /// [`StepFailure`] when even the shortest step is not accepted.
-    pub fn step(&mut self, system: &dyn System, from: &Point) -> Result<Point, StepFailure> {
+    pub fn step<const N: usize>(
+        &mut self,
+        system: &dyn System<N>,
+        from: &Point<N>,
+    ) -> Result<Point<N>, StepFailure> {
         let shortest = self.settings.shortest;
         let mut rejected = false;
         let mut length = self.length.min(step_size::longest(from, &self.settings)).max(shortest);
@@ -93,24 +97,29 @@ impl Stepper {
     }
 
     /// Corrects the prediction at `length` and judges it.
-    fn attempt(&mut self, system: &dyn System, from: &Point, length: f64) -> Result<Point, Rejected> {
+    fn attempt<const N: usize>(
+        &mut self,
+        system: &dyn System<N>,
+        from: &Point<N>,
+        length: f64,
+    ) -> Result<Point<N>, Rejected> {
         let tangent = &from.frame.tangent;
-        let guess = &from.y + tangent * length;
-        let sphere = Constraint::Sphere { centre: from.y.clone(), radius: length };
-        let ahead = |c: &Corrected| (&c.y - &from.y).dot(tangent) > 0.0;
-        let mut corrected = self.correct(system, guess.clone(), &sphere).map_err(Rejected::Corrector)?;
+        let guess = from.y + tangent * length;
+        let sphere = Constraint::Sphere { centre: from.y, radius: length };
+        let ahead = |c: &Corrected<N>| (c.y - from.y).dot(tangent) > 0.0;
+        let mut corrected = self.correct(system, guess, &sphere).map_err(Rejected::Corrector)?;
         if !ahead(&corrected) {
             // The sphere cuts the curve behind us as well; the plane across the tangent does not.
             let value = tangent.dot(&guess);
-            let plane = Constraint::Plane { row: tangent.clone(), value };
+            let plane = Constraint::Plane { row: *tangent, value };
             corrected = self.correct(system, guess, &plane).map_err(Rejected::Corrector)?;
             if !ahead(&corrected) {
                 return Err(Rejected::Backwards);
             }
         }
-        let forward = &corrected.y - &from.y;
+        let forward = corrected.y - from.y;
         let length = forward.norm();
-        let point = Point::corrected(corrected, tangent)
+        let point = Point::corrected(&corrected, tangent)
             .map(|mut point| {
                 // The determinant decides which way is on; the old tangent only starts the guess.
                 if point.frame.positive != from.frame.positive {
@@ -135,12 +144,12 @@ impl Stepper {
         Ok(point)
     }
 
-    fn correct(
+    fn correct<const N: usize>(
         &mut self,
-        system: &dyn System,
-        guess: super::system::Vector,
-        constraint: &Constraint,
-    ) -> Result<Corrected, CorrectorFailure> {
+        system: &dyn System<N>,
+        guess: Vector<N>,
+        constraint: &Constraint<N>,
+    ) -> Result<Corrected<N>, CorrectorFailure> {
         let result = correct(system, guess, constraint, &self.settings);
         self.work.evaluations += match &result {
             Ok(corrected) => corrected.rounds + 1,

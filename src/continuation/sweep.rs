@@ -11,12 +11,12 @@ use super::system::{Linearization, Vector};
 ///
 /// `forward` is the direction in which the branch runs at its first point. The sweep ends early,
 /// keeping what it has, when `explicit` has no further point or `go_on` says no.
-pub fn sweep<P>(
+pub fn sweep<P, const N: usize>(
     parameters: impl IntoIterator<Item = P>,
-    mut explicit: impl FnMut(P) -> Option<(Vector, Linearization)>,
-    forward: &Vector,
-    mut go_on: impl FnMut(&Branch) -> bool,
-) -> Branch {
+    mut explicit: impl FnMut(P) -> Option<(Vector<N>, Linearization<N>)>,
+    forward: &Vector<N>,
+    mut go_on: impl FnMut(&Branch<N>) -> bool,
+) -> Branch<N> {
     let mut branch = Branch { points: Vec::new(), work: Work::default() };
     for parameter in parameters {
         if !go_on(&branch) {
@@ -29,7 +29,7 @@ pub fn sweep<P>(
             if point.frame.positive != last.frame.positive {
                 point = point.reversed();
             }
-            point.length = (&point.y - &last.y).norm();
+            point.length = (point.y - last.y).norm();
             point.turning = step_size::turning(last, &point);
         }
         branch.points.push(point);

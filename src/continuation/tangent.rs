@@ -8,15 +8,16 @@
 //! The sign of det(J; tᵀ) is constant along a regular branch and is free from the factorization: a flip
 //! tells that a step has passed a hairpin or jumped to another piece, which a dot product cannot.
 
+use super::closed::Closed;
 use super::system::{Linearization, Vector};
 
 /// The local frame of the curve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
-    /// t, n + 1 numbers of unit length.
-    pub tangent: Vector,
-    /// k = dt/dℓ, n + 1 numbers.
-    pub curvature: Vector,
+pub struct Frame<const N: usize> {
+    /// t, of unit length.
+    pub tangent: Vector<N>,
+    /// k = dt/dℓ.
+    pub curvature: Vector<N>,
     /// Whether det(J; tᵀ) is positive.
     pub positive: bool,
 }
@@ -24,18 +25,10 @@ pub struct Frame {
 /// The frame at a solution; the tangent is turned so that its product with `forward` is positive.
 ///
 /// `None` when the Jacobian is singular there (a branch point) or orthogonal to `forward`.
-pub fn frame(lin: &Linearization, forward: &Vector) -> Option<Frame> {
-    let n = lin.jacobian.nrows();
-    let mut unit = Vector::zeros(n + 1);
-    unit[n] = 1.0;
-    let raw = lin.bordered(forward).lu().solve(&unit)?;
-    let tangent = raw.clone() / raw.norm();
-    let lu = lin.bordered(&tangent).lu();
-    let bend = lin.along(&tangent, &tangent);
-    let mut right = Vector::zeros(n + 1);
-    right.rows_mut(0, n).copy_from(&-bend);
-    let curvature = lu.solve(&right)?;
-    let determinant = lu.determinant();
+pub fn frame<const N: usize>(lin: &Linearization<N>, forward: &Vector<N>) -> Option<Frame<N>> {
+    let tangent = Closed::new(&lin.jacobian, forward)?.null_vector().normalize();
+    let closed = Closed::new(&lin.jacobian, &tangent)?;
+    let curvature = closed.solve(&-lin.along(&tangent, &tangent));
     let finite = tangent.iter().chain(curvature.iter()).all(|x| x.is_finite());
-    (finite && determinant != 0.0).then_some(Frame { tangent, curvature, positive: determinant > 0.0 })
+    finite.then_some(Frame { tangent, curvature, positive: closed.determinant > 0.0 })
 }

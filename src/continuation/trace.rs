@@ -35,13 +35,13 @@ pub enum Stop {
 /// Traces the curve from `start` to `end`, at most `settings.points` points.
 ///
 /// `go_on` is asked between points; when it says no, what has been traced is kept.
-pub fn trace(
-    system: &dyn System,
-    start: Point,
+pub fn trace<const N: usize>(
+    system: &dyn System<N>,
+    start: Point<N>,
     end: End,
     settings: &Settings,
-    mut go_on: impl FnMut(&Branch) -> bool,
-) -> (Branch, Stop) {
+    mut go_on: impl FnMut(&Branch<N>) -> bool,
+) -> (Branch<N>, Stop) {
     let mut stepper = Stepper::new(settings.clone());
     let mut branch = Branch { points: vec![start], ..Branch::default() };
     let stop = loop {
@@ -55,7 +55,7 @@ pub fn trace(
         match stepper.step(system, last) {
             Err(failure) => break Stop::Failed(failure),
             Ok(next) => {
-                let side = |p: &Point| p.y[end.unknown] - end.value;
+                let side = |p: &Point<N>| p.y[end.unknown] - end.value;
                 let crossed = side(last) * side(&next) <= 0.0;
                 if crossed {
                     let landed = land(system, last, &next, end, settings).unwrap_or(next);
@@ -71,18 +71,24 @@ pub fn trace(
 }
 
 /// The point between two neighbours at which the end value is taken.
-fn land(system: &dyn System, from: &Point, to: &Point, end: End, settings: &Settings) -> Option<Point> {
-    let mut row = Vector::zeros(system.unknowns());
+fn land<const N: usize>(
+    system: &dyn System<N>,
+    from: &Point<N>,
+    to: &Point<N>,
+    end: End,
+    settings: &Settings,
+) -> Option<Point<N>> {
+    let mut row = Vector::zeros();
     row[end.unknown] = 1.0;
     let (a, b) = (from.y[end.unknown], to.y[end.unknown]);
     // Where the unknown did not move, the quotient is no number and the far end is as good a guess.
     let share = Some((end.value - a) / (b - a)).filter(|share| share.is_finite()).unwrap_or(1.0);
-    let guess = &from.y + (&to.y - &from.y) * share;
+    let guess = from.y + (to.y - from.y) * share;
     let corrected = correct(system, guess, &Constraint::Plane { row, value: end.value }, settings).ok()?;
-    let mut point = Point::corrected(corrected, &from.frame.tangent)?;
+    let mut point = Point::corrected(&corrected, &from.frame.tangent)?;
     // Newton meets the plane to rounding; the caller asked for this very value.
     point.y[end.unknown] = end.value;
-    point.length = (&point.y - &from.y).norm();
+    point.length = (point.y - from.y).norm();
     point.turning = super::step_size::turning(from, &point);
     Some(point)
 }

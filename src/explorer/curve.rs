@@ -11,10 +11,9 @@ use super::model::same_curve;
 use super::theory::Theory;
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
-use crate::continuation::Point;
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
-use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Stiffness, Unloading};
+use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Point, Stiffness, Unloading};
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 

@@ -2,9 +2,8 @@
 
 use crate::case::Case;
 use crate::contact::Control;
-use crate::continuation::Point;
 use crate::preset::Preset;
-use crate::quasistatic::{Admissibility, Equilibrium, Event, Stability, State, Stiffness};
+use crate::quasistatic::{Admissibility, Equilibrium, Event, Point, Stability, State, Stiffness};
 use std::sync::Arc;
 
 /// The problem a node was solved in: the parameters may change from node to node.

@@ -7,12 +7,12 @@ use super::curve::CurveData;
 use super::history::{Ahead, NodeKind, Setting};
 use crate::case::Case;
 use crate::contact::Control;
-use crate::continuation::{Bracket, Point, Stepper, Work, events, locate, step_size};
+use crate::continuation::{Stepper, Work, events, locate, step_size};
 use crate::quasistatic::curve::settings;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{Nodes, Run};
 use crate::quasistatic::unload::INWARD_REACH;
-use crate::quasistatic::{Admissibility, Equilibrium, Event, State, Stiffness};
+use crate::quasistatic::{Admissibility, Equilibrium, Event, Point, State, Stiffness};
 use crate::ritz::{self, NewtonSettings};
 use crate::theory::Exact;
 use std::sync::Arc;
@@ -193,14 +193,12 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
         let mut work = Work::default();
         let limit = events::brackets(equilibrium, &piece, &unit, &settings, &mut work)
             .iter()
-            .filter_map(|bracket: &Bracket| {
-                locate::limit_point(equilibrium, bracket, &unit, &settings, &mut work)
-            })
+            .filter_map(|bracket| locate::limit_point(equilibrium, bracket, &unit, &settings, &mut work))
             // The slope at the limit point just left is zero to rounding, of either sign: not a new one.
-            .find(|found| !just_left || (&found.point.y - &here.y).norm() > 1e-3 * next.length);
+            .find(|found| !just_left || (found.point.y - here.y).norm() > 1e-3 * next.length);
         if let Some(found) = limit {
             let mut point = found.point;
-            point.length = (&point.y - &here.y).norm();
+            point.length = (point.y - here.y).norm();
             point.turning = step_size::turning(&here, &point);
             point.rounds = next.rounds;
             emit(made(request, NodeKind::Limit, point));

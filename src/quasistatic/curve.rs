@@ -1,10 +1,10 @@
 //! The equilibrium curve between two contact radii, by either tracer, and its limit points.
 
-use super::equilibrium::{Equilibrium, Scales, inward, unknown};
+use super::equilibrium::{Equilibrium, Point, Scales, inward, unknown};
 use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::sweep::sweep;
 use crate::continuation::trace::trace;
-use crate::continuation::{Branch, End, Point, Settings, Stop, Work, events, locate};
+use crate::continuation::{Branch, End, Settings, Stop, Work, events, locate};
 use crate::ritz::{Basis, Evaluation};
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ pub struct Curve {
     /// The equations it solves, with its scales.
     pub equilibrium: Equilibrium,
     /// Its points, running inward.
-    pub branch: Branch,
+    pub branch: Branch<{ unknown::COUNT }>,
     /// Why it ends.
     pub stop: CurveStop,
 }
@@ -101,7 +101,7 @@ pub fn radii(from: f64, to: f64, feature_length: Option<f64>, steps_per_wave: f6
 
 /// The settings of the arc-length tracer for a gap with this feature length.
 pub fn settings(equilibrium: &Equilibrium) -> Settings {
-    let mut settings = Settings::new(3);
+    let mut settings = Settings::new(unknown::COUNT);
     if let Some(wave) = equilibrium.problem.gap.feature_length() {
         settings.largest_increment[unknown::CONTACT_RADIUS] =
             WAVE_SHARE * wave / equilibrium.scales.contact_radius;
@@ -226,7 +226,7 @@ impl Curve {
 }
 
 /// A branch through explicit solutions in the order given, running inward.
-fn branch_through(equilibrium: &Equilibrium, evaluations: &[Evaluation]) -> Branch {
+fn branch_through(equilibrium: &Equilibrium, evaluations: &[Evaluation]) -> Branch<{ unknown::COUNT }> {
     sweep(
         evaluations,
         |e| Some((equilibrium.unknowns_of(e), equilibrium.linearization(e, e.force))),

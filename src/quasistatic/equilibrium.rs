@@ -21,8 +21,8 @@
 
 use super::admissible::Admissibility;
 use crate::contact::{Control, Gap, Reduced, Units};
-use crate::continuation::system::Matrix;
-use crate::continuation::{Linearization, Point, System, Vector};
+use crate::continuation::system::{Matrix, Vector};
+use crate::continuation::{self, Linearization, System};
 use crate::ritz::{Basis, Evaluation};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -145,8 +145,16 @@ pub struct Equilibrium {
     pub scales: Scales,
 }
 
-/// Indices of the unknowns.
+/// A state with the frame of the curve there.
+pub type Point = continuation::Point<{ unknown::COUNT }>;
+
+/// Numbers that go with the three unknowns: their values, or the row of a control.
+pub type Unknowns = Vector<{ unknown::COUNT }>;
+
+/// The number of unknowns and their indices.
 pub mod unknown {
+    /// Three.
+    pub const COUNT: usize = 3;
     /// δ/δ₀.
     pub const APPROACH: usize = 0;
     /// P/P₀.
@@ -157,13 +165,13 @@ pub mod unknown {
 
 impl Equilibrium {
     /// The unknowns of a state.
-    pub fn unknowns_of(&self, e: &Evaluation) -> Vector {
+    pub fn unknowns_of(&self, e: &Evaluation) -> Unknowns {
         let Scales { approach, force, contact_radius } = self.scales;
-        Vector::from_vec(vec![e.approach / approach, e.force / force, e.contact_radius / contact_radius])
+        Unknowns::from([e.approach / approach, e.force / force, e.contact_radius / contact_radius])
     }
 
     /// δ, P and s of the unknowns.
-    pub fn quantities(&self, y: &Vector) -> [f64; 3] {
+    pub fn quantities(&self, y: &Unknowns) -> [f64; 3] {
         let Scales { approach, force, contact_radius } = self.scales;
         [y[0] * approach, y[1] * force, y[2] * contact_radius]
     }
@@ -174,12 +182,12 @@ impl Equilibrium {
     }
 
     /// The row of a control: row · y is the controlled quantity.
-    pub fn control_row(&self, control: Control) -> Vector {
+    pub fn control_row(&self, control: Control) -> Unknowns {
         let Scales { approach, force, .. } = self.scales;
-        Vector::from_vec(match control {
-            Control::Displacement => vec![approach, 0.0, 0.0],
-            Control::Force => vec![0.0, force, 0.0],
-            Control::Stiffness(k) => vec![approach, force / k, 0.0],
+        Unknowns::from(match control {
+            Control::Displacement => [approach, 0.0, 0.0],
+            Control::Force => [0.0, force, 0.0],
+            Control::Stiffness(k) => [approach, force / k, 0.0],
         })
     }
 
@@ -257,7 +265,7 @@ impl Equilibrium {
     }
 
     /// The two equations and their derivatives at an evaluated (s, δ) and the force `p`.
-    pub fn linearization(&self, e: &Evaluation, p: f64) -> Linearization {
+    pub fn linearization(&self, e: &Evaluation, p: f64) -> Linearization<{ unknown::COUNT }> {
         let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
         let [r_d, r_s] = e.residual_gradient;
         let [r_dd, r_ds, r_ss] = e.residual_second;
@@ -265,32 +273,29 @@ impl Equilibrium {
         let [p_dd, p_ds, p_ss] = e.force_second;
         let hessian = |dd: f64, ds: f64, ss: f64| {
             let (dd, ds, ss) = (dd * d0 * d0, ds * d0 * s0, ss * s0 * s0);
-            Matrix::from_row_slice(3, 3, &[dd, 0.0, ds, 0.0, 0.0, 0.0, ds, 0.0, ss])
+            Matrix::from([[dd, 0.0, ds], [0.0; 3], [ds, 0.0, ss]])
         };
         Linearization {
-            residual: Vector::from_vec(vec![e.residual, (p - e.force) / p0]),
-            scale: Vector::from_vec(vec![e.residual_scale, e.force_scale.max(f64::MIN_POSITIVE) / p0]),
-            jacobian: Matrix::from_row_slice(
-                2,
-                3,
-                &[r_d * d0, 0.0, r_s * s0, -p_d * d0 / p0, 1.0, -p_s * s0 / p0],
-            ),
-            second: vec![hessian(r_dd, r_ds, r_ss), hessian(-p_dd / p0, -p_ds / p0, -p_ss / p0)],
+            residual: Unknowns::from([e.residual, (p - e.force) / p0, 0.0]),
+            scale: Unknowns::from([e.residual_scale, e.force_scale.max(f64::MIN_POSITIVE) / p0, 0.0]),
+            // By columns.
+            jacobian: Matrix::from([
+                [r_d * d0, -p_d * d0 / p0, 0.0],
+                [0.0, 1.0, 0.0],
+                [r_s * s0, -p_s * s0 / p0, 0.0],
+            ]),
+            second: [hessian(r_dd, r_ds, r_ss), hessian(-p_dd / p0, -p_ds / p0, -p_ss / p0), Matrix::zeros()],
         }
     }
 }
 
 /// The direction in which a detachment runs: the contact radius shrinks.
-pub fn inward() -> Vector {
-    Vector::from_vec(vec![0.0, 0.0, -1.0])
+pub fn inward() -> Unknowns {
+    Unknowns::from([0.0, 0.0, -1.0])
 }
 
-impl System for Equilibrium {
-    fn unknowns(&self) -> usize {
-        3
-    }
-
-    fn linearize(&self, y: &Vector) -> Option<Linearization> {
+impl System<{ unknown::COUNT }> for Equilibrium {
+    fn linearize(&self, y: &Unknowns) -> Option<Linearization<{ unknown::COUNT }>> {
         let [delta, force, s] = self.quantities(y);
         if s.is_nan() || s <= 0.0 {
             return None;

@@ -6,9 +6,10 @@
 //! the control grows with s there, which is stability.
 
 use super::curve::{Curve, Limit, Turn};
+use super::equilibrium::{Point, Unknowns};
 use crate::contact::Control;
+use crate::continuation::Work;
 use crate::continuation::locate::control_value;
-use crate::continuation::{Point, Vector, Work};
 
 /// Which way the edge runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +25,7 @@ pub enum Run {
 pub struct Nodes {
     /// The control whose limit points are nodes.
     pub control: Control,
-    row: Vector,
+    row: Unknowns,
     points: Vec<Point>,
     /// The limit points among the nodes: their index and which way the control turns.
     limits: Vec<(usize, Turn)>,

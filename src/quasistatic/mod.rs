@@ -28,7 +28,7 @@ pub mod unload;
 
 pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Limit, Turn};
-pub use equilibrium::{Equilibrium, Scales, Stability, State, Stiffness};
+pub use equilibrium::{Equilibrium, Point, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
 pub use overlap::Overlap;
 pub use profile::Profile;

@@ -2,10 +2,9 @@
 
 use super::curve::{Curve, CurveStop};
 use super::energy;
-use super::equilibrium::{Equilibrium, State};
+use super::equilibrium::{Equilibrium, Point, State};
 use super::jump::{Landing, Nodes, Run};
 use crate::contact::{Control, Units};
-use crate::continuation::Point;
 
 /// What happened at an instability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
