@@ -5,6 +5,7 @@
 
 use super::model::{Model, Panel};
 use super::view::{Overlay, Window};
+use crate::preset::Key;
 
 /// A command's identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -124,7 +125,7 @@ pub enum Command {
     /// Another value for a key, as typed.
     Set {
         /// The dotted key.
-        key: &'static str,
+        key: Key,
         /// What was typed.
         text: String,
     },

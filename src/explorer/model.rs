@@ -7,7 +7,7 @@ use super::profile::{Ask, Inside};
 use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
-use crate::preset::{Fingerprint, Listing, Loaded, Parameter, Preset, Source, Value};
+use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -220,21 +220,20 @@ impl Model {
     }
 
     /// The parameters with a knob, in the table's order, and their values; no value follows from others.
-    pub fn knobs(&self) -> Vec<(&'static Parameter, Option<Value>)> {
+    pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
         // The title last: the numbers are what is turned.
-        let (texts, numbers): (Vec<&Parameter>, Vec<&Parameter>) =
-            crate::preset::PARAMETERS.iter().partition(|row| row.key == "title");
+        let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.rows().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
             .filter(|row| row.key != NO_KNOB)
-            .map(|row| (row, self.preset.get(row.key)))
+            .map(|row| (row.clone(), self.preset.get(&row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()
     }
 
     /// The selected parameter and its value.
-    pub fn selected_knob(&self) -> Option<(&'static Parameter, Option<Value>)> {
+    pub fn selected_knob(&self) -> Option<(Row, Option<Value>)> {
         self.knobs().into_iter().nth(self.parameter)
     }
 

@@ -31,7 +31,7 @@ pub fn nudge(
 ) -> Result<Preset, String> {
     let share = if amount == Amount::Fine { 0.01 } else { 0.1 };
     let mut changed = preset.clone();
-    let value = match (row.kind, preset.get(row.key)) {
+    let value = match (row.kind, preset.get(&row.key)) {
         (_, None) => {
             return Err(format!("{} follows from other values; Enter types one", row.label));
         }
@@ -63,7 +63,7 @@ pub fn nudge(
         }
         _ => return Err(format!("{} is a text; Enter types it", row.label)),
     };
-    changed.set(row.key, value).map_err(|invalid| invalid.to_string())?;
+    changed.set(&row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)
 }
 
@@ -124,23 +124,23 @@ mod tests {
     #[test]
     fn positive_values_move_by_a_share_and_never_reach_zero() {
         let mut preset = preset();
-        let row = parameter("gap.amplitude").unwrap();
+        let row = &parameter("gap.amplitude").unwrap();
         let up = nudge(&preset, row, true, Amount::Fine, 1.0).unwrap();
-        assert_eq!(up.get(row.key), Some(Value::Number(0.002_525)));
+        assert_eq!(up.get(&row.key), Some(Value::Number(0.002_525)));
         for _ in 0..200 {
             preset = nudge(&preset, row, false, Amount::Coarse, 1.0).unwrap();
         }
-        assert!(matches!(preset.get(row.key), Some(Value::Number(x)) if x > 0.0));
+        assert!(matches!(preset.get(&row.key), Some(Value::Number(x)) if x > 0.0));
     }
 
     #[test]
     fn counts_stop_at_their_range() {
         let mut preset = preset();
-        let rings = parameter("basis.rings").unwrap();
+        let rings = &parameter("basis.rings").unwrap();
         preset.set("basis.kind", "rings".into()).unwrap();
         preset.set("basis.rings", Value::Integer(4)).unwrap();
         assert!(nudge(&preset, rings, false, Amount::Fine, 1.0).unwrap_err().contains('4'));
-        let kind = parameter("basis.kind").unwrap();
+        let kind = &parameter("basis.kind").unwrap();
         let other = nudge(&preset, kind, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(other.get("basis.functions"), Some("auto".into()));
         let back = nudge(&other, kind, true, Amount::Fine, 1.0).unwrap();
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn the_device_gets_stiffer_up_to_displacement_and_softer_down_to_force() {
         let mut preset = preset();
-        let row = parameter("path.control").unwrap();
+        let row = &parameter("path.control").unwrap();
         let contact = 2.0;
         let turn = |preset: &mut Preset, up, amount| {
             let turned = nudge(preset, row, up, amount, contact);

@@ -3,8 +3,9 @@
 //! A pin is named by the values in which it differs from the preset as it is now, so its name changes with the preset.
 
 use super::curve::CurveData;
-use crate::preset::{PARAMETERS, Preset, Value};
+use crate::preset::{Preset, Value};
 use crate::report::number::short;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Most curves pinned: each has a digit and a colour of its own.
@@ -79,15 +80,15 @@ impl Pins {
 }
 
 /// The values of `pinned` that `now` has not, in the order of the table.
-fn differences(pinned: &Preset, now: &Preset) -> Vec<(&'static str, Value)> {
-    PARAMETERS
-        .iter()
-        .filter(|row| !matches!(row.key, "format" | "title"))
-        .filter_map(|row| Some((row, pinned.get(row.key)?)))
-        .filter(|(row, value)| now.get(row.key).as_ref() != Some(value))
+fn differences(pinned: &Preset, now: &Preset) -> Vec<(Cow<'static, str>, Value)> {
+    pinned
+        .rows()
+        .filter(|row| !matches!(&*row.key, "format" | "title"))
+        .filter_map(|row| pinned.get(&row.key).map(|value| (row, value)))
+        .filter(|(row, value)| now.get(&row.key).as_ref() != Some(value))
         // The stiffness has a row of its own and says that the device is a spring.
         .filter(|(row, _)| row.key != "path.control" || pinned.get("path.control.stiffness").is_none())
-        .map(|(row, value)| (row.label, value))
+        .map(|(row, value)| (row.label.clone(), value))
         .collect()
 }
 

@@ -58,7 +58,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
-        Command::Set { key, text } => set(model, key, &text),
+        Command::Set { key, text } => set(model, &key, &text),
         Command::Zoom { closer, about } => {
             look::zoom(model, closer, about);
             Vec::new()

@@ -119,7 +119,9 @@ fn pinned_curves_have_their_numbers_names_and_divisors() {
     let mut session = Session::new("wavy-sphere");
     session.does(Id::Pin);
     let before = session.figure(View::ForceApproach);
-    session.does(Command::Set { key: "material.work_of_adhesion", text: "0.002".to_owned() }).does(Id::Pin);
+    session
+        .does(Command::Set { key: "material.work_of_adhesion".into(), text: "0.002".to_owned() })
+        .does(Id::Pin);
     let figure = session.figure(View::ForceApproach);
     let pin = figure.lines.iter().find(|line| line.role == Role::Pin(1)).unwrap();
     assert!(pin.name.starts_with("gamma 0.00397"), "{}", pin.name);
@@ -138,7 +140,7 @@ fn pinned_curves_have_their_numbers_names_and_divisors() {
 fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
     for (control, unbounded) in [("displacement", 0), ("force", 1), ("stiffness=0.15", 0)] {
         let mut session = Session::new("wavy-sphere");
-        session.does(Command::Set { key: "path.control", text: control.to_owned() });
+        session.does(Command::Set { key: "path.control".into(), text: control.to_owned() });
         let curve = session.model.curve.clone().unwrap();
         let unloading = curve.unloading.as_ref().unwrap();
         let figure = session.figure(View::Unloading);

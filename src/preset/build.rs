@@ -5,8 +5,8 @@
 use super::invalid::Invalid;
 use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
 use super::schema::{
-    Applies, CHOOSERS, Fallback, PARAMETERS, Parameter, RADIUS_OVER_CURVATURE, START_KEYS,
-    START_OVER_CURVATURE, parameter,
+    Applies, CHOOSERS, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
+    parameter, table_of,
 };
 use super::value::Value;
 use crate::contact::Start;
@@ -15,7 +15,7 @@ use crate::ritz::Grading;
 use std::collections::BTreeMap;
 
 /// Values by dotted key. A part of a value (`path.control.stiffness`) is not a key here.
-pub type Values = BTreeMap<&'static str, Value>;
+pub type Values = BTreeMap<Key, Value>;
 
 /// The preset these values make.
 ///
@@ -25,9 +25,9 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
     let mut given = Given { values, faults: Vec::new() };
     given.check_each();
     given.check_choices();
-    let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(key)).collect();
+    let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(*key)).collect();
     if let [first, second, ..] = starts[..] {
-        given.faults.push(Invalid::Starts { first, second });
+        given.faults.push(Invalid::Starts { first: first.into(), second: second.into() });
     }
     let radius_of_curvature = given.number("gap.radius_of_curvature");
     let gap = match given.text("gap.shape").as_str() {
@@ -78,18 +78,18 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     };
     for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end)] {
         if let Some(value) = value.filter(|s| *s > RADIUS_OVER_CURVATURE * radius) {
-            faults.push(Invalid::Wide { key, value, radius });
+            faults.push(Invalid::Wide { key: key.into(), value, radius });
         }
     }
     if let BasisSpec::Rings { rings, grading } = preset.basis
         && !grading.ring_range().contains(&rings)
     {
-        faults.push(Invalid::Rings { key: "basis.rings", rings, grading });
+        faults.push(Invalid::Rings { key: "basis.rings".into(), rings, grading });
     }
     if let (Some(start), Some(end)) = (start, end)
         && end >= start
     {
-        faults.push(Invalid::EndBeyondStart { key: "path.end_contact_radius", end, start });
+        faults.push(Invalid::EndBeyondStart { key: "path.end_contact_radius".into(), end, start });
     }
     faults
 }
@@ -139,7 +139,7 @@ impl Given<'_> {
                 let belongs = words.join(" or ");
                 let (what, chosen) =
                     if chooser == "gap.shape" { ("gap", format!("a {word}")) } else { ("basis", word) };
-                self.faults.push(Invalid::OtherChoice { key: row.key, belongs, what, chosen });
+                self.faults.push(Invalid::OtherChoice { key: row.key.clone(), belongs, what, chosen });
             }
         }
     }
@@ -166,7 +166,7 @@ impl Given<'_> {
     }
 
     /// The checked value of a key, or its default; else it is missing.
-    fn value(&mut self, key: &'static str) -> Option<Value> {
+    fn value(&mut self, key: &str) -> Option<Value> {
         let row = parameter(key)?;
         if let Some(value) = self.values.get(key) {
             return row.check(value.clone()).ok();
@@ -178,39 +178,40 @@ impl Given<'_> {
             Fallback::Required | Fallback::Described(_) => None,
         };
         if fallback.is_none() {
-            self.faults.push(Invalid::Missing { key: row.key, allowed: row.allowed() });
+            self.faults.push(Invalid::Missing { key: row.key.clone(), allowed: row.allowed() });
         }
         fallback
     }
 
-    fn number(&mut self, key: &'static str) -> f64 {
+    fn number(&mut self, key: &str) -> f64 {
         if let Some(Value::Number(x)) = self.value(key) { x } else { f64::NAN }
     }
 
-    fn integer(&mut self, key: &'static str) -> i64 {
+    fn integer(&mut self, key: &str) -> i64 {
         if let Some(Value::Integer(n)) = self.value(key) { n } else { 0 }
     }
 
-    fn text(&mut self, key: &'static str) -> String {
+    fn text(&mut self, key: &str) -> String {
         if let Some(Value::Text(text)) = self.value(key) { text } else { String::new() }
     }
 
-    fn control(&mut self, key: &'static str) -> Control {
+    fn control(&mut self, key: &str) -> Control {
         if let Some(Value::Control(control)) = self.value(key) { control } else { Control::Displacement }
     }
 
     /// The faults; the missing keys of a table that is missing as a whole become one.
     fn collapsed(self) -> Vec<Invalid> {
-        let present =
-            |table| self.values.keys().any(|key| parameter(key).and_then(Parameter::table) == Some(table));
+        let present = |table: &str| self.values.keys().any(|key| table_of(key) == Some(table));
         let mut faults: Vec<Invalid> = Vec::new();
         for fault in self.faults {
             let table = match &fault {
-                Invalid::Missing { key, .. } => parameter(key).and_then(Parameter::table),
+                Invalid::Missing { key, .. } => table_of(key).filter(|table| !present(table)),
                 _ => None,
             };
-            let fault = match table.filter(|table| !present(table)) {
-                Some(table) => Invalid::MissingTable { table, keys: required(table).join(", ") },
+            let fault = match table {
+                Some(table) => {
+                    Invalid::MissingTable { table: table.to_owned().into(), keys: required(table).join(", ") }
+                }
                 None => fault,
             };
             if !faults.contains(&fault) {
@@ -227,7 +228,7 @@ fn required(table: &str) -> Vec<&'static str> {
         .iter()
         .filter(|row| row.table() == Some(table))
         .filter(|row| row.fallback == Fallback::Required && row.applies == Applies::Always)
-        .map(Parameter::name)
+        .map(super::schema::Parameter::name)
         .collect()
 }
 
@@ -236,7 +237,7 @@ mod tests {
     use super::*;
 
     fn values(pairs: &[(&'static str, Value)]) -> Values {
-        pairs.iter().cloned().collect()
+        pairs.iter().map(|(key, value)| ((*key).into(), value.clone())).collect()
     }
 
     #[test]

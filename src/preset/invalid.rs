@@ -1,6 +1,6 @@
 //! What can be wrong with a key or a value, in one line each.
 
-use super::schema::{FORMAT, RADIUS_OVER_CURVATURE};
+use super::schema::{FORMAT, Key, RADIUS_OVER_CURVATURE};
 use crate::ritz::Grading;
 use thiserror::Error;
 
@@ -8,12 +8,12 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Invalid {
     /// No row of the table has this key.
-    #[error("unknown key {key}{}", hint(*.meant))]
+    #[error("unknown key {key}{}", hint(.meant.as_ref()))]
     UnknownKey {
         /// The key as written.
         key: String,
         /// The known key most alike.
-        meant: Option<&'static str>,
+        meant: Option<Key>,
     },
     /// The text is no TOML.
     #[error("{what}")]
@@ -28,17 +28,17 @@ pub enum Invalid {
     #[error("{table} is a table, not {found}; set one of its keys, as {example}")]
     NotTable {
         /// The table.
-        table: &'static str,
+        table: Key,
         /// What was found.
         found: String,
         /// A key in it.
-        example: &'static str,
+        example: Key,
     },
     /// A value of another type.
     #[error("{key} must be {allowed}, not {found}")]
     Type {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// What was found.
         found: String,
         /// The values it takes.
@@ -48,29 +48,29 @@ pub enum Invalid {
     #[error("{key} = {value} is out of range: it must be {allowed}")]
     Range {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The value.
         value: String,
         /// The values it takes.
         allowed: String,
     },
     /// A word that is none of the choices.
-    #[error("{key} = \"{value}\" is not known: it must be {allowed}{}", hint(*.meant))]
+    #[error("{key} = \"{value}\" is not known: it must be {allowed}{}", hint(.meant.as_ref()))]
     Choice {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The word.
         value: String,
         /// The choices.
         allowed: String,
         /// The choice most alike.
-        meant: Option<&'static str>,
+        meant: Option<Key>,
     },
     /// Text with characters that a screen must not show.
     #[error("{key} = \"{value}\" holds control or invisible characters")]
     Unprintable {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The text.
         value: String,
     },
@@ -84,7 +84,7 @@ pub enum Invalid {
     #[error("{key} is missing: it must be {allowed}")]
     Missing {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The values it takes.
         allowed: String,
     },
@@ -92,7 +92,7 @@ pub enum Invalid {
     #[error("the table [{table}] is missing: it needs {keys}")]
     MissingTable {
         /// The table.
-        table: &'static str,
+        table: Key,
         /// Its required keys.
         keys: String,
     },
@@ -100,7 +100,7 @@ pub enum Invalid {
     #[error("{key} belongs to {belongs}, and the {what} is {chosen}")]
     OtherChoice {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The words of the choice it belongs to.
         belongs: String,
         /// What was chosen in one word, as `gap`.
@@ -112,15 +112,15 @@ pub enum Invalid {
     #[error("{second} and {first} both say where the path starts: give exactly one")]
     Starts {
         /// One start.
-        first: &'static str,
+        first: Key,
         /// Another.
-        second: &'static str,
+        second: Key,
     },
     /// A path that would end at or beyond its start.
     #[error("{key} = {end:?} is not below path.start_contact_radius = {start:?}")]
     EndBeyondStart {
         /// `path.end_contact_radius`.
-        key: &'static str,
+        key: Key,
         /// The contact radius at the end.
         end: f64,
         /// The contact radius at the start.
@@ -133,7 +133,7 @@ pub enum Invalid {
     )]
     Rings {
         /// `basis.rings`.
-        key: &'static str,
+        key: Key,
         /// The number.
         rings: usize,
         /// The grading.
@@ -146,7 +146,7 @@ pub enum Invalid {
     )]
     Wide {
         /// The key.
-        key: &'static str,
+        key: Key,
         /// The contact radius.
         value: f64,
         /// The radius of curvature.
@@ -154,14 +154,14 @@ pub enum Invalid {
     },
 }
 
-fn hint(key: Option<&str>) -> String {
+fn hint(key: Option<&Key>) -> String {
     key.map_or_else(String::new, |key| format!("; did you mean {key}?"))
 }
 
 impl Invalid {
     /// The known key this is about, if there is one.
     #[must_use]
-    pub fn key(&self) -> Option<&'static str> {
+    pub fn key(&self) -> Option<&str> {
         match self {
             Self::Type { key, .. }
             | Self::Range { key, .. }

@@ -46,7 +46,7 @@ pub use file::Fingerprint;
 pub use invalid::Invalid;
 pub use model::{BasisSpec, Functions, Material, PathSpec, Preset};
 pub use read::{Mistake, Origin, ReadError, read, read_with};
-pub use schema::{PARAMETERS, Parameter, parameter};
+pub use schema::{Key, PARAMETERS, Parameter, Row, parameter};
 pub use shipped::SHIPPED;
 pub use store::{Listed, Listing, Loaded, Source, Store, StoreError};
 pub use value::Value;

@@ -3,7 +3,7 @@
 use super::build::{Values, build};
 use super::invalid::Invalid;
 use super::schema::{
-    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, PARAMETERS, Parameter, START_KEYS, parameter,
+    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, PARAMETERS, Parameter, Row, START_KEYS, parameter,
 };
 use super::suggest::closest_key;
 use super::text::quote;
@@ -142,10 +142,16 @@ impl Preset {
         })
     }
 
-    /// The rows that have a value in this preset, in the table's order, with their values.
+    /// The rows of this preset, in the order in which files and screens show them: those of the table, and those
+    /// that it makes itself.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        PARAMETERS.iter().map(Row::Borrowed)
+    }
+
+    /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
     #[must_use]
-    pub fn values(&self) -> Vec<(&'static Parameter, Value)> {
-        PARAMETERS.iter().filter_map(|row| Some((row, self.get(row.key)?))).collect()
+    pub fn values(&self) -> Vec<(Row, Value)> {
+        self.rows().filter_map(|row| self.get(&row.key).map(|value| (row, value))).collect()
     }
 
     /// Gives a key another value.
@@ -160,23 +166,24 @@ impl Preset {
         let row = parameter(key).ok_or_else(|| unknown_key(key))?;
         let value = row.check(value)?;
         let mut values = self.keyed();
-        if CHOOSERS.contains(&row.key) {
-            values
-                .retain(|key, _| parameter(key).is_some_and(|other| other.fits(row.key, &value.to_string())));
+        if CHOOSERS.contains(&&*row.key) {
+            values.retain(|key, _| {
+                parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
+            });
         }
-        match row.key {
+        match &*row.key {
             "gap.shape" => {
                 let radius = self.gap.radius_of_curvature();
                 for (key, over_radius) in [("gap.amplitude", 0.0025), ("gap.wavelength", 0.05)] {
-                    if parameter(key).is_some_and(|other| other.fits(row.key, &value.to_string())) {
-                        values.entry(key).or_insert(Value::Number(over_radius * radius));
+                    if parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string())) {
+                        values.entry(key.into()).or_insert(Value::Number(over_radius * radius));
                     }
                 }
             }
-            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(key)),
+            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}
         }
-        put(&mut values, row, value);
+        put(&mut values, &row, value);
         *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
         Ok(())
     }
@@ -189,9 +196,9 @@ impl Preset {
         let row = parameter(key).ok_or_else(|| unknown_key(key))?;
         let mut values = self.keyed();
         let parent = row.table().filter(|_| row.is_part());
-        values.remove(parent.unwrap_or(row.key));
-        if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&row.key)) {
-            values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(row.key, word)));
+        values.remove(parent.unwrap_or(&row.key));
+        if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&&*row.key)) {
+            values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(&row.key, word)));
         }
         *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
         Ok(())
@@ -206,26 +213,30 @@ impl Preset {
     }
 
     fn keyed(&self) -> Values {
-        self.values().into_iter().filter(|(row, _)| !row.is_part()).map(|(row, v)| (row.key, v)).collect()
+        self.values()
+            .into_iter()
+            .filter(|(row, _)| !row.is_part())
+            .map(|(row, v)| (row.key.clone(), v))
+            .collect()
     }
 }
 
 /// Stores a checked value; a part of a value becomes the whole.
 pub(super) fn put(values: &mut Values, row: &Parameter, value: Value) {
-    match (row.key, value) {
+    match (&*row.key, value) {
         ("path.control.stiffness", Value::Number(k)) => {
-            values.insert("path.control", Control::Stiffness(k).into());
+            values.insert("path.control".into(), Control::Stiffness(k).into());
         }
-        (key, value) => {
-            values.insert(key, value);
+        (_, value) => {
+            values.insert(row.key.clone(), value);
         }
     }
 }
 
 /// The error for a key without a row.
 pub(super) fn unknown_key(key: &str) -> Invalid {
-    let meant = closest_key(key, PARAMETERS.iter().map(|row| (row.key, row.label)));
-    Invalid::UnknownKey { key: quote(key), meant }
+    let meant = closest_key(key, PARAMETERS.iter().map(|row| (&*row.key, &*row.label)));
+    Invalid::UnknownKey { key: quote(key), meant: meant.map(Into::into) }
 }
 
 #[cfg(test)]
@@ -333,12 +344,12 @@ pub(super) mod tests {
             "path.start_force",
             "path.end_contact_radius",
         ];
-        assert_eq!(PARAMETERS.iter().map(|row| row.key).collect::<Vec<_>>(), fields);
+        assert_eq!(PARAMETERS.iter().map(|row| &row.key).collect::<Vec<_>>(), fields);
 
         // Every row can be read back after it was set.
         for row in PARAMETERS {
             let mut preset = wavy();
-            let value = match row.key {
+            let value = match &*row.key {
                 "format" => FORMAT.into(),
                 "title" => "t".into(),
                 "gap.shape" => "sphere".into(),
@@ -352,10 +363,10 @@ pub(super) mod tests {
             if row.key == "basis.functions" {
                 preset.set("basis.kind", "spectral".into()).unwrap();
             }
-            preset.set(row.key, value.clone()).unwrap();
-            assert_eq!(preset.get(row.key), Some(value), "{}", row.key);
+            preset.set(&row.key, value.clone()).unwrap();
+            assert_eq!(preset.get(&row.key), Some(value), "{}", row.key);
             assert_eq!(
-                preset.reset(row.key).is_err(),
+                preset.reset(&row.key).is_err(),
                 row.fallback == Fallback::Required && row.fits("gap.shape", preset.gap.name()),
                 "{}",
                 row.key

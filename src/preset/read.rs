@@ -6,7 +6,7 @@
 use super::build::{Values, build};
 use super::invalid::Invalid;
 use super::model::{Preset, put, unknown_key};
-use super::schema::{CHOOSERS, Parameter, START_KEYS, parameter, tables};
+use super::schema::{CHOOSERS, Key, Parameter, START_KEYS, parameter, table_of, tables};
 use super::suggest::closest;
 use super::text::{quote, sanitize, show_name};
 use super::value::Value;
@@ -107,9 +107,9 @@ struct Entry {
 #[derive(Default)]
 struct Sheet {
     name: String,
-    entries: BTreeMap<&'static str, Entry>,
+    entries: BTreeMap<Key, Entry>,
     /// Where the file's tables begin.
-    tables: BTreeMap<&'static str, Origin>,
+    tables: BTreeMap<Key, Origin>,
     mistakes: Vec<Mistake>,
 }
 
@@ -142,26 +142,25 @@ impl Sheet {
             let known_table = tables().find(|table| plain && *table == full);
             match (value.get_ref(), row, known_table) {
                 (DeValue::Table(inner), row, Some(table)) => {
-                    self.tables.insert(table, origin.clone());
+                    self.tables.insert(table.into(), origin.clone());
                     match row {
                         Some(row) if inner.is_empty() => {
-                            self.put(row, Err(row.wrong_type("an empty table".to_owned())), origin);
+                            self.put(&row, Err(row.wrong_type("an empty table".to_owned())), origin);
                         }
                         _ => self.lay(table, inner, place),
                     }
                 }
                 (other, Some(row), _) => {
                     let value = Value::from_toml(other).map_err(|found| row.wrong_type(found));
-                    self.put(row, value.and_then(|value| row.check(value)), origin);
+                    self.put(&row, value.and_then(|value| row.check(value)), origin);
                 }
                 (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),
                 (_, None, None) => {
                     let invalid = match (place, closest(&full, tables())) {
                         // A table by a wrong name is worth one message, and no guess among the keys.
-                        (_, Some(table)) if value.get_ref().is_table() => Invalid::UnknownKey {
-                            key: quote(&full),
-                            meant: tables().find(|known| *known == table),
-                        },
+                        (_, Some(table)) if value.get_ref().is_table() => {
+                            Invalid::UnknownKey { key: quote(&full), meant: Some(table.into()) }
+                        }
                         _ => unknown_key(&full),
                     };
                     self.mistake(origin, invalid);
@@ -185,7 +184,7 @@ impl Sheet {
         let inner = parsed.as_ref().ok().and_then(|value| value.get_ref().as_table());
         match (parameter(key), tables().find(|table| *table == key), inner) {
             (_, Some(table), Some(inner)) if !inner.is_empty() => self.lay(table, inner, &place),
-            (Some(row), _, _) => self.put(row, row.parse(text), origin),
+            (Some(row), _, _) => self.put(&row, row.parse(text), origin),
             (None, Some(table), _) => {
                 self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
             }
@@ -195,16 +194,16 @@ impl Sheet {
 
     /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
     /// the waves of another shape, the size of another basis.
-    fn put(&mut self, row: &'static Parameter, value: Result<Value, Invalid>, origin: Origin) {
+    fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: Origin) {
         if matches!(origin, Origin::Assignment(_)) {
-            if START_KEYS.contains(&row.key) {
-                self.entries.retain(|key, _| !START_KEYS.contains(key));
+            if START_KEYS.contains(&&*row.key) {
+                self.entries.retain(|key, _| !START_KEYS.contains(&&**key));
             }
-            if let (Ok(word), true) = (&value, CHOOSERS.contains(&row.key)) {
+            if let (Ok(word), true) = (&value, CHOOSERS.contains(&&*row.key)) {
                 let word = word.to_string();
                 self.entries.retain(|key, entry| {
                     matches!(entry.origin, Origin::Assignment(_))
-                        || parameter(key).is_some_and(|other| other.fits(row.key, &word))
+                        || parameter(key).is_some_and(|other| other.fits(&row.key, &word))
                 });
             }
         }
@@ -217,8 +216,8 @@ impl Sheet {
                 }
             }
             Err(invalid) => {
-                let whole = row.table().filter(|_| row.is_part()).unwrap_or(row.key);
-                self.entries.insert(whole, Entry { value: Err(invalid), origin });
+                let whole = row.table().filter(|_| row.is_part()).unwrap_or(&row.key).to_owned();
+                self.entries.insert(whole.into(), Entry { value: Err(invalid), origin });
             }
         }
     }
@@ -256,7 +255,7 @@ impl Sheet {
         for (key, entry) in &self.entries {
             match &entry.value {
                 Ok(value) => {
-                    values.insert(key, value.clone());
+                    values.insert(key.clone(), value.clone());
                 }
                 Err(invalid) => {
                     mistakes.push(Mistake { origin: entry.origin.clone(), invalid: invalid.clone() });
@@ -268,6 +267,7 @@ impl Sheet {
             Ok(_) => {}
             Err(faults) => {
                 let misspelt = meant_keys(&mistakes);
+                let misspelt: Vec<&str> = misspelt.iter().map(AsRef::as_ref).collect();
                 for invalid in faults.into_iter().filter(|fault| !self.is_echo(fault, &misspelt)) {
                     mistakes.push(Mistake { origin: self.origin_of(&invalid), invalid });
                 }
@@ -285,12 +285,12 @@ impl Sheet {
 
     /// Whether a key only seems to be missing: its value was refused, or its name is misspelt.
     fn is_echo(&self, fault: &Invalid, misspelt: &[&str]) -> bool {
-        let of_table = |key: &str, table: &str| parameter(key).and_then(Parameter::table) == Some(table);
+        let of_table = |key: &str, table: &str| table_of(key) == Some(table);
         match fault {
-            Invalid::Missing { key, .. } => self.entries.contains_key(key) || misspelt.contains(key),
+            Invalid::Missing { key, .. } => self.entries.contains_key(key) || misspelt.contains(&&**key),
             Invalid::MissingTable { table, .. } => {
                 self.entries.keys().any(|key| of_table(key, table))
-                    || misspelt.iter().any(|key| key == table || of_table(key, table))
+                    || misspelt.iter().any(|key| *key == &**table || of_table(key, table))
             }
             _ => false,
         }
@@ -301,7 +301,7 @@ impl Sheet {
         // A range that two keys make together is the later layer's doing.
         if let Invalid::EndBeyondStart { .. } | Invalid::Wide { .. } = invalid {
             let partners = [START_KEYS[0], "path.end_contact_radius", "gap.radius_of_curvature"];
-            let said = partners.iter().filter_map(|key| self.entries.get(key));
+            let said = partners.iter().filter_map(|key| self.entries.get(*key));
             if let Some(entry) = said.into_iter().find(|entry| matches!(entry.origin, Origin::Assignment(_)))
             {
                 return entry.origin.clone();
@@ -311,23 +311,24 @@ impl Sheet {
         if let Some(entry) = key.and_then(|key| self.entries.get(key)) {
             return entry.origin.clone();
         }
-        let table = key.and_then(|key| self.tables.get(parameter(key)?.table()?));
+        let table = key.and_then(|key| self.tables.get(table_of(key)?));
         table.cloned().unwrap_or(Origin::File { name: self.name.clone(), line: None })
     }
 }
 
 /// What the unknown keys were meant to be.
-fn meant_keys(mistakes: &[Mistake]) -> Vec<&'static str> {
-    let meant = |mistake: &Mistake| match mistake.invalid {
-        Invalid::UnknownKey { meant, .. } => meant,
+fn meant_keys(mistakes: &[Mistake]) -> Vec<Key> {
+    let meant = |mistake: &Mistake| match &mistake.invalid {
+        Invalid::UnknownKey { meant, .. } => meant.clone(),
         _ => None,
     };
     mistakes.iter().filter_map(meant).collect()
 }
 
-fn not_table(table: &'static str, found: String) -> Invalid {
+fn not_table(table: &str, found: String) -> Invalid {
     let inside = super::schema::PARAMETERS.iter().find(|row| row.table() == Some(table));
-    Invalid::NotTable { table, found, example: inside.map_or(table, |row| row.key) }
+    let table = Key::from(table.to_owned());
+    Invalid::NotTable { example: inside.map_or(table.clone(), |row| row.key.clone()), table, found }
 }
 
 fn found(value: &DeValue<'_>) -> String {

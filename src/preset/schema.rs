@@ -3,6 +3,8 @@
 //! A new parameter is a new row here, a field of [`Preset`](super::Preset) and its two lines in
 //! `model` (get) and `build`; a test demands that none of the three is forgotten.
 
+use std::borrow::Cow::{self, Borrowed};
+
 /// The format number of the files this program reads and writes.
 pub const FORMAT: i64 = 1;
 /// The smallest magnitude accepted for a number that is not zero: far below any quantity in SI units.
@@ -86,17 +88,23 @@ pub enum Applies {
     Spring,
 }
 
+/// A dotted key: of the table, or made from what a preset says.
+pub type Key = Cow<'static, str>;
+
+/// A row of the table, or one of its own for a key that only some presets have.
+pub type Row = Cow<'static, Parameter>;
+
 /// One row of the table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// The dotted TOML key.
-    pub key: &'static str,
+    pub key: Key,
     /// A short name for the screen, in ASCII.
-    pub label: &'static str,
+    pub label: Cow<'static, str>,
     /// What it is, in one line.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
     /// Its dimension in words; empty for text, choices and pure numbers.
-    pub dimension: &'static str,
+    pub dimension: Cow<'static, str>,
     /// What values it takes.
     pub kind: Kind,
     /// What it is when not given.
@@ -114,163 +122,165 @@ const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] 
 /// The parameters, in the order in which files and screens show them.
 pub static PARAMETERS: &[Parameter] = &[
     Parameter {
-        key: "format",
-        label: "format",
-        meaning: "version of this file format",
-        dimension: "",
+        key: Borrowed("format"),
+        label: Borrowed("format"),
+        meaning: Borrowed("version of this file format"),
+        dimension: Borrowed(""),
         kind: Kind::Integer { min: FORMAT, max: FORMAT },
         fallback: Fallback::Integer(FORMAT),
         applies: Applies::Always,
     },
     Parameter {
-        key: "title",
-        label: "title",
-        meaning: "one line that says what the preset shows",
-        dimension: "",
+        key: Borrowed("title"),
+        label: Borrowed("title"),
+        meaning: Borrowed("one line that says what the preset shows"),
+        dimension: Borrowed(""),
         kind: Kind::Text { max_chars: 100 },
         fallback: Fallback::Text(""),
         applies: Applies::Always,
     },
     Parameter {
-        key: "material.effective_modulus",
-        label: "E*",
-        meaning: "effective elastic modulus of the two bodies",
-        dimension: "stress",
+        key: Borrowed("material.effective_modulus"),
+        label: Borrowed("E*"),
+        meaning: Borrowed("effective elastic modulus of the two bodies"),
+        dimension: Borrowed("stress"),
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: Applies::Always,
     },
     Parameter {
-        key: "material.work_of_adhesion",
-        label: "gamma",
-        meaning: "work of adhesion, the energy gained per unit area of contact",
-        dimension: "stress x length",
+        key: Borrowed("material.work_of_adhesion"),
+        label: Borrowed("gamma"),
+        meaning: Borrowed("work of adhesion, the energy gained per unit area of contact"),
+        dimension: Borrowed("stress x length"),
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
         applies: Applies::Always,
     },
     Parameter {
-        key: "gap.shape",
-        label: "gap",
-        meaning: "shape of the gap between the undeformed bodies",
-        dimension: "",
+        key: Borrowed("gap.shape"),
+        label: Borrowed("gap"),
+        meaning: Borrowed("shape of the gap between the undeformed bodies"),
+        dimension: Borrowed(""),
         kind: Kind::Choice(&["sphere", "wavy-sphere"]),
         fallback: Fallback::Required,
         applies: Applies::Always,
     },
     Parameter {
-        key: "gap.radius_of_curvature",
-        label: "R",
-        meaning: "combined radius of curvature",
-        dimension: "length",
+        key: Borrowed("gap.radius_of_curvature"),
+        label: Borrowed("R"),
+        meaning: Borrowed("combined radius of curvature"),
+        dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: Applies::Always,
     },
     Parameter {
-        key: "gap.amplitude",
-        label: "A",
-        meaning: "amplitude of the wave",
-        dimension: "length",
+        key: Borrowed("gap.amplitude"),
+        label: Borrowed("A"),
+        meaning: Borrowed("amplitude of the wave"),
+        dimension: Borrowed("length"),
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
         applies: WAVY,
     },
     Parameter {
-        key: "gap.wavelength",
-        label: "lambda",
-        meaning: "wavelength",
-        dimension: "length",
+        key: Borrowed("gap.wavelength"),
+        label: Borrowed("lambda"),
+        meaning: Borrowed("wavelength"),
+        dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: WAVY,
     },
     Parameter {
-        key: "basis.kind",
-        label: "basis",
-        meaning: "functions in which the contact pressure is sought",
-        dimension: "",
+        key: Borrowed("basis.kind"),
+        label: Borrowed("basis"),
+        meaning: Borrowed("functions in which the contact pressure is sought"),
+        dimension: Borrowed(""),
         kind: Kind::Choice(&["rings", "spectral"]),
         fallback: Fallback::Text("spectral"),
         applies: Applies::Always,
     },
     Parameter {
-        key: "basis.rings",
-        label: "N",
-        meaning: "number of ring elements",
-        dimension: "",
+        key: Borrowed("basis.rings"),
+        label: Borrowed("N"),
+        meaning: Borrowed("number of ring elements"),
+        dimension: Borrowed(""),
         kind: Kind::Integer { min: 4, max: 2000 },
         fallback: Fallback::Integer(200),
         applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
     },
     Parameter {
-        key: "basis.grading",
-        label: "grading",
-        meaning: "spacing of the rings: uniform as in the paper, edge crowds at most 400 towards the edge",
-        dimension: "",
+        key: Borrowed("basis.grading"),
+        label: Borrowed("grading"),
+        meaning: Borrowed(
+            "spacing of the rings: uniform as in the paper, edge crowds at most 400 towards the edge",
+        ),
+        dimension: Borrowed(""),
         kind: Kind::Choice(&["uniform", "edge"]),
         fallback: Fallback::Text("uniform"),
         applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
     },
     Parameter {
-        key: "basis.functions",
-        label: "functions",
-        meaning: "number of eigenfunctions; auto takes enough for the waves in the largest contact",
-        dimension: "",
+        key: Borrowed("basis.functions"),
+        label: Borrowed("functions"),
+        meaning: Borrowed("number of eigenfunctions; auto takes enough for the waves in the largest contact"),
+        dimension: Borrowed(""),
         kind: Kind::Count { min: 4, max: 4096 },
         fallback: Fallback::Text(AUTO),
         applies: Applies::With { key: CHOOSERS[1], words: &["spectral"] },
     },
     Parameter {
-        key: "path.control",
-        label: "control",
-        meaning: "what the loading device prescribes",
-        dimension: "",
+        key: Borrowed("path.control"),
+        label: Borrowed("control"),
+        meaning: Borrowed("what the loading device prescribes"),
+        dimension: Borrowed(""),
         kind: Kind::Control,
         fallback: Fallback::Text("displacement"),
         applies: Applies::Always,
     },
     Parameter {
-        key: "path.control.stiffness",
-        label: "k",
-        meaning: "stiffness of the loading device",
-        dimension: "force / length",
+        key: Borrowed("path.control.stiffness"),
+        label: Borrowed("k"),
+        meaning: Borrowed("stiffness of the loading device"),
+        dimension: Borrowed("force / length"),
         kind: Kind::Positive,
         fallback: Fallback::Described("none: the device is not a spring"),
         applies: Applies::Spring,
     },
     Parameter {
-        key: START_KEYS[0],
-        label: "s start",
-        meaning: "contact radius at which the path starts",
-        dimension: "length",
+        key: Borrowed(START_KEYS[0]),
+        label: Borrowed("s start"),
+        meaning: Borrowed("contact radius at which the path starts"),
+        dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Described("0.5 x the radius of curvature, if no start is given"),
         applies: Applies::Always,
     },
     Parameter {
-        key: START_KEYS[1],
-        label: "delta start",
-        meaning: "approach at which the path starts",
-        dimension: "length",
+        key: Borrowed(START_KEYS[1]),
+        label: Borrowed("delta start"),
+        meaning: Borrowed("approach at which the path starts"),
+        dimension: Borrowed("length"),
         kind: Kind::Finite,
         fallback: Fallback::Described("none: another start is used"),
         applies: Applies::Always,
     },
     Parameter {
-        key: START_KEYS[2],
-        label: "P start",
-        meaning: "force at which the path starts, a preload",
-        dimension: "force",
+        key: Borrowed(START_KEYS[2]),
+        label: Borrowed("P start"),
+        meaning: Borrowed("force at which the path starts, a preload"),
+        dimension: Borrowed("force"),
         kind: Kind::Finite,
         fallback: Fallback::Described("none: another start is used"),
         applies: Applies::Always,
     },
     Parameter {
-        key: "path.end_contact_radius",
-        label: "s end",
-        meaning: "contact radius at which the path ends",
-        dimension: "length",
+        key: Borrowed("path.end_contact_radius"),
+        label: Borrowed("s end"),
+        meaning: Borrowed("contact radius at which the path ends"),
+        dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Described("0.004 x the contact radius at the start"),
         applies: Applies::Always,
@@ -279,8 +289,14 @@ pub static PARAMETERS: &[Parameter] = &[
 
 /// The row of a dotted key.
 #[must_use]
-pub fn parameter(key: &str) -> Option<&'static Parameter> {
-    PARAMETERS.iter().find(|row| row.key == key)
+pub fn parameter(key: &str) -> Option<Row> {
+    PARAMETERS.iter().find(|row| row.key == key).map(Borrowed)
+}
+
+/// The table that a dotted key stands in, if any.
+#[must_use]
+pub fn table_of(key: &str) -> Option<&str> {
+    key.rsplit_once('.').map(|(table, _)| table)
 }
 
 /// The keys that hold other keys: `material`, `gap`, …, and `path.control` when it is a spring.
@@ -295,14 +311,14 @@ pub fn tables() -> impl Iterator<Item = &'static str> {
 impl Parameter {
     /// The table the key stands in, if any.
     #[must_use]
-    pub fn table(&self) -> Option<&'static str> {
-        self.key.rsplit_once('.').map(|(table, _)| table)
+    pub fn table(&self) -> Option<&str> {
+        table_of(&self.key)
     }
 
     /// The last part of the key.
     #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.key.rsplit_once('.').map_or(self.key, |(_, name)| name)
+    pub fn name(&self) -> &str {
+        self.key.rsplit_once('.').map_or(&*self.key, |(_, name)| name)
     }
 
     /// Whether the key is a part of another parameter's value, as `path.control.stiffness` is.
@@ -364,8 +380,8 @@ mod tests {
 
     #[test]
     fn keys_and_labels_are_unique_ascii_and_grouped() {
-        let keys: BTreeSet<_> = PARAMETERS.iter().map(|row| row.key).collect();
-        let labels: BTreeSet<_> = PARAMETERS.iter().map(|row| row.label).collect();
+        let keys: BTreeSet<_> = PARAMETERS.iter().map(|row| &row.key).collect();
+        let labels: BTreeSet<_> = PARAMETERS.iter().map(|row| &row.label).collect();
         assert_eq!((keys.len(), labels.len()), (PARAMETERS.len(), PARAMETERS.len()));
         for row in PARAMETERS {
             assert!(row.label.is_ascii() && row.label.len() <= 11, "{}", row.label);

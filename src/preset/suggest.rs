@@ -15,10 +15,7 @@ pub fn closest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 }
 
 /// The dotted key most alike to `key`, as a whole or in its last part; `labels` gives other names of a key.
-pub fn closest_key(
-    key: &str,
-    known: impl IntoIterator<Item = (&'static str, &'static str)>,
-) -> Option<&'static str> {
+pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
     if key.len() > LONGEST {
         return None;
     }
@@ -51,7 +48,7 @@ mod tests {
 
     #[test]
     fn offers_what_was_meant() {
-        let key = |k| closest_key(k, PARAMETERS.iter().map(|row| (row.key, row.label)));
+        let key = |k| closest_key(k, PARAMETERS.iter().map(|row| (&*row.key, &*row.label)));
         assert_eq!(key("gap.wavelenght"), Some("gap.wavelength"));
         assert_eq!(key("rings"), Some("basis.rings"));
         assert_eq!(key("material.amplitude"), Some("gap.amplitude"));

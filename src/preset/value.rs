@@ -5,6 +5,7 @@ use super::schema::{AUTO, Kind, LARGEST, Parameter, SMALLEST};
 use super::suggest::closest;
 use super::text::{is_unsafe, quote};
 use crate::contact::Control;
+use std::borrow::Cow;
 use std::fmt;
 use toml::de::DeValue;
 
@@ -125,7 +126,7 @@ impl Parameter {
                 if text.chars().nth(max_chars).is_some() {
                     Err(self.out_of_range(&format!("\"{}\"", quote(&text))))
                 } else if text.chars().any(is_unsafe) {
-                    Err(Invalid::Unprintable { key: self.key, value: quote(&text) })
+                    Err(Invalid::Unprintable { key: self.key.clone(), value: quote(&text) })
                 } else {
                     Ok(Value::Text(text))
                 }
@@ -185,7 +186,7 @@ impl Parameter {
     }
 
     pub(super) fn wrong_type(&self, found: String) -> Invalid {
-        Invalid::Type { key: self.key, found, allowed: self.allowed() }
+        Invalid::Type { key: self.key.clone(), found, allowed: self.allowed() }
     }
 
     fn check_number(&self, x: f64) -> Result<Value, Invalid> {
@@ -200,14 +201,14 @@ impl Parameter {
     }
 
     fn out_of_range(&self, value: &str) -> Invalid {
-        Invalid::Range { key: self.key, value: value.to_owned(), allowed: self.allowed() }
+        Invalid::Range { key: self.key.clone(), value: value.to_owned(), allowed: self.allowed() }
     }
 
     fn no_choice(&self, word: &str, words: &[&'static str]) -> Invalid {
         let meant = closest(word, words.iter().copied());
         // The borrow of `words` is shorter than its words' own.
-        let meant = meant.and_then(|w| words.iter().copied().find(|known| *known == w));
-        Invalid::Choice { key: self.key, value: quote(word), allowed: self.allowed(), meant }
+        let meant = meant.and_then(|w| words.iter().copied().find(|known| *known == w)).map(Cow::Borrowed);
+        Invalid::Choice { key: self.key.clone(), value: quote(word), allowed: self.allowed(), meant }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Preset → TOML text: every key, every digit, each with what it means.
 
 use super::model::Preset;
-use super::schema::{PARAMETERS, Parameter, parameter};
+use super::schema::{Parameter, parameter};
 
 /// The preset as a file.
 ///
@@ -11,19 +11,19 @@ use super::schema::{PARAMETERS, Parameter, parameter};
 pub fn write(preset: &Preset) -> String {
     let mut text = String::from("# A pulloff preset. Any consistent units.\n");
     let mut table = None;
-    for row in PARAMETERS.iter().filter(|row| !row.is_part()) {
-        let line = match preset.get(row.key) {
+    for row in preset.rows().filter(|row| !row.is_part()) {
+        let line = match preset.get(&row.key) {
             Some(value) => format!("{} = {}", row.name(), value.to_toml()),
             None if row.key == "path.end_contact_radius" => {
                 format!("# {} = {}", row.name(), row.fallback_text())
             }
             None => continue,
         };
-        if row.table() != table {
-            table = row.table();
-            text.push_str(&table.map_or_else(String::new, |name| format!("\n[{name}]\n")));
+        if row.table() != table.as_deref() {
+            table = row.table().map(str::to_owned);
+            text.push_str(&table.as_ref().map_or_else(String::new, |name| format!("\n[{name}]\n")));
         }
-        text.push_str(format!("{line:<40}{}", comment(row)).trim_end());
+        text.push_str(format!("{line:<40}{}", comment(&row)).trim_end());
         text.push('\n');
     }
     text
@@ -35,8 +35,8 @@ fn comment(row: &Parameter) -> String {
         return String::new();
     }
     // Where a value's part has a dimension, it is the one worth naming.
-    let part = parameter("path.control.stiffness").filter(|part| part.table() == Some(row.key));
-    match (row.dimension, part) {
+    let part = parameter("path.control.stiffness").filter(|part| part.table() == Some(&*row.key));
+    match (&*row.dimension, part) {
         ("", Some(part)) => format!(" # {} ({}: {})", row.meaning, part.name(), part.dimension),
         ("", None) => format!(" # {}", row.meaning),
         (dimension, _) => format!(" # {}, {} ({dimension})", row.label, row.meaning),

@@ -263,7 +263,12 @@ impl App {
     fn ask_value(&mut self) -> Vec<Effect> {
         let Some((row, value)) = self.model.selected_knob() else { return Vec::new() };
         let text = value.map_or_else(String::new, |value| value.to_string());
-        self.prompt(&format!("{}: {}", row.label, row.meaning), &row.allowed(), text, Purpose::Value(row.key))
+        self.prompt(
+            &format!("{}: {}", row.label, row.meaning),
+            &row.allowed(),
+            text,
+            Purpose::Value(row.key.clone()),
+        )
     }
 
     fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
@@ -283,7 +288,7 @@ impl App {
             KeyCode::Esc => return Vec::new(),
             KeyCode::Enter => {
                 let text = prompt.input.value().to_owned();
-                let effects = self.run(prompt.purpose.command(text));
+                let effects = self.run(prompt.purpose.clone().command(text));
                 // A value that was refused stays to be mended.
                 if let Some((Level::Error, reason)) =
                     self.model.message.take_if(|(level, _)| *level == Level::Error)

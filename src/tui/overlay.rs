@@ -2,6 +2,7 @@
 
 use crate::explorer::Command;
 use crate::explorer::files::Document;
+use crate::preset::Key;
 use tui_input::Input;
 
 /// What lies over the screen.
@@ -35,10 +36,10 @@ pub struct Prompt {
 }
 
 /// What a typed line is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
     /// The value of a key.
-    Value(&'static str),
+    Value(Key),
     /// The name to save under.
     Name,
     /// The file to export to.

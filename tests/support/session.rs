@@ -35,7 +35,7 @@ impl Session {
     }
 
     pub fn set(&mut self, key: &'static str, text: &str) -> &mut Self {
-        self.does(Command::Set { key, text: text.to_owned() })
+        self.does(Command::Set { key: key.into(), text: text.to_owned() })
     }
 
     pub fn status(&self) -> String {

@@ -165,7 +165,7 @@ fn contact_stiffness(model: &Model) -> f64 {
 pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     let Some((row, _)) = model.selected_knob() else { return Vec::new() };
     let contact = contact_stiffness(model);
-    match nudge(&model.preset, row, up, amount, contact) {
+    match nudge(&model.preset, &row, up, amount, contact) {
         Ok(preset) => change(model, preset),
         Err(reason) => {
             tell(model, Level::Error, reason);
@@ -174,7 +174,7 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     }
 }
 
-pub(super) fn set(model: &mut Model, key: &'static str, text: &str) -> Vec<Effect> {
+pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let Some(row) = crate::preset::parameter(key) else { return Vec::new() };
     let mut preset = model.preset.clone();
     let result = row.parse(text).and_then(|value| preset.set(key, value));

@@ -68,7 +68,7 @@ fn knob_line(
     let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
     let room = usize::from(width).saturating_sub(10 + ends.len());
     let text: String = text.chars().take(room).collect();
-    let line = format!("{mark}{:<8} {text}{ends}", theme.symbols(row.label));
+    let line = format!("{mark}{:<8} {text}{ends}", theme.symbols(&row.label));
     let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }

@@ -284,7 +284,7 @@ fn selection_instability_and_errors_have_their_styles() {
 #[test]
 fn too_few_rings_are_a_warning_on_the_screen() {
     let mut screen = Screen::new("fig-9");
-    let set = Command::Set { key: "basis.rings", text: "40".to_owned() };
+    let set = Command::Set { key: "basis.rings".into(), text: "40".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, set);
     screen.settle(effects);
     let buffer = screen.draw(120, 40);
