@@ -77,7 +77,7 @@ impl Case {
     /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said no.
     pub fn prepare(preset: &Preset, progress: Progress<'_>) -> Result<Self, CaseError> {
         let problem = preset.problem();
-        let reduced = problem.reduced();
+        let reduced = preset.reduced();
         let units = reduced.units;
         let wanted = match preset.path.start {
             Start::ContactRadius(s) => Start::ContactRadius(s / units.length),
@@ -168,18 +168,25 @@ impl Case {
         })
     }
 
-    /// The smooth sphere of the same curvature and adhesion.
-    pub fn smooth(&self) -> Jkr {
-        Jkr {
+    /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
+    pub fn smooth(&self) -> Option<Jkr> {
+        Some(Jkr {
             effective_modulus: self.problem.effective_modulus,
             work_of_adhesion: self.problem.work_of_adhesion,
-            radius_of_curvature: self.problem.shape.radius_of_curvature(),
-        }
+            radius_of_curvature: self.problem.shape.radius_of_curvature()?,
+        })
+    }
+
+    /// Its pull-off force `P_c`, where there is one and it adheres.
+    pub fn critical_force(&self) -> Option<f64> {
+        self.smooth().map(|jkr| jkr.pull_off_force()).filter(|force| *force > 0.0)
     }
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string).collect()
+        let mut warnings = self.problem.shape.notes();
+        warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        warnings
     }
 
     /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
@@ -226,7 +233,12 @@ fn start(
                 Start::Approach(delta) => unit(delta.abs().sqrt()),
                 Start::Force(p) => unit(p.abs().cbrt()),
             };
+            let most = reduced.largest_contact();
             loop {
+                largest = largest.min(most.max(match wanted {
+                    Start::ContactRadius(s) => s,
+                    Start::Approach(_) | Start::Force(_) => 0.0,
+                }));
                 let found = radius(&(Arc::new(resolving(largest)?) as Arc<dyn Basis>))?;
                 if found <= largest {
                     return Ok((Arc::new(resolving(found)?), found));

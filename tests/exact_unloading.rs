@@ -48,7 +48,7 @@ fn limit_points_and_jumps_are_those_of_the_reference() {
     for case in cases() {
         let closed = Exact::of(&case.problem);
         let numerical =
-            Exact::by_quadrature(1.0, case.problem.work_of_adhesion, Arc::new(case.problem.shape));
+            Exact::by_quadrature(1.0, case.problem.work_of_adhesion, Arc::new(case.problem.shape.clone()));
         for control in controls(&case) {
             let exact = &case.data["control"][control.to_string()];
             for disc in [&closed, &numerical] {

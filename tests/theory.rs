@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 fn by_quadrature(problem: &Problem) -> Exact {
-    Exact::by_quadrature(problem.effective_modulus, problem.work_of_adhesion, Arc::new(problem.shape))
+    Exact::by_quadrature(problem.effective_modulus, problem.work_of_adhesion, Arc::new(problem.shape.clone()))
 }
 
 /// A reference table with its problem.
@@ -123,7 +123,7 @@ fn the_pressure_carries_the_force() {
         let (exact, s) = (Exact::of(&problem), 0.17_f64);
         let modulus = problem.effective_modulus;
         // Without the edge, in t = √(s² − r²), of which this part of the pressure is a smooth function.
-        let pressed = Exact::of(&Problem { work_of_adhesion: 0.0, ..problem });
+        let pressed = Exact::of(&Problem { work_of_adhesion: 0.0, ..problem.clone() });
         let wave = exact.wave().map(|wave| 0.1 * wave);
         let [force] = integrate(0.0, s, wave, |t| {
             let r = ((s - t) * (s + t)).sqrt();

@@ -3,7 +3,7 @@
 use super::problem::Problem;
 use std::f64::consts::PI;
 
-/// Dimensionless groups of a problem; those of the wave are `None` for a gap without one.
+/// Dimensionless groups of a problem; those of the wave and of R are `None` for a gap without one.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Groups {
     /// A/λ.
@@ -13,7 +13,7 @@ pub struct Groups {
     /// λ²/(AR); above 8.5761 the gap rises monotonically.
     pub connectivity: Option<f64>,
     /// γ' = 2πγ/(E*R).
-    pub adhesion: f64,
+    pub adhesion: Option<f64>,
     /// Johnson's α = √(2γλ/(π²E*A²)).
     pub johnson: Option<f64>,
 }
@@ -21,16 +21,16 @@ pub struct Groups {
 impl Groups {
     /// The groups of `problem`.
     pub fn of(problem: &Problem) -> Self {
-        let Problem { effective_modulus: e, work_of_adhesion: gamma, shape } = *problem;
+        let Problem { effective_modulus: e, work_of_adhesion: gamma, ref shape } = *problem;
         let radius = shape.radius_of_curvature();
         let wave = shape.wave();
         // With A = 0 the last two are infinite, which says nothing: left out.
         let rough = wave.filter(|(a, _)| *a > 0.0);
         Self {
             amplitude_over_wavelength: wave.map(|(a, l)| a / l),
-            wavelength_over_radius: wave.map(|(_, l)| l / radius),
-            connectivity: rough.map(|(a, l)| l * l / (a * radius)),
-            adhesion: 2.0 * PI * gamma / (e * radius),
+            wavelength_over_radius: wave.zip(radius).map(|((_, l), radius)| l / radius),
+            connectivity: rough.zip(radius).map(|((a, l), radius)| l * l / (a * radius)),
+            adhesion: radius.map(|radius| 2.0 * PI * gamma / (e * radius)),
             johnson: rough.map(|(a, l)| (2.0 * gamma * l / (PI * PI * e * a * a)).sqrt()),
         }
     }
@@ -53,7 +53,7 @@ mod tests {
         assert!(close(groups.amplitude_over_wavelength, 0.05));
         assert!(close(groups.wavelength_over_radius, 0.05));
         assert!(close(groups.connectivity, 1.0));
-        assert!((groups.adhesion - 0.025).abs() < 1e-15);
+        assert!((groups.adhesion.unwrap() - 0.025).abs() < 1e-15);
         assert!((groups.johnson.unwrap() - 2.54).abs() < 0.01);
     }
 }

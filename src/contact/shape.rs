@@ -1,12 +1,17 @@
 //! The gap shapes a person can choose.
 
+use super::formula::TypedGap;
 use super::gap::{Gap, Jet};
 use super::lanes::map_lanes;
+use super::shapes::power_law::NEARLY_A_CONE;
+use super::shapes::random_waves::RandomWavesError;
+use super::shapes::{ExactSphere, Harmonics, Measured, PowerLaw, RandomWaves};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 use wide::f64x4;
 
-/// A gap shape with its parameters, in any consistent units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A gap shape with its parameters, in any consistent units. Cheap to clone.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// The paraboloid h = r²/(2R), eq. (20).
     Sphere {
@@ -22,38 +27,141 @@ pub enum Shape {
         /// Wavelength λ, a length.
         wavelength: f64,
     },
+    /// The sphere itself, h = R − √(R² − r²).
+    ExactSphere(ExactSphere),
+    /// The cone h = c r, by its slope c.
+    Cone {
+        /// c, the cotangent of the half apex angle.
+        slope: f64,
+    },
+    /// h = c rⁿ.
+    PowerLaw(PowerLaw),
+    /// A paraboloid with any waves.
+    Harmonics(Arc<Harmonics>),
+    /// A paraboloid with waves drawn from a power law.
+    RandomWaves {
+        /// What they are drawn from.
+        spectrum: RandomWaves,
+        /// The waves drawn.
+        drawn: Arc<Harmonics>,
+    },
+    /// A formula in r.
+    Formula(Arc<TypedGap>),
+    /// A measured profile.
+    Profile(Arc<Measured>),
 }
 
 impl Shape {
+    /// The waves of `spectrum`.
+    ///
+    /// # Errors
+    /// [`RandomWavesError`] with the number that is out of range.
+    pub fn random_waves(spectrum: RandomWaves) -> Result<Self, RandomWavesError> {
+        Ok(Self::RandomWaves { spectrum, drawn: Arc::new(spectrum.harmonics()?) })
+    }
+
     /// The name used in preset files.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Sphere { .. } => "sphere",
             Self::WavySphere { .. } => "wavy-sphere",
+            Self::ExactSphere(_) => "exact-sphere",
+            Self::Cone { .. } => "cone",
+            Self::PowerLaw(_) => "power-law",
+            Self::Harmonics(_) => "harmonics",
+            Self::RandomWaves { .. } => "random-waves",
+            Self::Formula(_) => "formula",
+            Self::Profile(_) => "profile",
         }
     }
 
-    /// R of the paraboloid the shape is built on.
-    pub fn radius_of_curvature(&self) -> f64 {
-        match *self {
+    /// R, where the shape has one: of the sphere, of the paraboloid it is built on, the parameter `R` of a formula, of
+    /// the paraboloid nearest to a profile.
+    pub fn radius_of_curvature(&self) -> Option<f64> {
+        match self {
             Self::Sphere { radius_of_curvature } | Self::WavySphere { radius_of_curvature, .. } => {
-                radius_of_curvature
+                Some(*radius_of_curvature)
             }
+            Self::ExactSphere(sphere) => Some(sphere.radius),
+            Self::Harmonics(waves) => Some(waves.radius_of_curvature()),
+            Self::RandomWaves { spectrum, .. } => Some(spectrum.radius_of_curvature),
+            Self::Formula(typed) => typed.radius_of_curvature(),
+            Self::Profile(measured) => measured.profile().radius_of_curvature(),
+            Self::Cone { .. } | Self::PowerLaw(_) => None,
         }
     }
 
-    /// Amplitude A and wavelength λ, where the shape has waves.
+    /// The length by which the problem is reduced: R, else the radius where h = r/2, as for a paraboloid h(R) = R/2, else
+    /// the extent of a profile. A cone has none.
+    pub fn length(&self) -> Option<f64> {
+        self.radius_of_curvature().or_else(|| match self {
+            Self::PowerLaw(law) if law.exponent >= NEARLY_A_CONE => Some(law.reference_length()),
+            Self::Formula(typed) => typed.length(),
+            Self::Profile(measured) => measured.profile().largest_radius(),
+            _ => None,
+        })
+    }
+
+    /// Amplitude A and wavelength λ, where the shape has one wave: the paper's.
     pub fn wave(&self) -> Option<(f64, f64)> {
         match *self {
-            Self::Sphere { .. } => None,
             Self::WavySphere { amplitude, wavelength, .. } => Some((amplitude, wavelength)),
+            _ => None,
+        }
+    }
+
+    /// What was changed in the gap without being asked for, in words.
+    pub fn notes(&self) -> Vec<String> {
+        match self {
+            Self::Formula(typed) if typed.offset() != 0.0 => vec![format!(
+                "the formula is {:e} on the axis: subtracted, since the gap is zero there",
+                typed.offset()
+            )],
+            Self::Profile(measured) => measured.rows().notes.clone(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The gap where it is not one of the paper's two, which are computed here.
+    fn other(&self) -> Option<Other<'_>> {
+        Some(match self {
+            Self::Sphere { .. } | Self::WavySphere { .. } => return None,
+            Self::ExactSphere(gap) => Other::Ref(gap),
+            Self::Cone { slope } => Other::Cone(PowerLaw::cone(*slope)),
+            Self::PowerLaw(gap) => Other::Ref(gap),
+            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => Other::Ref(&**gap),
+            Self::Formula(typed) => Other::Ref(typed.gap()),
+            Self::Profile(measured) => Other::Ref(measured.profile()),
+        })
+    }
+
+    /// R of the paper's two gaps.
+    fn paraboloid(&self) -> f64 {
+        self.radius_of_curvature().unwrap_or(f64::NAN)
+    }
+}
+
+/// A gap computed in a file of its own.
+enum Other<'a> {
+    Ref(&'a dyn Gap),
+    Cone(PowerLaw),
+}
+
+impl Other<'_> {
+    fn gap(&self) -> &dyn Gap {
+        match self {
+            Self::Ref(gap) => *gap,
+            Self::Cone(cone) => cone,
         }
     }
 }
 
 impl Gap for Shape {
     fn jet(&self, r: f64) -> Jet {
-        let radius = self.radius_of_curvature();
+        if let Some(other) = self.other() {
+            return other.gap().jet(r);
+        }
+        let radius = self.paraboloid();
         let mut jet =
             Jet { value: r * r / (2.0 * radius), first: r / radius, second: 1.0 / radius, third: 0.0 };
         if let Some((amplitude, wavelength)) = self.wave() {
@@ -70,7 +178,10 @@ impl Gap for Shape {
     }
 
     fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
-        let curvature = 1.0 / self.radius_of_curvature();
+        if let Some(other) = self.other() {
+            return other.gap().values(s, nodes, values);
+        }
+        let curvature = 1.0 / self.paraboloid();
         let (amplitude, wavelength) = self.wave().unwrap_or((0.0, f64::INFINITY));
         let half = f64x4::splat(PI / wavelength);
         map_lanes(nodes, [values], |x| {
@@ -81,7 +192,10 @@ impl Gap for Shape {
     }
 
     fn derivatives(&self, s: f64, nodes: &[f64], derivatives: [&mut [f64]; 3]) {
-        let (s, curvature) = (f64x4::splat(s), f64x4::splat(1.0 / self.radius_of_curvature()));
+        if let Some(other) = self.other() {
+            return other.gap().derivatives(s, nodes, derivatives);
+        }
+        let (s, curvature) = (f64x4::splat(s), f64x4::splat(1.0 / self.paraboloid()));
         let Some((amplitude, wavelength)) = self.wave() else {
             return map_lanes(nodes, derivatives, |x| [s * x * curvature, curvature, f64x4::ZERO]);
         };
@@ -97,16 +211,26 @@ impl Gap for Shape {
     }
 
     fn feature_length(&self) -> Option<f64> {
+        if let Some(other) = self.other() {
+            return other.gap().feature_length();
+        }
         // A wave without amplitude is no feature: the mesh and the steps need not resolve it.
         self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
     }
 
     fn band_limit(&self) -> Option<f64> {
+        if let Some(other) = self.other() {
+            return other.gap().band_limit();
+        }
         self.feature_length()
     }
 
     fn reference_length(&self) -> f64 {
-        self.radius_of_curvature()
+        self.length().unwrap_or(1.0)
+    }
+
+    fn largest_radius(&self) -> Option<f64> {
+        self.other()?.gap().largest_radius()
     }
 }
 
@@ -147,7 +271,7 @@ mod tests {
         let wave = Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 };
         for shape in [Shape::Sphere { radius_of_curvature: 1.7 }, wave] {
             // In another unit of length as well.
-            let gap = Scaled::new(shape, 0.3);
+            let gap = Scaled::new(shape.clone(), 0.3);
             let s = 4.1;
             let mut found = [(); 4].map(|()| vec![f64::NAN; nodes.len()]);
             let [value, first, second, third] = &mut found;

@@ -109,7 +109,7 @@ impl Sweep {
             groups: Groups::of(&case.problem),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
-            critical_force: case.smooth().pull_off_force(),
+            critical_force: case.critical_force().unwrap_or(0.0),
             warnings: case.warnings(curve.outermost()),
             notes: case.notes(curve.outermost()),
             curve,

@@ -192,8 +192,8 @@ pub struct WalkRow {
     pub dissipated_by_area: Option<f64>,
     /// γ when it was solved: parameters may change during a walk.
     pub work_of_adhesion: f64,
-    /// R when it was solved.
-    pub radius_of_curvature: f64,
+    /// R when it was solved, where the gap has one.
+    pub radius_of_curvature: Option<f64>,
     /// A when it was solved.
     pub amplitude: Option<f64>,
     /// λ when it was solved.

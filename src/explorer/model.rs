@@ -146,13 +146,10 @@ pub const FIRST_LENGTH: f64 = 0.02;
 /// The step lengths a person can choose.
 pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 
-/// The key without a knob: the version of the format.
-const NO_KNOB: &str = "format";
-
 /// Whether two presets have the same curve: everything but the title and the control is equal.
 pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
-    (a.material, a.gap, a.basis, a.path.start, a.path.end_contact_radius)
-        == (b.material, b.gap, b.basis, b.path.start, b.path.end_contact_radius)
+    (a.material, &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
+        == (b.material, &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
 }
 
 /// Whether a state solves the problem of `curve`.
@@ -222,11 +219,10 @@ impl Model {
     /// The parameters with a knob, in the table's order, and their values; no value follows from others.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
         // The title last: the numbers are what is turned.
-        let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.rows().partition(|row| row.key == "title");
+        let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
-            .filter(|row| row.key != NO_KNOB)
             .map(|row| (row.clone(), self.preset.get(&row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()

@@ -35,7 +35,10 @@ pub fn nudge(
         (_, None) => {
             return Err(format!("{} follows from other values; Enter types one", row.label));
         }
-        (Kind::Positive | Kind::NonNegative | Kind::Finite, Some(Value::Number(x))) => {
+        (
+            Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
+            Some(Value::Number(x)),
+        ) => {
             if x == 0.0 {
                 return Err(format!(
                     "{} is 0 and has no scale to nudge it by; Enter types a value",
@@ -99,7 +102,7 @@ pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
     match preset.path.control {
         Control::Displacement => Control::Force,
         Control::Force => {
-            let k = last.unwrap_or_else(|| tidy(STIFFNESS * preset.problem().reduced().units.stiffness));
+            let k = last.unwrap_or_else(|| tidy(STIFFNESS * preset.reduced().units.stiffness));
             Control::Stiffness(k)
         }
         Control::Stiffness(_) => Control::Displacement,
@@ -145,6 +148,10 @@ mod tests {
         assert_eq!(other.get("basis.functions"), Some("auto".into()));
         let back = nudge(&other, kind, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(back.get("basis.rings"), Some(Value::Integer(200)));
+        preset.set("gap.shape", "power-law".into()).unwrap();
+        let exponent = &preset.row("gap.exponent").unwrap();
+        let steeper = nudge(&preset, exponent, true, Amount::Coarse, 1.0).unwrap();
+        assert_eq!(steeper.get("gap.exponent"), Some(Value::Number(2.2)));
     }
 
     #[test]

@@ -16,11 +16,12 @@ pub type Place = [f64; 3];
 /// Theory over the radii of a curve, in the user's units.
 #[derive(Debug, Clone)]
 pub struct Theory {
-    /// The smooth sphere of the same curvature and adhesion.
+    /// The smooth sphere of the same curvature and adhesion; empty without a radius of curvature.
     pub smooth: Vec<Place>,
-    /// Its name: Hertz or JKR.
+    /// Its name: Hertz or JKR; without a sphere what is missing.
     pub smooth_name: &'static str,
-    /// The exact solution of the gap, over the radii of the curve and as fine.
+    /// The exact solution of the gap, over the radii of the curve and as fine; empty for a profile, whose integrals run
+    /// over every row for every state.
     pub exact: Vec<Place>,
     /// Its name.
     pub exact_name: &'static str,
@@ -55,10 +56,11 @@ impl Theory {
             .collect();
         let fine = radii(from, to, case.problem.shape.feature_length(), SWEEP_STEPS_PER_WAVE);
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
+        let is_slow = matches!(case.problem.shape, Shape::Profile(_));
         Self {
-            smooth: along(&jkr, &smooth),
-            smooth_name: jkr.name(),
-            exact: along(&*exact, &fine),
+            smooth: jkr.map_or_else(Vec::new, |jkr| along(&jkr, &smooth)),
+            smooth_name: jkr.as_ref().map_or("no radius", Disc::name),
+            exact: if is_slow { Vec::new() } else { along(&*exact, &fine) },
             exact_name: exact.name(),
             envelope: envelope(case, &smooth),
         }

@@ -82,7 +82,7 @@ fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
     let line = |role, name: &str, places: &[[f64; 3]]| {
         Line::new(role, name, places.iter().map(|at| scale.place(view, *at)).collect())
     };
-    if subject.overlays.smooth {
+    if subject.overlays.smooth && !theory.smooth.is_empty() {
         figure.lines.push(line(Role::Smooth, theory.smooth_name, &theory.smooth));
     }
     if let (Some(envelope), true) = (&theory.envelope, subject.overlays.envelope) {
@@ -99,7 +99,7 @@ fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
             fixed(envelope.waves, 1)
         ));
     }
-    if subject.overlays.exact {
+    if subject.overlays.exact && !theory.exact.is_empty() {
         figure.lines.push(line(Role::Exact, theory.exact_name, &theory.exact));
     }
 }

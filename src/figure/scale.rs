@@ -21,7 +21,7 @@ impl Scale {
         if axes == Axes::Raw {
             return Self { force: None, wave: None, modulus: None };
         }
-        let problem = curve.setting.case.problem;
+        let problem = &curve.setting.case.problem;
         Self {
             force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
             wave: problem.shape.feature_length(),

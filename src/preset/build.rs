@@ -10,7 +10,7 @@ use super::schema::{
 };
 use super::value::Value;
 use crate::contact::Start;
-use crate::contact::{Control, Shape};
+use crate::contact::{Control, Gap};
 use crate::ritz::Grading;
 use std::collections::BTreeMap;
 
@@ -29,21 +29,15 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
     if let [first, second, ..] = starts[..] {
         given.faults.push(Invalid::Starts { first: first.into(), second: second.into() });
     }
-    let radius_of_curvature = given.number("gap.radius_of_curvature");
-    let gap = match given.text("gap.shape").as_str() {
-        "wavy-sphere" => Shape::WavySphere {
-            radius_of_curvature,
-            amplitude: given.number("gap.amplitude"),
-            wavelength: given.number("gap.wavelength"),
-        },
-        // An unknown word is among the faults already.
-        _ => Shape::Sphere { radius_of_curvature },
-    };
+    let gap = given.shape(starts.first().copied());
     let start = match starts.first() {
         Some(&key) if key == START_KEYS[1] => Start::Approach(given.number(key)),
         Some(&key) if key == START_KEYS[2] => Start::Force(given.number(key)),
         Some(&key) => Start::ContactRadius(given.number(key)),
-        None => Start::ContactRadius(START_OVER_CURVATURE * radius_of_curvature),
+        None => Start::ContactRadius(match gap.radius_of_curvature() {
+            Some(radius) => START_OVER_CURVATURE * radius,
+            None => given.required(START_KEYS[0]),
+        }),
     };
     let end = "path.end_contact_radius";
     let preset = Preset {
@@ -70,6 +64,7 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
 /// The checks that span several keys.
 fn across(preset: &Preset) -> Vec<Invalid> {
     let radius = preset.gap.radius_of_curvature();
+    let known = preset.gap.largest_radius();
     let mut faults = Vec::new();
     let end = preset.path.end_contact_radius;
     let start = match preset.path.start {
@@ -77,8 +72,11 @@ fn across(preset: &Preset) -> Vec<Invalid> {
         Start::Approach(_) | Start::Force(_) => None,
     };
     for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end)] {
-        if let Some(value) = value.filter(|s| *s > RADIUS_OVER_CURVATURE * radius) {
+        let Some(value) = value else { continue };
+        if let Some(radius) = radius.filter(|radius| value > RADIUS_OVER_CURVATURE * radius) {
             faults.push(Invalid::Wide { key: key.into(), value, radius });
+        } else if let Some(largest) = known.filter(|largest| value >= *largest) {
+            faults.push(Invalid::Beyond { key: key.into(), value, largest });
         }
     }
     if let BasisSpec::Rings { rings, grading } = preset.basis
@@ -116,9 +114,9 @@ pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
 
 /// The values with what was found wrong so far. A value that is missing or wrong reads as one that keeps
 /// the rest going; no preset comes of it.
-struct Given<'a> {
-    values: &'a Values,
-    faults: Vec<Invalid>,
+pub(super) struct Given<'a> {
+    pub(super) values: &'a Values,
+    pub(super) faults: Vec<Invalid>,
 }
 
 impl Given<'_> {
@@ -137,8 +135,12 @@ impl Given<'_> {
             let Some(word) = chosen(self.values, chooser) else { continue };
             if !row.fits(chooser, &word) {
                 let belongs = words.join(" or ");
-                let (what, chosen) =
-                    if chooser == "gap.shape" { ("gap", format!("a {word}")) } else { ("basis", word) };
+                let (what, chosen) = match (chooser, &*word) {
+                    ("gap.shape", "harmonics" | "random-waves") => ("gap", format!("one of {word}")),
+                    ("gap.shape", "exact-sphere") => ("gap", format!("an {word}")),
+                    ("gap.shape", _) => ("gap", format!("a {word}")),
+                    _ => ("basis", word),
+                };
                 self.faults.push(Invalid::OtherChoice { key: row.key.clone(), belongs, what, chosen });
             }
         }
@@ -166,7 +168,7 @@ impl Given<'_> {
     }
 
     /// The checked value of a key, or its default; else it is missing.
-    fn value(&mut self, key: &str) -> Option<Value> {
+    pub(super) fn value(&mut self, key: &str) -> Option<Value> {
         let row = parameter(key)?;
         if let Some(value) = self.values.get(key) {
             return row.check(value.clone()).ok();
@@ -183,15 +185,23 @@ impl Given<'_> {
         fallback
     }
 
-    fn number(&mut self, key: &str) -> f64 {
+    pub(super) fn number(&mut self, key: &str) -> f64 {
         if let Some(Value::Number(x)) = self.value(key) { x } else { f64::NAN }
     }
 
-    fn integer(&mut self, key: &str) -> i64 {
+    /// The number of a key that has a default elsewhere, but not here.
+    fn required(&mut self, key: &str) -> f64 {
+        self.faults.extend(
+            parameter(key).map(|row| Invalid::Missing { key: row.key.clone(), allowed: row.allowed() }),
+        );
+        f64::NAN
+    }
+
+    pub(super) fn integer(&mut self, key: &str) -> i64 {
         if let Some(Value::Integer(n)) = self.value(key) { n } else { 0 }
     }
 
-    fn text(&mut self, key: &str) -> String {
+    pub(super) fn text(&mut self, key: &str) -> String {
         if let Some(Value::Text(text)) = self.value(key) { text } else { String::new() }
     }
 
@@ -205,7 +215,9 @@ impl Given<'_> {
         let mut faults: Vec<Invalid> = Vec::new();
         for fault in self.faults {
             let table = match &fault {
-                Invalid::Missing { key, .. } => table_of(key).filter(|table| !present(table)),
+                Invalid::Missing { key, .. } => {
+                    table_of(key).filter(|table| !present(table) && !required(table).is_empty())
+                }
                 _ => None,
             };
             let fault = match table {

@@ -139,6 +139,32 @@ pub enum Invalid {
         /// The grading.
         grading: Grading,
     },
+    /// A gap that cannot be made.
+    #[error("{key}: {cause}")]
+    Gap {
+        /// The key.
+        key: Key,
+        /// Why, in words.
+        cause: String,
+    },
+    /// A parameter that the formula does not use.
+    #[error("the formula has no parameter for {key}{}", hint(.meant.as_ref()))]
+    Unused {
+        /// The key.
+        key: Key,
+        /// The parameter without a value most alike.
+        meant: Option<Key>,
+    },
+    /// A contact radius where the gap is not known.
+    #[error("{key} = {value:?} is out of range: the gap is known up to the radius {largest:?} only")]
+    Beyond {
+        /// The key.
+        key: Key,
+        /// The contact radius.
+        value: f64,
+        /// The largest known radius.
+        largest: f64,
+    },
     /// A contact radius far beyond the radius of curvature.
     #[error(
         "{key} = {value:?} is out of range: it must be at most {RADIUS_OVER_CURVATURE} x the radius of \
@@ -172,6 +198,9 @@ impl Invalid {
             | Self::Starts { second: key, .. }
             | Self::EndBeyondStart { key, .. }
             | Self::Rings { key, .. }
+            | Self::Gap { key, .. }
+            | Self::Unused { key, .. }
+            | Self::Beyond { key, .. }
             | Self::Wide { key, .. } => Some(key),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }

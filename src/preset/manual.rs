@@ -1,5 +1,6 @@
 //! The key table as Markdown, for the manual.
 
+use super::family;
 use super::schema::PARAMETERS;
 use std::fmt::Write;
 
@@ -7,7 +8,10 @@ use std::fmt::Write;
 #[must_use]
 pub fn key_table() -> String {
     let mut text = String::from("| key | on screen | meaning | values | default |\n|---|---|---|---|---|\n");
-    for row in PARAMETERS {
+    let shape = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
+    let (before, after) = PARAMETERS.split_at(shape);
+    let families: Vec<_> = family::examples().collect();
+    for row in before.iter().chain(&families).chain(after) {
         let dimension =
             if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
         // Writing to a string cannot fail.
@@ -31,7 +35,7 @@ mod tests {
     #[test]
     fn every_key_has_a_row_of_five_cells() {
         let text = key_table();
-        assert_eq!(text.lines().count(), PARAMETERS.len() + 2);
+        assert_eq!(text.lines().count(), PARAMETERS.len() + family::examples().count() + 2);
         assert!(text.lines().all(|line| line.matches('|').count() == 6), "{text}");
     }
 }

@@ -10,11 +10,14 @@
 //! | [`invalid`] | what can be wrong with a value or a key |
 //! | [`model`] | the preset itself, read and changed by dotted key |
 //! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
+//! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
 //! | [`manual`] | the key table as text for the manual |
 //! | [`shipped`] | the presets that come with the program |
 //! | [`name`] | which names a person's preset may have |
+//! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
+//! | [`measured`] | the file of a measured profile → rows of a gap |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
 //! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 //! | [`atomic`] | writing a file whole or not at all |
@@ -25,15 +28,18 @@
 
 pub mod atomic;
 pub mod build;
+pub mod family;
 pub mod file;
 pub mod invalid;
 pub mod lock;
 pub mod manual;
+pub mod measured;
 pub mod model;
 pub mod name;
 pub mod profile;
 pub mod read;
 pub mod schema;
+mod shape;
 pub mod shipped;
 pub mod store;
 pub mod suggest;

@@ -1,15 +1,21 @@
 //! The preset: a problem, the basis it is solved in, and the path to follow.
 
 use super::build::{Values, build};
+use super::family;
 use super::invalid::Invalid;
+use super::measured;
 use super::schema::{
-    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, PARAMETERS, Parameter, Row, START_KEYS, parameter,
+    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, Kind, PARAMETERS, Parameter, Row, START_KEYS, parameter,
 };
+use super::shape;
 use super::suggest::closest_key;
 use super::text::quote;
 use super::value::Value;
-use crate::contact::{Control, Problem, Shape, Start};
+use crate::contact::shapes::Measured;
+use crate::contact::{Control, Problem, Reduced, Shape, Start};
 use crate::ritz::Grading;
+use std::path::Path;
+use std::sync::Arc;
 
 /// What a preset file says, complete and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,7 +96,18 @@ impl Preset {
         Problem {
             effective_modulus: self.material.effective_modulus,
             work_of_adhesion: self.material.work_of_adhesion,
-            shape: self.gap,
+            shape: self.gap.clone(),
+        }
+    }
+
+    /// The same in reduced units. A gap without a length of its own is reduced by the contact radius at the start, where
+    /// that is given.
+    #[must_use]
+    pub fn reduced(&self) -> Reduced {
+        let problem = self.problem();
+        match (self.gap.length(), self.path.start) {
+            (None, Start::ContactRadius(start)) => problem.reduced_by(start),
+            _ => problem.reduced(),
         }
     }
 
@@ -111,10 +128,7 @@ impl Preset {
             "title" => title.as_str().into(),
             "material.effective_modulus" => material.effective_modulus.into(),
             "material.work_of_adhesion" => material.work_of_adhesion.into(),
-            "gap.shape" => gap.name().into(),
-            "gap.radius_of_curvature" => gap.radius_of_curvature().into(),
-            "gap.amplitude" => gap.wave()?.0.into(),
-            "gap.wavelength" => gap.wave()?.1.into(),
+            key if key.starts_with("gap.") => return shape::get(gap, key),
             "basis.kind" => match basis {
                 BasisSpec::Rings { .. } => "rings".into(),
                 BasisSpec::Spectral { .. } => "spectral".into(),
@@ -145,7 +159,23 @@ impl Preset {
     /// The rows of this preset, in the order in which files and screens show them: those of the table, and those
     /// that it makes itself.
     pub fn rows(&self) -> impl Iterator<Item = Row> {
-        PARAMETERS.iter().map(Row::Borrowed)
+        let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
+        let (before, rest) = PARAMETERS.split_at(after);
+        let own = shape::rows(&self.gap).into_iter().map(Row::Owned);
+        before.iter().map(Row::Borrowed).chain(own).chain(rest.iter().map(Row::Borrowed))
+    }
+
+    /// The row of a key: with the range that this preset gives it, where it does.
+    #[must_use]
+    pub fn row(&self, key: &str) -> Option<Row> {
+        self.rows().find(|row| row.key == key).or_else(|| parameter(key))
+    }
+
+    /// The rows that are turned and typed on a screen: all but the format, the ranges of parameters, and the waves
+    /// after the first [`WAVE_KNOBS`](family::WAVE_KNOBS).
+    pub fn knobs(&self) -> impl Iterator<Item = Row> {
+        self.rows()
+            .filter(|row| row.key != "format" && !shape::is_range(&row.key) && family::has_knob(&row.key))
     }
 
     /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
@@ -157,14 +187,15 @@ impl Preset {
     /// Gives a key another value.
     ///
     /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
-    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `basis.kind` drops
-    /// the keys of the old basis, and takes the defaults of its own.
+    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
+    /// parameters it has in common with the old one, its others begin with 1; a `basis.kind` drops the keys of the old
+    /// basis, and takes the defaults of its own. A `gap.file` is read here, relative to the folder of the one before.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
-        let row = parameter(key).ok_or_else(|| unknown_key(key))?;
-        let value = row.check(value)?;
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let value = row.check(self.located(&row, value)?)?;
         let mut values = self.keyed();
         if CHOOSERS.contains(&&*row.key) {
             values.retain(|key, _| {
@@ -173,17 +204,16 @@ impl Preset {
         }
         match &*row.key {
             "gap.shape" => {
-                let radius = self.gap.radius_of_curvature();
-                for (key, over_radius) in [("gap.amplitude", 0.0025), ("gap.wavelength", 0.05)] {
-                    if parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string())) {
-                        values.entry(key.into()).or_insert(Value::Number(over_radius * radius));
-                    }
-                }
+                let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
+                shape::begin(&mut values, &value.to_string(), radius);
             }
             key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}
         }
         put(&mut values, &row, value);
+        if row.key == "gap.formula" {
+            shape::fit_parameters(&mut values, |_| false);
+        }
         *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
         Ok(())
     }
@@ -193,7 +223,7 @@ impl Preset {
     /// # Errors
     /// The key is unknown or required.
     pub fn reset(&mut self, key: &str) -> Result<(), Invalid> {
-        let row = parameter(key).ok_or_else(|| unknown_key(key))?;
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
         let mut values = self.keyed();
         let parent = row.table().filter(|_| row.is_part());
         values.remove(parent.unwrap_or(&row.key));
@@ -204,12 +234,51 @@ impl Preset {
         Ok(())
     }
 
+    /// The same preset for a file in `folder`: the name of a profile's file that is relative to another folder becomes
+    /// absolute.
+    #[must_use]
+    pub fn placed_in(&self, folder: &Path) -> Self {
+        let mut preset = self.clone();
+        if let Shape::Profile(measured) = &self.gap {
+            let rows = measured.rows();
+            let own = rows.folder.as_deref().unwrap_or(Path::new("."));
+            let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();
+            let is_path =
+                !rows.name.starts_with(measured::SHIPPED_DATA) && Path::new(&rows.name).is_relative();
+            if let (false, true, Ok(path)) = (is_same, is_path, std::path::absolute(own.join(&rows.name)))
+                && let Some(name) = path.to_str()
+            {
+                let moved = Measured::clone(measured).named(name.to_owned());
+                preset.gap = Shape::Profile(Arc::new(moved));
+            }
+        }
+        preset
+    }
+
     /// Checks every value and every pair of values; for a preset made in code.
     ///
     /// # Errors
     /// All that is wrong with it.
     pub fn check(&self) -> Result<(), Vec<Invalid>> {
         build(&self.keyed()).map(|_| ())
+    }
+
+    /// A value as it is to be checked: the name of a file stands for its rows, read from the folder of those before.
+    fn located(&self, row: &Parameter, value: Value) -> Result<Value, Invalid> {
+        match (value, &self.gap) {
+            (Value::Text(name), Shape::Profile(measured)) if row.kind == Kind::File => {
+                let cause = |cause| Invalid::Gap { key: row.key.clone(), cause };
+                let rows = measured::load(measured.rows().folder.as_deref(), &name).map_err(cause)?;
+                Ok(Value::Profile(Arc::new(rows)))
+            }
+            (value, _) => Ok(value),
+        }
+    }
+
+    fn unknown_key(&self, key: &str) -> Invalid {
+        let rows: Vec<Row> = self.rows().collect();
+        let meant = closest_key(key, rows.iter().map(|row| (&*row.key, &*row.label)));
+        Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
     }
 
     fn keyed(&self) -> Values {
@@ -242,6 +311,10 @@ pub(super) fn unknown_key(key: &str) -> Invalid {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::contact::Gap;
+    use crate::contact::formula::{FormulaParameter, TypedGap};
+    use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, PowerLaw, RandomWaves, Smoothing};
+    use crate::preset::schema::{Applies, START_OVER_CURVATURE};
     use proptest::prelude::*;
 
     pub fn wavy() -> Preset {
@@ -263,16 +336,10 @@ pub(super) mod tests {
         let positive = || (-29.0..29.0f64).prop_map(|e| 10f64.powf(e));
         let finite =
             || prop_oneof![Just(0.0), (-1e9..1e9f64), (-29.0..29.0f64).prop_map(|e| -(10f64.powf(e)))];
-        let gap = prop_oneof![
-            positive().prop_map(|radius_of_curvature| Shape::Sphere { radius_of_curvature }),
-            (positive(), prop_oneof![Just(0.0), positive()], positive()).prop_map(
-                |(radius_of_curvature, amplitude, wavelength)| Shape::WavySphere {
-                    radius_of_curvature,
-                    amplitude,
-                    wavelength
-                }
-            ),
-        ];
+        let gap = (0..9u8, positive(), prop_oneof![Just(0.0), positive()], positive(), 1.0..100.0f64)
+            .prop_map(|(which, radius, amplitude, wavelength, x)| {
+                any_gap(which, radius.clamp(1e-20, 1e29), amplitude, wavelength, x)
+            });
         let basis = prop_oneof![
             (4usize..=2000).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Uniform }),
             (4usize..=400).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Edge }),
@@ -289,13 +356,9 @@ pub(super) mod tests {
             (control, 0..3u8, 0.001..10.0f64, finite(), proptest::option::of(0.0001..0.99f64)),
         )
             .prop_map(|((title, e, gamma, gap, basis), (control, which, over, x, end))| {
-                let radius = gap.radius_of_curvature().clamp(1e-20, 1e29);
-                let gap = match gap {
-                    Shape::Sphere { .. } => Shape::Sphere { radius_of_curvature: radius },
-                    Shape::WavySphere { amplitude, wavelength, .. } => {
-                        Shape::WavySphere { radius_of_curvature: radius, amplitude, wavelength }
-                    }
-                };
+                // Within what is known of the gap.
+                let known = gap.largest_radius().map_or(f64::INFINITY, |known| 0.99 * known);
+                let radius = gap.radius_of_curvature().unwrap_or(1.0).min(known / over);
                 let start = match which {
                     0 => Start::ContactRadius(over * radius),
                     1 => Start::Approach(x),
@@ -311,6 +374,47 @@ pub(super) mod tests {
             })
     }
 
+    fn any_gap(which: u8, radius: f64, amplitude: f64, wavelength: f64, x: f64) -> Shape {
+        let harmonic = |phase| Harmonic { amplitude, wavelength, phase };
+        let parameter = |name: &str, value, min, max| FormulaParameter {
+            name: name.to_owned(),
+            value,
+            min,
+            max,
+            unit: min.map(|_| "\"µm\"".to_owned()),
+        };
+        match which {
+            0 => Shape::Sphere { radius_of_curvature: radius },
+            1 => Shape::WavySphere { radius_of_curvature: radius, amplitude, wavelength },
+            2 => Shape::ExactSphere(ExactSphere { radius }),
+            3 => Shape::Cone { slope: wavelength },
+            4 => Shape::PowerLaw(PowerLaw { factor: wavelength, exponent: x }),
+            5 => Shape::Harmonics(Arc::new(
+                Harmonics::new(radius, [0.0, x, -x].map(harmonic)[..which as usize % 4].to_vec()).unwrap(),
+            )),
+            6 => Shape::random_waves(RandomWaves {
+                radius_of_curvature: radius,
+                rms: amplitude,
+                longest: wavelength,
+                shortest: wavelength / (1.0 + x),
+                hurst: x / 100.0,
+                count: 7,
+                seed: x.to_bits() >> 1,
+            })
+            .unwrap(),
+            7 => {
+                let parameters =
+                    vec![parameter("R", radius, None, None), parameter("k", x, Some(1.0), Some(100.0))];
+                let start = Some(START_OVER_CURVATURE * radius);
+                Shape::Formula(Arc::new(TypedGap::new("r^2/(2*R)*(1 + k)", parameters, start).unwrap()))
+            }
+            _ => {
+                let rows = Arc::new(measured::load(None, "shipped:rough-sphere.csv").unwrap());
+                Shape::Profile(Arc::new(Measured::new(rows, Smoothing::Cutoff(x)).unwrap()))
+            }
+        }
+    }
+
     #[test]
     fn the_table_is_total() {
         // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
@@ -322,7 +426,26 @@ pub(super) mod tests {
         let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
         match gap {
             Shape::Sphere { radius_of_curvature: _ }
-            | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ } => {}
+            | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ }
+            | Shape::ExactSphere(ExactSphere { radius: _ })
+            | Shape::Cone { slope: _ }
+            | Shape::PowerLaw(PowerLaw { factor: _, exponent: _ })
+            | Shape::Harmonics(_)
+            | Shape::RandomWaves {
+                spectrum:
+                    RandomWaves {
+                        radius_of_curvature: _,
+                        rms: _,
+                        longest: _,
+                        shortest: _,
+                        hurst: _,
+                        count: _,
+                        seed: _,
+                    },
+                drawn: _,
+            }
+            | Shape::Formula(_)
+            | Shape::Profile(_) => {}
         }
         let fields = [
             "format",
@@ -333,6 +456,18 @@ pub(super) mod tests {
             "gap.radius_of_curvature",
             "gap.amplitude",
             "gap.wavelength",
+            "gap.slope",
+            "gap.coefficient",
+            "gap.exponent",
+            "gap.rms",
+            "gap.longest_wavelength",
+            "gap.shortest_wavelength",
+            "gap.hurst",
+            "gap.count",
+            "gap.seed",
+            "gap.formula",
+            "gap.file",
+            "gap.smoothing",
             "basis.kind",
             "basis.rings",
             "basis.grading",
@@ -358,8 +493,18 @@ pub(super) mod tests {
                 "basis.grading" => "edge".into(),
                 "path.control" => Control::Force.into(),
                 "path.end_contact_radius" => 0.003.into(),
+                "gap.exponent" => 2.5.into(),
+                "gap.shortest_wavelength" => 0.03.into(),
+                "gap.count" | "gap.seed" => 9.into(),
+                "gap.formula" => "r^2/R".into(),
+                "gap.file" => {
+                    Value::Profile(Arc::new(measured::load(None, "shipped:rough-sphere.csv").unwrap()))
+                }
                 _ => Value::Number(0.75),
             };
+            if let Applies::With { key: "gap.shape", words } = row.applies {
+                preset.set("gap.shape", words[0].into()).unwrap();
+            }
             if row.key == "basis.functions" {
                 preset.set("basis.kind", "spectral".into()).unwrap();
             }
@@ -377,9 +522,51 @@ pub(super) mod tests {
     #[test]
     fn the_table_knows_every_shape() {
         let parameter = parameter("gap.shape").unwrap();
-        for gap in [Shape::Sphere { radius_of_curvature: 1.0 }, wavy().gap] {
-            assert!(parameter.check(gap.name().into()).is_ok(), "{}", gap.name());
+        let Kind::Choice(words) = parameter.kind else { unreachable!("the shape is a choice") };
+        let gaps: Vec<&str> = (0..9).map(|which| any_gap(which, 1.0, 0.1, 0.1, 2.0).name()).collect();
+        assert_eq!(gaps, words);
+    }
+
+    #[test]
+    fn every_shape_can_be_chosen_and_left() {
+        let Kind::Choice(words) = parameter("gap.shape").unwrap().kind else { unreachable!("a choice") };
+        for word in words {
+            let mut preset = wavy();
+            preset.set("gap.shape", (*word).into()).unwrap();
+            assert_eq!((preset.gap.name(), preset.check()), (*word, Ok(())));
+            for (row, value) in preset.values() {
+                preset.set(&row.key, value).unwrap();
+            }
+            preset.set("gap.shape", "wavy-sphere".into()).unwrap();
+            assert!(preset.gap.wave().is_some(), "{word}");
         }
+    }
+
+    #[test]
+    fn a_formula_keeps_its_parameters_and_begins_new_ones_with_1() {
+        let mut preset = wavy();
+        preset.set("gap.shape", "formula".into()).unwrap();
+        preset.set("gap.parameters.lambda", 0.1.into()).unwrap();
+        preset.set("gap.formula", "r^2/(2*R) + B*(1 - cos(2*pi*r/lambda))".into()).unwrap();
+        let value = |preset: &Preset, name| preset.get(&format!("gap.parameters.{name}"));
+        assert_eq!(value(&preset, "lambda"), Some(0.1.into()));
+        assert_eq!((value(&preset, "A"), value(&preset, "B")), (None, Some(1.0.into())));
+        preset.set("gap.parameters.B.max", 2.0.into()).unwrap();
+        let large = preset.set("gap.parameters.B", 3.0.into()).unwrap_err().to_string();
+        assert!(
+            large.starts_with("gap.parameters.B = 3.0 is out of range: it must be a number from"),
+            "{large}"
+        );
+        let unknown = preset.set("gap.parameters.lamda", 1.0.into()).unwrap_err().to_string();
+        assert!(unknown.ends_with("did you mean gap.parameters.lambda?"), "{unknown}");
+        let broken = preset.set("gap.formula", "r^2/(2*R".into()).unwrap_err().to_string();
+        assert!(broken.starts_with("gap.formula: column "), "{broken}");
+        // Of the rows, ranges have no knob.
+        let knobs: Vec<String> = preset.knobs().map(|row| row.key.to_string()).collect();
+        assert!(
+            knobs.contains(&"gap.parameters.B".to_owned())
+                && !knobs.contains(&"gap.parameters.B.max".to_owned())
+        );
     }
 
     #[test]

@@ -4,16 +4,22 @@
 //! remembers where it came from, so a message can name the line or the assignment.
 
 use super::build::{Values, build};
+use super::family;
 use super::invalid::Invalid;
+use super::measured;
 use super::model::{Preset, put, unknown_key};
-use super::schema::{CHOOSERS, Key, Parameter, START_KEYS, parameter, table_of, tables};
+use super::schema::{CHOOSERS, Key, Kind, Parameter, START_KEYS, parameter, table_of, tables};
+use super::shape::fit_parameters;
 use super::suggest::closest;
 use super::text::{quote, sanitize, show_name};
 use super::value::Value;
+use crate::contact::shapes::harmonics::MOST_WAVES;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use thiserror::Error;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// How many mistakes are collected before reading stops.
 const MISTAKES: usize = 20;
@@ -86,7 +92,22 @@ pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
 /// # Errors
 /// Every mistake found, with its line or assignment.
 pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Result<Preset, ReadError> {
-    let mut sheet = Sheet { name: show_name(name), ..Sheet::default() };
+    read_in(None, name, text, assignments)
+}
+
+/// Reads a preset whose files are relative to `folder`, or to the current one; those of assignments always are relative
+/// to the current one.
+///
+/// # Errors
+/// Every mistake found, with its line or assignment.
+pub fn read_in<S: AsRef<str>>(
+    folder: Option<&Path>,
+    name: &str,
+    text: &str,
+    assignments: &[S],
+) -> Result<Preset, ReadError> {
+    let folder = folder.map(Path::to_path_buf);
+    let mut sheet = Sheet { name: show_name(name), folder, ..Sheet::default() };
     match DeTable::parse(text) {
         Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
         Err(error) => sheet.syntax(text, &error),
@@ -107,6 +128,10 @@ struct Entry {
 #[derive(Default)]
 struct Sheet {
     name: String,
+    /// The folder of the file.
+    folder: Option<PathBuf>,
+    /// Whether an assignment chose a formula: its parameters need not fit those of the file.
+    refit: bool,
     entries: BTreeMap<Key, Entry>,
     /// Where the file's tables begin.
     tables: BTreeMap<Key, Origin>,
@@ -134,15 +159,24 @@ impl Sheet {
                 return;
             }
             let name: &str = key.get_ref();
-            let full = if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
+            let full = match (prefix, name) {
+                ("", _) => name.to_owned(),
+                // `lambda = { value = 1, … }` is `lambda = 1` and more.
+                (_, "value") if family::is_parameter(prefix) => prefix.to_owned(),
+                _ => format!("{prefix}.{name}"),
+            };
             let origin = self.origin(place, key.span().start);
             // A quoted key with a dot in it is none of ours, whatever it spells.
             let plain = !name.contains('.');
             let row = parameter(&full).filter(|_| plain);
-            let known_table = tables().find(|table| plain && *table == full);
+            let known_table = Some(&*full).filter(|table| plain && is_table(table));
             match (value.get_ref(), row, known_table) {
-                (DeValue::Table(inner), row, Some(table)) => {
-                    self.tables.insert(table.into(), origin.clone());
+                (DeValue::Array(waves), _, Some(family::WAVE_TABLE)) => {
+                    self.tables.insert(family::WAVE_TABLE.into(), origin.clone());
+                    self.lay_waves(waves, origin, place);
+                }
+                (DeValue::Table(inner), row, Some(table)) if name != "value" => {
+                    self.tables.insert(table.to_owned().into(), origin.clone());
                     match row {
                         Some(row) if inner.is_empty() => {
                             self.put(&row, Err(row.wrong_type("an empty table".to_owned())), origin);
@@ -152,7 +186,12 @@ impl Sheet {
                 }
                 (other, Some(row), _) => {
                     let value = Value::from_toml(other).map_err(|found| row.wrong_type(found));
-                    self.put(&row, value.and_then(|value| row.check(value)), origin);
+                    let folder = match place {
+                        Place::File(_) => self.folder.as_deref(),
+                        Place::Assignment(_) => None,
+                    };
+                    let value = value.and_then(|value| located(&row, row.check(value)?, folder));
+                    self.put(&row, value, origin);
                 }
                 (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),
                 (_, None, None) => {
@@ -165,6 +204,35 @@ impl Sheet {
                     };
                     self.mistake(origin, invalid);
                 }
+            }
+        }
+    }
+
+    /// Lays down the waves of an array.
+    fn lay_waves(&mut self, waves: &DeArray<'_>, origin: Origin, place: &Place<'_>) {
+        if matches!(place, Place::Assignment(_)) {
+            self.entries.retain(|key, _| family::below(key, family::WAVE_TABLE).is_none());
+        }
+        if waves.len() > MOST_WAVES {
+            let invalid = Invalid::Range {
+                key: family::WAVE_TABLE.into(),
+                value: format!("{} waves", waves.len()),
+                allowed: format!("at most {MOST_WAVES}"),
+            };
+            return self.mistake(origin, invalid);
+        }
+        for (i, wave) in waves.iter().enumerate() {
+            if self.mistakes.len() >= MISTAKES {
+                return;
+            }
+            let table = format!("{}.{}", family::WAVE_TABLE, i + 1);
+            let origin = self.origin(place, wave.span().start);
+            match wave.get_ref() {
+                DeValue::Table(wave) => {
+                    self.tables.insert(table.clone().into(), origin);
+                    self.lay(&table, wave, place);
+                }
+                other => self.mistake(origin, not_table(&table, found(other))),
             }
         }
     }
@@ -182,9 +250,17 @@ impl Sheet {
         let key = key.trim();
         let parsed = DeValue::parse(text.trim());
         let inner = parsed.as_ref().ok().and_then(|value| value.get_ref().as_table());
-        match (parameter(key), tables().find(|table| *table == key), inner) {
+        if let (family::WAVE_TABLE, Ok(Some(waves))) =
+            (key, parsed.as_ref().map(|value| value.get_ref().as_array()))
+        {
+            return self.lay_waves(waves, origin, &place);
+        }
+        match (parameter(key), Some(key).filter(|key| is_table(key)), inner) {
             (_, Some(table), Some(inner)) if !inner.is_empty() => self.lay(table, inner, &place),
-            (Some(row), _, _) => self.put(&row, row.parse(text), origin),
+            (Some(row), _, _) => {
+                let value = row.parse(text).and_then(|value| located(&row, value, None));
+                self.put(&row, value, origin);
+            }
             (None, Some(table), _) => {
                 self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
             }
@@ -196,6 +272,7 @@ impl Sheet {
     /// the waves of another shape, the size of another basis.
     fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: Origin) {
         if matches!(origin, Origin::Assignment(_)) {
+            self.refit = self.refit || row.key == "gap.formula";
             if START_KEYS.contains(&&*row.key) {
                 self.entries.retain(|key, _| !START_KEYS.contains(&&**key));
             }
@@ -262,6 +339,12 @@ impl Sheet {
                 }
             }
         }
+        if self.refit {
+            let assigned = |key: &str| {
+                self.entries.get(key).is_some_and(|entry| matches!(entry.origin, Origin::Assignment(_)))
+            };
+            fit_parameters(&mut values, assigned);
+        }
         match build(&values) {
             Ok(preset) if mistakes.is_empty() => return Ok(preset),
             Ok(_) => {}
@@ -325,10 +408,32 @@ fn meant_keys(mistakes: &[Mistake]) -> Vec<Key> {
     mistakes.iter().filter_map(meant).collect()
 }
 
+/// Whether a key holds other keys.
+fn is_table(key: &str) -> bool {
+    family::is_table(key) || tables().any(|table| table == key)
+}
+
+/// A value as it is kept: the name of a file stands for its rows, read here.
+fn located(row: &Parameter, value: Value, folder: Option<&Path>) -> Result<Value, Invalid> {
+    match value {
+        Value::Text(name) if row.kind == Kind::File => {
+            let cause = |cause| Invalid::Gap { key: row.key.clone(), cause };
+            Ok(Value::Profile(Arc::new(measured::load(folder, &name).map_err(cause)?)))
+        }
+        value => Ok(value),
+    }
+}
+
 fn not_table(table: &str, found: String) -> Invalid {
     let inside = super::schema::PARAMETERS.iter().find(|row| row.table() == Some(table));
     let table = Key::from(table.to_owned());
-    Invalid::NotTable { example: inside.map_or(table.clone(), |row| row.key.clone()), table, found }
+    let example = match (inside, &*table) {
+        (Some(row), _) => row.key.clone(),
+        (None, family::PARAMETER_TABLE) => family::parameter_key("R").into(),
+        (None, family::WAVE_TABLE) => family::wave_key(1, "amplitude").into(),
+        (None, wave) => format!("{wave}.amplitude").into(),
+    };
+    Invalid::NotTable { table, found, example }
 }
 
 fn found(value: &DeValue<'_>) -> String {
@@ -453,7 +558,7 @@ end_contact_radius = 0.002
             (
                 "\"wavy-sphere\"",
                 "\"wavy sphere\"",
-                "w.toml:7: gap.shape = \"wavy sphere\" is not known: it must be \"sphere\" or \"wavy-sphere\"; did you mean wavy-sphere?",
+                "w.toml:7: gap.shape = \"wavy sphere\" is not known: it must be \"sphere\" or \"wavy-sphere\" or \"exact-sphere\" or \"cone\" or \"power-law\" or \"harmonics\" or \"random-waves\" or \"formula\" or \"profile\"; did you mean wavy-sphere?",
             ),
             ("format = 1", "format = 2", "w.toml:1: format = 2 is not known: this version reads format 1"),
             (
@@ -489,7 +594,7 @@ end_contact_radius = 0.002
         assert_eq!(
             messages("", &[]),
             [
-                "w.toml: the table [gap] is missing: it needs shape, radius_of_curvature",
+                "w.toml: the table [gap] is missing: it needs shape",
                 "w.toml: the table [material] is missing: it needs effective_modulus, work_of_adhesion"
             ]
         );
@@ -510,6 +615,156 @@ end_contact_radius = 0.002
                 "w.toml:10: gap.wavelength belongs to wavy-sphere, and the gap is a sphere"
             ]
         );
+    }
+
+    const FORMULA: &str = r#"[material]
+effective_modulus = 1
+work_of_adhesion = 0.004
+[gap]
+shape = "formula"
+formula = "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))"
+[gap.parameters]
+R = 1
+A = { value = 0.0025, min = 0, max = 0.01 }
+lambda.value = 0.05
+lambda.unit = "mm"
+"#;
+
+    const WAVES: &str = r#"[material]
+effective_modulus = 1
+work_of_adhesion = 0.004
+[gap]
+shape = "harmonics"
+radius_of_curvature = 1
+[[gap.waves]]
+amplitude = 0.001
+wavelength = 0.05
+[[gap.waves]]
+amplitude = 0.002
+wavelength = 0.1
+phase = 1
+"#;
+
+    #[test]
+    fn formulas_and_waves_read() {
+        let preset = read("f.toml", FORMULA).unwrap();
+        assert_eq!(preset.path.start, Start::ContactRadius(0.5));
+        for (key, value) in [
+            ("gap.parameters.R", Value::Number(1.0)),
+            ("gap.parameters.A.max", 0.01.into()),
+            ("gap.parameters.lambda", 0.05.into()),
+            ("gap.parameters.lambda.unit", "mm".into()),
+        ] {
+            assert_eq!(preset.get(key), Some(value), "{key}");
+        }
+        let with = |assignments: &[&str]| read_with("f.toml", FORMULA, assignments).unwrap();
+        assert_eq!(with(&["gap.parameters.A=0.005"]).get("gap.parameters.A"), Some(0.005.into()));
+        let other = with(&["gap.formula=r^2/(2*R) + b*r^4", "gap.parameters.R=2"]);
+        assert_eq!(other.get("gap.parameters.R"), Some(2.0.into()));
+        assert_eq!((other.get("gap.parameters.b"), other.get("gap.parameters.A")), (Some(1.0.into()), None));
+
+        let preset = read("h.toml", WAVES).unwrap();
+        assert_eq!(preset.get("gap.waves.1.phase"), Some(0.0.into()));
+        assert_eq!(preset.get("gap.waves.2.wavelength"), Some(0.1.into()));
+        let with = |assignments: &[&str]| read_with("h.toml", WAVES, assignments).unwrap();
+        assert_eq!(with(&["gap.waves.2.phase=2"]).get("gap.waves.2.phase"), Some(2.0.into()));
+        let one = with(&["gap.waves=[{amplitude=0.003, wavelength=0.2}]"]);
+        assert_eq!(
+            (one.get("gap.waves.1.wavelength"), one.get("gap.waves.2.phase")),
+            (Some(0.2.into()), None)
+        );
+        assert_eq!(with(&["gap.waves=[]"]).gap.radius_of_curvature(), Some(1.0));
+    }
+
+    #[test]
+    fn mistakes_in_formulas_and_waves_are_named() {
+        let many = format!("gap.waves=[{}]", "{amplitude=1,wavelength=1},".repeat(1001));
+        for (text, old, new, assignment, expected) in [
+            (FORMULA, "/lambda))", "/lambda)", "", "f.toml:6: gap.formula: column 38: the '(' at column 15"),
+            (FORMULA, "R = 1\n", "", "", "f.toml:7: gap.parameters.R is missing: it must be a number"),
+            (
+                FORMULA,
+                "R = 1\n",
+                "R = 1\nlamda = 1\n",
+                "",
+                "f.toml:9: the formula has no parameter for gap.parameters.lamda; did you mean gap.parameters.lambda?",
+            ),
+            (FORMULA, "R = 1\n", "R = 1\nr = 1\n", "", "f.toml:9: unknown key gap.parameters.r"),
+            (FORMULA, "R = 1\n", "R = true\n", "", "f.toml:8: gap.parameters.R must be a number"),
+            (
+                FORMULA,
+                "value = 0.0025",
+                "value = 0.02",
+                "",
+                "f.toml:9: gap.parameters.A = 0.02 is out of range: it must be a number from 0.0 to 0.01",
+            ),
+            (FORMULA, "min = 0", "mini = 0", "", "f.toml:9: unknown key gap.parameters.A.mini"),
+            (
+                FORMULA,
+                "r^2/(2*R)",
+                "R - sqrt(0.09*R^2 - r^2)",
+                "",
+                "f.toml:6: gap.formula: the formula is not finite at r = 0.3 (up to r = 0.5",
+            ),
+            (FORMULA, "", "", "gap.parameters=3", "--set gap.parameters=3: gap.parameters is a table"),
+            (FORMULA, "", "", "gap.parameters.x=3", "--set gap.parameters.x=3: the formula has no parameter"),
+            (WAVES, "amplitude = 0.001\n", "", "", "h.toml:7: gap.waves.1.amplitude is missing"),
+            (WAVES, "wavelength = 0.1", "wavelength = 0", "", "h.toml:12: gap.waves.2.wavelength = 0 is out"),
+            (WAVES, "phase = 1", "fase = 1", "", "h.toml:13: unknown key gap.waves.2.fase"),
+            (WAVES, "", "", "gap.waves.4.phase=1", "h.toml: gap.waves.3.amplitude is missing"),
+            (
+                WAVES,
+                "",
+                "",
+                &many,
+                "--set gap.waves=[{amplitude=1,wavelength=1},{am...: gap.waves = 1001 waves",
+            ),
+            (WAVES, "", "", "gap.waves=[1]", "--set gap.waves=[1]: gap.waves.1 is a table"),
+        ] {
+            let name = if text == WAVES { "h.toml" } else { "f.toml" };
+            let assignments: Vec<&str> = Some(assignment).into_iter().filter(|a| !a.is_empty()).collect();
+            assert!(text.contains(old));
+            let error = read_with(name, &text.replacen(old, new, 1), &assignments).unwrap_err();
+            let message = error.mistakes[0].to_string();
+            assert!(message.starts_with(expected), "{message}\n{expected}");
+        }
+    }
+
+    #[test]
+    fn a_profile_is_read_from_beside_its_preset() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> = (0..20).map(|i| format!("{i}, {}\n", i * i)).collect();
+        let rows = rows.concat();
+        std::fs::write(folder.path().join("scan.csv"), format!("r [um], h [nm]\n{rows}")).unwrap();
+        let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='scan.csv'\n                    [path]\nstart_contact_radius=5\n";
+        let read =
+            |text: &str, assignments: &[&str]| read_in(Some(folder.path()), "p.toml", text, assignments);
+        let preset = read(text, &[]).unwrap();
+        // h = r²/1000 in µm: R = 500 µm.
+        assert!((preset.gap.radius_of_curvature().unwrap() - 500.0).abs() < 1e-6);
+        assert_eq!(preset.get("gap.smoothing"), Some("none".into()));
+        assert_eq!(read(text, &["gap.smoothing=4"]).unwrap().get("gap.smoothing"), Some(4.0.into()));
+        for (old, new, expected) in [
+            ("scan.csv", "none.csv", "p.toml:6: gap.file: "),
+            ("scan.csv", ".", "p.toml:6: gap.file: "),
+            ("scan.csv", "shipped:x", "p.toml:6: gap.file: \"shipped:x\" does not come with the program"),
+            (
+                "radius=5",
+                "radius=19",
+                "p.toml:8: path.start_contact_radius = 19.0 is out of range: the gap is known",
+            ),
+            ("[path]\nstart_contact_radius=5\n", "", "p.toml: path.start_contact_radius = 250.0"),
+        ] {
+            let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+        // A copy elsewhere still finds its rows.
+        let other = tempfile::tempdir().unwrap();
+        let moved = preset.placed_in(other.path());
+        let back =
+            read_in(Some(other.path()), "q.toml", &crate::preset::write(&moved), &[] as &[&str]).unwrap();
+        assert_eq!(back.gap.radius_of_curvature(), preset.gap.radius_of_curvature());
+        assert_eq!(preset.placed_in(folder.path()), preset);
     }
 
     #[test]
@@ -672,8 +927,8 @@ end_contact_radius = 0.002
         }
 
         #[test]
-        fn no_damage_to_a_preset_brings_the_reader_down(at in 0..WAVY.len(), cut in 0usize..20, new in "[-a-z0-9.=\\[\\]{}\"' \n]{0,12}") {
-            let chars: Vec<char> = WAVY.chars().collect();
+        fn no_damage_to_a_preset_brings_the_reader_down(which in 0usize..3, at in 0..WAVY.len(), cut in 0usize..20, new in "[-a-z0-9.=\\[\\]{}\"' \n]{0,12}") {
+            let chars: Vec<char> = [WAVY, FORMULA, WAVES][which].chars().collect();
             let at = at.min(chars.len());
             let end = (at + cut).min(chars.len());
             let text: String = chars[..at].iter().copied().chain(new.chars()).chain(chars[end..].iter().copied()).collect();

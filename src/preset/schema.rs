@@ -3,6 +3,7 @@
 //! A new parameter is a new row here, a field of [`Preset`](super::Preset) and its two lines in
 //! `model` (get) and `build`; a test demands that none of the three is forgotten.
 
+use super::family;
 use std::borrow::Cow::{self, Borrowed};
 
 /// The format number of the files this program reads and writes.
@@ -22,6 +23,8 @@ pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_appr
 
 /// The word that leaves a count to the program.
 pub const AUTO: &str = "auto";
+/// The word for no smoothing.
+pub const NONE: &str = "none";
 
 /// What kind of value a parameter takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +54,17 @@ pub enum Kind {
         /// The longest accepted.
         max_chars: usize,
     },
+    /// A number from `min` to `max`.
+    Between {
+        /// The smallest accepted.
+        min: f64,
+        /// The largest accepted.
+        max: f64,
+    },
+    /// A file with a measured profile.
+    File,
+    /// A number above zero, or `none`, or [`AUTO`].
+    Smoothing,
     /// One of these words.
     Choice(&'static [&'static str]),
     /// What the loading device prescribes.
@@ -116,8 +130,10 @@ pub struct Parameter {
 /// The keys whose word decides which other keys apply.
 pub const CHOOSERS: [&str; 2] = ["gap.shape", "basis.kind"];
 
-/// Where the gap has waves.
-const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] };
+/// Where the gap has one of these shapes.
+const fn of_shape(words: &'static [&'static str]) -> Applies {
+    Applies::With { key: CHOOSERS[0], words }
+}
 
 /// The parameters, in the order in which files and screens show them.
 pub static PARAMETERS: &[Parameter] = &[
@@ -162,7 +178,17 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("gap"),
         meaning: Borrowed("shape of the gap between the undeformed bodies"),
         dimension: Borrowed(""),
-        kind: Kind::Choice(&["sphere", "wavy-sphere"]),
+        kind: Kind::Choice(&[
+            "sphere",
+            "wavy-sphere",
+            "exact-sphere",
+            "cone",
+            "power-law",
+            "harmonics",
+            "random-waves",
+            "formula",
+            "profile",
+        ]),
         fallback: Fallback::Required,
         applies: Applies::Always,
     },
@@ -173,7 +199,7 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Required,
-        applies: Applies::Always,
+        applies: of_shape(&["sphere", "wavy-sphere", "exact-sphere", "harmonics", "random-waves"]),
     },
     Parameter {
         key: Borrowed("gap.amplitude"),
@@ -182,7 +208,7 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: Borrowed("length"),
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
-        applies: WAVY,
+        applies: of_shape(&["wavy-sphere"]),
     },
     Parameter {
         key: Borrowed("gap.wavelength"),
@@ -191,7 +217,115 @@ pub static PARAMETERS: &[Parameter] = &[
         dimension: Borrowed("length"),
         kind: Kind::Positive,
         fallback: Fallback::Required,
-        applies: WAVY,
+        applies: of_shape(&["wavy-sphere"]),
+    },
+    Parameter {
+        key: Borrowed("gap.slope"),
+        label: Borrowed("slope"),
+        meaning: Borrowed("slope of the cone, the cotangent of its half apex angle"),
+        dimension: Borrowed(""),
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: of_shape(&["cone"]),
+    },
+    Parameter {
+        key: Borrowed("gap.coefficient"),
+        label: Borrowed("c"),
+        meaning: Borrowed("coefficient c of the gap c r^n"),
+        dimension: Borrowed("length^(1-n)"),
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: of_shape(&["power-law"]),
+    },
+    Parameter {
+        key: Borrowed("gap.exponent"),
+        label: Borrowed("n"),
+        meaning: Borrowed("exponent n of the gap c r^n"),
+        dimension: Borrowed(""),
+        kind: Kind::Between { min: 1.0, max: 100.0 },
+        fallback: Fallback::Required,
+        applies: of_shape(&["power-law"]),
+    },
+    Parameter {
+        key: Borrowed("gap.rms"),
+        label: Borrowed("rms"),
+        meaning: Borrowed("root mean square of the random waves"),
+        dimension: Borrowed("length"),
+        kind: Kind::NonNegative,
+        fallback: Fallback::Required,
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.longest_wavelength"),
+        label: Borrowed("longest"),
+        meaning: Borrowed("longest of the random waves"),
+        dimension: Borrowed("length"),
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.shortest_wavelength"),
+        label: Borrowed("shortest"),
+        meaning: Borrowed("shortest of the random waves"),
+        dimension: Borrowed("length"),
+        kind: Kind::Positive,
+        fallback: Fallback::Required,
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.hurst"),
+        label: Borrowed("H"),
+        meaning: Borrowed("Hurst exponent: near 0 the short waves are as high as the long ones"),
+        dimension: Borrowed(""),
+        kind: Kind::Between { min: 0.01, max: 1.0 },
+        fallback: Fallback::Number(0.8),
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.count"),
+        label: Borrowed("waves"),
+        meaning: Borrowed("number of random waves"),
+        dimension: Borrowed(""),
+        kind: Kind::Integer { min: 1, max: 1000 },
+        fallback: Fallback::Integer(50),
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.seed"),
+        label: Borrowed("seed"),
+        meaning: Borrowed("which of all surfaces with these numbers"),
+        dimension: Borrowed(""),
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        fallback: Fallback::Integer(1),
+        applies: of_shape(&["random-waves"]),
+    },
+    Parameter {
+        key: Borrowed("gap.formula"),
+        label: Borrowed("h(r)"),
+        meaning: Borrowed("the gap as a formula in r, pi, e and parameters"),
+        dimension: Borrowed(""),
+        kind: Kind::Text { max_chars: 4096 },
+        fallback: Fallback::Required,
+        applies: of_shape(&["formula"]),
+    },
+    Parameter {
+        key: Borrowed("gap.file"),
+        label: Borrowed("file"),
+        meaning: Borrowed("file with the columns r and h; relative to the preset's own folder"),
+        dimension: Borrowed(""),
+        kind: Kind::File,
+        fallback: Fallback::Required,
+        applies: of_shape(&["profile"]),
+    },
+    Parameter {
+        key: Borrowed("gap.smoothing"),
+        label: Borrowed("smoothing"),
+        meaning: Borrowed("wavelength that passes the smoothing by half"),
+        dimension: Borrowed("length"),
+        kind: Kind::Smoothing,
+        fallback: Fallback::Text("none"),
+        applies: of_shape(&["profile"]),
     },
     Parameter {
         key: Borrowed("basis.kind"),
@@ -287,10 +421,10 @@ pub static PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// The row of a dotted key.
+/// The row of a dotted key: of the table, or of a [`family`].
 #[must_use]
 pub fn parameter(key: &str) -> Option<Row> {
-    PARAMETERS.iter().find(|row| row.key == key).map(Borrowed)
+    PARAMETERS.iter().find(|row| row.key == key).map(Borrowed).or_else(|| family::row(key).map(Cow::Owned))
 }
 
 /// The table that a dotted key stands in, if any.
@@ -299,13 +433,18 @@ pub fn table_of(key: &str) -> Option<&str> {
     key.rsplit_once('.').map(|(table, _)| table)
 }
 
-/// The keys that hold other keys: `material`, `gap`, …, and `path.control` when it is a spring.
+/// The keys that hold other keys: `material`, `gap`, …, `path.control` when it is a spring, and the two families.
 pub fn tables() -> impl Iterator<Item = &'static str> {
-    PARAMETERS.iter().enumerate().filter_map(|(i, row)| {
-        let table = row.table()?;
-        let seen = PARAMETERS.iter().take(i).any(|earlier| earlier.table() == Some(table));
-        (!seen).then_some(table)
-    })
+    let families = [family::PARAMETER_TABLE, family::WAVE_TABLE];
+    PARAMETERS
+        .iter()
+        .enumerate()
+        .filter_map(|(i, row)| {
+            let table = row.table()?;
+            let seen = PARAMETERS.iter().take(i).any(|earlier| earlier.table() == Some(table));
+            (!seen).then_some(table)
+        })
+        .chain(families)
 }
 
 impl Parameter {
@@ -324,7 +463,7 @@ impl Parameter {
     /// Whether the key is a part of another parameter's value, as `path.control.stiffness` is.
     #[must_use]
     pub fn is_part(&self) -> bool {
-        self.table().is_some_and(|table| parameter(table).is_some())
+        self.table().and_then(parameter).is_some_and(|whole| whole.kind == Kind::Control)
     }
 
     /// Whether a person changes it by factors rather than by differences.
@@ -352,6 +491,9 @@ impl Parameter {
             Kind::Integer { min, max } if min == max => format!("the number {min}"),
             Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
             Kind::Count { min, max } => format!("\"{AUTO}\" or a whole number from {min} to {max}"),
+            Kind::Between { min, max } => format!("a number from {min:?} to {max:?}"),
+            Kind::File => "the name of a file".to_owned(),
+            Kind::Smoothing => format!("\"{NONE}\", \"{AUTO}\" or a number from {SMALLEST:?} to {LARGEST:?}"),
             Kind::Text { max_chars } => format!("printable text of at most {max_chars} characters"),
             Kind::Choice(words) => {
                 words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
@@ -391,6 +533,9 @@ mod tests {
         let said =
             |key, number: f64| parameter(key).unwrap().fallback_text().starts_with(&format!("{number} x"));
         assert!(said(START_KEYS[0], START_OVER_CURVATURE) && said("path.end_contact_radius", END_OVER_START));
-        assert_eq!(tables().collect::<Vec<_>>(), ["material", "gap", "basis", "path", "path.control"]);
+        assert_eq!(
+            tables().collect::<Vec<_>>(),
+            ["material", "gap", "basis", "path", "path.control", "gap.parameters", "gap.waves"]
+        );
     }
 }

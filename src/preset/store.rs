@@ -9,7 +9,7 @@ use super::invalid::Invalid;
 use super::lock::{FolderLock, PATIENCE};
 use super::model::Preset;
 use super::name::{self, NameError};
-use super::read::{ReadError, read, read_with};
+use super::read::{ReadError, read_in};
 use super::shipped::{self, SHIPPED, Shipped};
 use super::suggest::closest;
 use super::text::{quote, show_path};
@@ -213,7 +213,7 @@ impl Store {
             }
         };
         let name = source.path().map_or_else(|| source.shown(), |path| path.to_string_lossy().into_owned());
-        let preset = read_with(&name, &text, assignments)?;
+        let preset = read_in(source.path().map(folder_of), &name, &text, assignments)?;
         Ok(Loaded { source: source.clone(), preset, text, fingerprint })
     }
 
@@ -299,7 +299,8 @@ impl Store {
 /// The preset is not valid, or the file must not be replaced or cannot be written; nothing has changed then.
 pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<Fingerprint, StoreError> {
     preset.check().map_err(|mut all| StoreError::Invalid(all.swap_remove(0)))?;
-    let text = write(preset);
+    let preset = preset.placed_in(folder_of(path));
+    let text = write(&preset);
     // The folder where the rename happens, so that two names for one file share a lock.
     let target = follow(path)?;
     let shown = || show_path(path);
@@ -310,8 +311,8 @@ pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<F
     }
     let fingerprint = write_verified(path, text.as_bytes(), overwrite, |bytes| {
         let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
-        match read(&shown(), text) {
-            Ok(back) if back == *preset => Ok(()),
+        match read_in(Some(folder_of(path)), &shown(), text, &[] as &[&str]) {
+            Ok(back) if back == preset => Ok(()),
             Ok(_) => Err("another preset came back".to_owned()),
             Err(error) => Err(error.to_string()),
         }

@@ -1,12 +1,14 @@
 //! One parameter's value, and its check against the parameter's row.
 
 use super::invalid::Invalid;
-use super::schema::{AUTO, Kind, LARGEST, Parameter, SMALLEST};
+use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
 use super::suggest::closest;
 use super::text::{is_unsafe, quote};
 use crate::contact::Control;
+use crate::contact::shapes::Rows;
 use std::borrow::Cow;
 use std::fmt;
+use std::sync::Arc;
 use toml::de::DeValue;
 
 /// The value of one parameter.
@@ -20,6 +22,8 @@ pub enum Value {
     Text(String),
     /// What the loading device prescribes.
     Control(Control),
+    /// The rows of a measured profile, with the name of their file.
+    Profile(Arc<Rows>),
 }
 
 impl Value {
@@ -30,6 +34,7 @@ impl Value {
             Self::Number(x) => format!("{x:?}"),
             Self::Integer(n) => n.to_string(),
             Self::Text(text) => toml::Value::String(text.clone()).to_string(),
+            Self::Profile(rows) => toml::Value::String(rows.name.clone()).to_string(),
             Self::Control(Control::Stiffness(k)) => format!("{{ stiffness = {k:?} }}"),
             Self::Control(other) => format!("\"{other}\""),
         }
@@ -60,6 +65,7 @@ impl Value {
             Self::Number(x) => format!("the number {x:?}"),
             Self::Integer(n) => format!("the number {n}"),
             Self::Text(text) => format!("the text \"{}\"", quote(text)),
+            Self::Profile(rows) => format!("the file \"{}\"", quote(&rows.name)),
             Self::Control(control) => format!("the control {control}"),
         }
     }
@@ -71,6 +77,7 @@ impl fmt::Display for Value {
             Self::Number(x) => write!(f, "{x:?}"),
             Self::Integer(n) => write!(f, "{n}"),
             Self::Text(text) => f.write_str(text),
+            Self::Profile(rows) => f.write_str(&rows.name),
             Self::Control(control) => write!(f, "{control}"),
         }
     }
@@ -101,17 +108,21 @@ impl From<Control> for Value {
 }
 
 impl Parameter {
-    /// The value in this row's own type, if the row takes it: whole numbers are numbers, and the words
-    /// `displacement` and `force` are controls.
+    /// The value in this row's own type, if the row takes it: whole numbers are numbers, and the words `displacement` and
+    /// `force` are controls. The name of a file is a text until the file is read.
     ///
     /// # Errors
     /// The value has another type or is out of the row's range.
     pub fn check(&self, value: Value) -> Result<Value, Invalid> {
         match (self.kind, value) {
-            (Kind::Positive | Kind::NonNegative | Kind::Finite, Value::Number(x)) => self.check_number(x),
-            (Kind::Positive | Kind::NonNegative | Kind::Finite, Value::Integer(n)) => {
-                self.check_number(n as f64)
-            }
+            (
+                Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
+                Value::Number(x),
+            ) => self.check_number(x),
+            (
+                Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
+                Value::Integer(n),
+            ) => self.check_number(n as f64),
             (Kind::Integer { min, max }, Value::Integer(n)) => match n {
                 n if (min..=max).contains(&n) => Ok(Value::Integer(n)),
                 found if self.key == "format" => Err(Invalid::Format { found }),
@@ -122,6 +133,9 @@ impl Parameter {
             }
             (Kind::Count { .. }, Value::Integer(n)) => Err(self.out_of_range(&n.to_string())),
             (Kind::Count { .. }, Value::Text(word)) if word == AUTO => Ok(Value::Text(word)),
+            (Kind::Smoothing, Value::Text(word)) if word == AUTO || word == NONE => Ok(Value::Text(word)),
+            (Kind::File, Value::Profile(rows)) => Ok(Value::Profile(rows)),
+            (Kind::File, Value::Text(name)) => Ok(Value::Text(name)),
             (Kind::Text { max_chars }, Value::Text(text)) => {
                 if text.chars().nth(max_chars).is_some() {
                     Err(self.out_of_range(&format!("\"{}\"", quote(&text))))
@@ -171,15 +185,16 @@ impl Parameter {
         }
         let value = match (self.kind, DeValue::parse(text)) {
             // Text that happens to look like a number is still text.
-            (Kind::Text { .. }, Ok(value)) => match value.get_ref() {
+            (Kind::Text { .. } | Kind::File, Ok(value)) => match value.get_ref() {
                 DeValue::String(inner) => Value::Text(inner.to_string()),
                 _ => bare(),
             },
             (_, Ok(value)) => Value::from_toml(value.get_ref()).map_err(|found| self.wrong_type(found))?,
             // Fortran and C habits that TOML does not share: .5, 5., +1e-3.
-            (Kind::Positive | Kind::NonNegative | Kind::Finite, Err(_)) => {
-                text.parse::<f64>().map_or_else(|_| bare(), Value::Number)
-            }
+            (
+                Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
+                Err(_),
+            ) => text.parse::<f64>().map_or_else(|_| bare(), Value::Number),
             (_, Err(_)) => bare(),
         };
         self.check(value)
@@ -192,7 +207,8 @@ impl Parameter {
     fn check_number(&self, x: f64) -> Result<Value, Invalid> {
         let size = SMALLEST..=LARGEST;
         let fine = match self.kind {
-            Kind::Positive => size.contains(&x),
+            Kind::Positive | Kind::Smoothing => size.contains(&x),
+            Kind::Between { min, max } => (min..=max).contains(&x),
             Kind::NonNegative => x == 0.0 || size.contains(&x),
             _ => x.abs() <= LARGEST,
         };

@@ -1,7 +1,9 @@
 //! Preset → TOML text: every key, every digit, each with what it means.
 
+use super::family::{self, is_parameter};
 use super::model::Preset;
 use super::schema::{Parameter, parameter};
+use super::shape::is_range;
 
 /// The preset as a file.
 ///
@@ -11,8 +13,18 @@ use super::schema::{Parameter, parameter};
 pub fn write(preset: &Preset) -> String {
     let mut text = String::from("# A pulloff preset. Any consistent units.\n");
     let mut table = None;
-    for row in preset.rows().filter(|row| !row.is_part()) {
+    for row in preset.rows().filter(|row| !row.is_part() && !is_range(&row.key)) {
         let line = match preset.get(&row.key) {
+            Some(value) if is_parameter(&row.key) => {
+                let ranges = family::PARAMETER_KEYS.iter().filter_map(|part| {
+                    let value = preset.get(&format!("{}.{part}", row.key))?;
+                    Some(format!(", {part} = {}", value.to_toml()))
+                });
+                match ranges.collect::<String>().as_str() {
+                    "" => format!("{} = {}", row.name(), value.to_toml()),
+                    ranges => format!("{} = {{ value = {}{ranges} }}", row.name(), value.to_toml()),
+                }
+            }
             Some(value) => format!("{} = {}", row.name(), value.to_toml()),
             None if row.key == "path.end_contact_radius" => {
                 format!("# {} = {}", row.name(), row.fallback_text())
@@ -21,7 +33,13 @@ pub fn write(preset: &Preset) -> String {
         };
         if row.table() != table.as_deref() {
             table = row.table().map(str::to_owned);
-            text.push_str(&table.as_ref().map_or_else(String::new, |name| format!("\n[{name}]\n")));
+            text.push_str(&table.as_ref().map_or_else(String::new, |name| {
+                // Every wave is an element of one array.
+                match family::below(name, family::WAVE_TABLE) {
+                    Some(_) => format!("\n[[{}]]\n", family::WAVE_TABLE),
+                    None => format!("\n[{name}]\n"),
+                }
+            }));
         }
         text.push_str(format!("{line:<40}{}", comment(&row)).trim_end());
         text.push('\n');

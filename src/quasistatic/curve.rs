@@ -172,8 +172,13 @@ impl Curve {
         self.branch.points.last().map_or(0.0, |p| self.equilibrium.contact_radius(p))
     }
 
-    /// Continues the curve inward or outward to the radius `to`; false when nothing could be added.
+    /// Continues the curve inward or outward to the radius `to`, as far as the gap is known; false when nothing could be
+    /// added.
     pub fn extend(&mut self, to: f64) -> bool {
+        let to = to.min(self.equilibrium.problem.largest_contact());
+        if (self.innermost()..=self.outermost()).contains(&to) {
+            return false;
+        }
         let inward = to < self.innermost();
         let from = if inward { self.innermost() } else { self.outermost() };
         let Equilibrium { problem, basis, .. } = &self.equilibrium;

@@ -22,6 +22,21 @@ pub enum StartError {
         /// The smallest on the curve.
         smallest: f64,
     },
+    /// The value is beyond what is known of the gap.
+    #[error(
+        "no contact up to the radius {searched:.6e} has the {name} {value:.6e}, and the gap is known up to the radius \
+         {known:.6e} only"
+    )]
+    NotKnown {
+        /// `approach` or `force`.
+        name: &'static str,
+        /// The value asked for.
+        value: f64,
+        /// The largest radius tried.
+        searched: f64,
+        /// The largest radius known.
+        known: f64,
+    },
     /// The curve was not found to rise above the value.
     #[error("no contact up to the radius {largest:.6e} reaches the {name} {value:.6e}")]
     NotReached {
@@ -44,6 +59,12 @@ impl StartError {
             Self::OutOfReach { name, value, smallest } => {
                 Self::OutOfReach { name, value: value * of(name), smallest: smallest * of(name) }
             }
+            Self::NotKnown { name, value, searched, known } => Self::NotKnown {
+                name,
+                value: value * of(name),
+                searched: searched * units.length,
+                known: known * units.length,
+            },
             Self::NotReached { name, value, largest } => {
                 Self::NotReached { name, value: value * of(name), largest: largest * units.length }
             }
@@ -54,7 +75,8 @@ impl StartError {
 /// The contact radius of the start state.
 ///
 /// For an approach or a preload the curve is swept further and further out until it stays above the value over a
-/// factor of two in radius; the outermost crossing, where the control grows with s, is the start.
+/// factor of two in radius; the outermost crossing, where the control grows with s, is the start. Where the gap is known
+/// up to a radius only, the outermost crossing within it is.
 ///
 /// # Errors
 /// [`StartError`] when there is none.
@@ -71,8 +93,9 @@ pub fn contact_radius(problem: &Reduced, basis: &Arc<dyn Basis>, start: Start) -
     let adhesive = problem.work_of_adhesion.cbrt();
     let unit = elastic.max(adhesive).max(f64::MIN_POSITIVE);
     let largest = 1e3 * unit;
-    let from = 1e-3 * unit;
-    let mut reach = 2.0 * unit;
+    let most = problem.largest_contact();
+    let from = 1e-3 * unit.min(most);
+    let mut reach = (2.0 * unit).min(most);
     loop {
         let pieces: Vec<(Curve, Nodes)> = pieces(problem, basis, reach, from)
             .map(|curve| {
@@ -89,18 +112,24 @@ pub fn contact_radius(problem: &Reduced, basis: &Arc<dyn Basis>, start: Start) -
                     .map(|(i, p)| (curve.equilibrium.contact_radius(p), nodes.value(i)))
             })
         };
-        // Above the value over the outer half: no wave further out comes down to it again.
-        if values().take_while(|(s, _)| *s >= 0.5 * reach).all(|(_, v)| v > value) {
+        // Above the value over the outer half: no wave further out comes down to it again. Where no more is known, above
+        // it at the end must do.
+        let outer = if reach < most { 0.5 * reach } else { reach * (1.0 - 1e-9) };
+        if values().take_while(|(s, _)| *s >= outer).all(|(_, v)| v > value) {
             let smallest = values().map(|(_, v)| v).fold(f64::INFINITY, f64::min);
             let found =
                 pieces.iter().find_map(|(curve, nodes)| Some((curve, nodes.outermost(curve, value)?)));
             let (curve, start) = found.ok_or(StartError::OutOfReach { name, value, smallest })?;
             return Ok(curve.equilibrium.contact_radius(&start));
         }
+        if reach >= most {
+            let known = problem.gap.largest_radius().unwrap_or(most);
+            return Err(StartError::NotKnown { name, value, searched: reach, known });
+        }
         if reach >= largest {
             return Err(StartError::NotReached { name, value, largest });
         }
-        reach *= 2.0;
+        reach = (2.0 * reach).min(most);
     }
 }
 

@@ -285,7 +285,7 @@ fn is_on(equilibrium: &Equilibrium, path: &[Point], events: &[Event], point: &Po
 fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<(), UnloadError> {
     let row = curve.equilibrium.control_row(control);
     let value = curve.branch.points.first().map_or(0.0, |p| row.dot(&p.y));
-    let limit = OUTWARD_REACH * from;
+    let limit = (OUTWARD_REACH * from).min(curve.equilibrium.problem.largest_contact().max(from));
     let mut reach = from;
     loop {
         reach = (1.5 * reach).min(limit);

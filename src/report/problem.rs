@@ -17,36 +17,60 @@ pub struct ProblemReport {
     pub end_contact_radius: f64,
     /// The dimensionless groups.
     pub groups: Groups,
-    /// `P_c = (3/2)πγR`, the pull-off force of the smooth sphere under a dead load.
-    pub critical_force: f64,
+    /// `P_c = (3/2)πγR`, the pull-off force of the smooth sphere under a dead load, where the gap has an R.
+    pub critical_force: Option<f64>,
 }
 
 impl ProblemReport {
     /// The problem of `preset`, made ready as `case`.
     pub fn new(preset: &Preset, case: &Case) -> Self {
-        let mut document = Map::new();
-        for (row, value) in preset.values() {
-            if row.is_part() {
-                continue;
-            }
-            let value = json_value(&value);
-            match row.table() {
-                None => drop(document.insert(row.name().to_owned(), value)),
-                Some(table) => {
-                    let entry = document.entry(table).or_insert_with(|| Value::Object(Map::new()));
-                    if let Value::Object(table) = entry {
-                        table.insert(row.name().to_owned(), value);
-                    }
-                }
-            }
-        }
         Self {
-            preset: document,
+            preset: document(preset),
             start_contact_radius: case.start * case.units().length,
             end_contact_radius: case.end * case.units().length,
             groups: Groups::of(&case.problem),
-            critical_force: case.smooth().pull_off_force(),
+            critical_force: case.smooth().map(|jkr| jkr.pull_off_force()),
         }
+    }
+}
+
+/// Every key with its value, nested as in the file.
+fn document(preset: &Preset) -> Map<String, Value> {
+    let mut document = Map::new();
+    for (row, value) in preset.values() {
+        if !row.is_part() {
+            insert(&mut document, &row.key, json_value(&value));
+        }
+    }
+    document
+}
+
+/// Puts a value below its dotted key. Waves are an array; a parameter that has more than a value is an object.
+fn insert(table: &mut Map<String, Value>, key: &str, value: Value) {
+    let Some((name, rest)) = key.split_once('.') else {
+        table.insert(key.to_owned(), value);
+        return;
+    };
+    let wave = rest.split_once('.').and_then(|(number, key)| Some((number.parse::<usize>().ok()?, key)));
+    if let Some((number, key)) = wave {
+        let waves = table.entry(name).or_insert_with(|| Value::Array(Vec::new()));
+        let Value::Array(waves) = waves else { return };
+        // Rows come in the order of their numbers.
+        if waves.len() < number {
+            waves.push(Value::Object(Map::new()));
+        }
+        if let Some(Value::Object(wave)) = waves.last_mut() {
+            insert(wave, key, value);
+        }
+        return;
+    }
+    let inner = table.entry(name).or_insert_with(|| Value::Object(Map::new()));
+    if !inner.is_object() {
+        let own = inner.take();
+        *inner = serde_json::json!({ "value": own });
+    }
+    if let Value::Object(inner) = inner {
+        insert(inner, rest, value);
     }
 }
 
@@ -56,6 +80,7 @@ fn json_value(value: &crate::preset::Value) -> Value {
         Preset::Number(x) => Value::from(*x),
         Preset::Integer(n) => Value::from(*n),
         Preset::Text(text) => Value::from(text.as_str()),
+        Preset::Profile(rows) => Value::from(rows.name.as_str()),
         Preset::Control(control) => control_json(*control),
     }
 }

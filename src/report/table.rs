@@ -79,8 +79,9 @@ pub fn unload(report: &UnloadReport) -> String {
     text
 }
 
-fn ratio(force: f64, critical: f64) -> String {
-    if critical > 0.0 { format!(" = {} P_c", short(force / critical, 6)) } else { String::new() }
+fn ratio(force: f64, critical: Option<f64>) -> String {
+    let critical = critical.filter(|critical| *critical > 0.0);
+    critical.map_or_else(String::new, |critical| format!(" = {} P_c", short(force / critical, 6)))
 }
 
 fn row(number: usize, event: &EventReport) -> Vec<String> {

@@ -65,6 +65,13 @@ const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 /// The coefficients that count as the tail: two, in case one of them passes through zero.
 const TAIL: usize = 2;
 
+/// The same where more functions buy little: a tip like that of a cone, or a measured curve, has terms that fall as a power
+/// of their number.
+const SLOW_TAIL: f64 = 1e-6;
+
+/// So many functions tell the slow gaps from the others, which are done long before.
+const SLOW_FUNCTIONS: usize = 256;
+
 /// Factor from one automatic number of functions to the next.
 const GROWTH: f64 = 1.25;
 
@@ -146,6 +153,8 @@ impl Spectral {
     /// Enough functions for the gap of `problem` in a contact of radius `s` (reduced) and one wave more.
     ///
     /// The first guess counts the waves; it grows until the tail of the coefficients is below [`TAIL_TOLERANCE`].
+    /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, and at
+    /// least 256.
     ///
     /// # Errors
     /// [`SpectralError::Unresolved`] with the numbers when the most functions are not enough.
@@ -153,16 +162,20 @@ impl Spectral {
         let most = *FUNCTION_RANGE.end();
         let wave = problem.gap.feature_length();
         // An unstable start runs outward to the next wave.
-        let largest = s + wave.unwrap_or(0.0);
+        let largest = (s + wave.unwrap_or(0.0)).min(problem.largest_contact().max(s));
         let waves = wave.map_or(0.0, |wave| largest / wave);
         let mut wanted = FUNCTIONS_PER_WAVE * waves;
+        let mut slow = None;
         loop {
             // Positive and at most 4096.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let functions = (wanted.min(most as f64).ceil() as usize).max(*FUNCTION_RANGE.start());
             let basis = Self::new(functions)?;
             let tail = basis.tail(problem, largest);
-            if tail <= TAIL_TOLERANCE {
+            if tail <= SLOW_TAIL && slow.is_none() {
+                slow = Some((2 * functions).max(SLOW_FUNCTIONS));
+            }
+            if tail <= TAIL_TOLERANCE || slow.is_some_and(|enough| functions >= enough) {
                 return Ok(basis);
             }
             if functions >= most {

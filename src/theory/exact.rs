@@ -2,8 +2,12 @@
 
 use super::disc::Disc;
 use super::guduru::Guduru;
+use super::harmonics::Harmonics;
 use super::jkr::Jkr;
+use super::power_law::PowerLaw;
 use super::sneddon::Sneddon;
+use super::sphere::Sphere;
+use crate::contact::shapes::{ExactSphere, Harmonics as Waves, PowerLaw as Law};
 use crate::contact::{Gap, Problem, Shape};
 use std::ops::Deref;
 use std::sync::Arc;
@@ -22,10 +26,11 @@ use std::sync::Arc;
 pub struct Exact(Arc<dyn Disc>);
 
 impl Exact {
-    /// The solution of `problem`, in its units: Hertz or JKR for a sphere, Guduru for a wavy one.
+    /// The solution of `problem`, in its units: in closed form where the shape has one, by quadrature for a formula and a
+    /// profile.
     pub fn of(problem: &Problem) -> Self {
-        let Problem { effective_modulus, work_of_adhesion, shape } = *problem;
-        Self(match shape {
+        let Problem { effective_modulus, work_of_adhesion, ref shape } = *problem;
+        Self(match *shape {
             Shape::Sphere { radius_of_curvature } => {
                 Arc::new(Jkr { effective_modulus, work_of_adhesion, radius_of_curvature })
             }
@@ -36,6 +41,20 @@ impl Exact {
                 amplitude,
                 wavelength,
             }),
+            Shape::ExactSphere(ExactSphere { radius }) => {
+                Arc::new(Sphere { effective_modulus, work_of_adhesion, radius })
+            }
+            Shape::Cone { slope } => {
+                Arc::new(PowerLaw::new(effective_modulus, work_of_adhesion, &Law::cone(slope)))
+            }
+            Shape::PowerLaw(ref law) => Arc::new(PowerLaw::new(effective_modulus, work_of_adhesion, law)),
+            Shape::Harmonics(ref waves) | Shape::RandomWaves { drawn: ref waves, .. } => {
+                Arc::new(Harmonics { effective_modulus, work_of_adhesion, gap: Waves::clone(waves) })
+            }
+            Shape::Formula(_) | Shape::Profile(_) => {
+                let gap = Arc::new(shape.clone());
+                Arc::new(Sneddon { effective_modulus, work_of_adhesion, gap })
+            }
         })
     }
 

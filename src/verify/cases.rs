@@ -5,7 +5,7 @@ use crate::theory::jkr::Jkr;
 use std::f64::consts::TAU;
 
 /// A figure of the paper: a wavy sphere, and how it is unloaded.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Its name in the paper.
     pub name: &'static str,

@@ -4,12 +4,19 @@ use super::bound::Bound;
 use super::survey::NotFinite;
 use crate::contact::{Gap, Jet};
 
+/// How far beyond the radius asked for a formula is looked at.
+const BEYOND: f64 = 16.0;
+
+/// How little of the radius is needed where none is asked for.
+const NEAR_AXIS: f64 = 1e-3;
+
 /// A formula with its parameters, known to be finite up to a radius.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormulaGap {
     bound: Bound,
     largest: f64,
     feature_length: Option<f64>,
+    known: Option<f64>,
 }
 
 impl Bound {
@@ -19,7 +26,28 @@ impl Bound {
     /// Where h, h' or h'' is not finite.
     pub fn over(self, largest: f64) -> Result<FormulaGap, NotFinite> {
         self.check(largest)?;
-        Ok(FormulaGap { feature_length: self.feature_length(largest), bound: self, largest })
+        Ok(FormulaGap { feature_length: self.feature_length(largest), bound: self, largest, known: None })
+    }
+
+    /// The formula as a gap that is known as far as it is finite, its waves looked for up to `largest`.
+    ///
+    /// Up to there it must be finite where it is `needed`, and at least near the axis else.
+    ///
+    /// # Errors
+    /// Where h, h' or h'' is not finite.
+    pub fn from_axis(self, largest: f64, needed: bool) -> Result<FormulaGap, NotFinite> {
+        let most = if needed { largest } else { NEAR_AXIS * largest };
+        self.check(most)?;
+        // The first of two looks may miss a pole that the second, with another grid, finds: below `most` it counts too.
+        let known = match self.check(BEYOND * largest) {
+            Ok(()) => None,
+            Err(NotFinite { radius, .. }) if radius <= most => {
+                return Err(NotFinite { radius, largest: most });
+            }
+            Err(NotFinite { radius, .. }) => Some(radius),
+        };
+        let waves = known.map_or(largest, |known| largest.min(known * (1.0 - f64::EPSILON)));
+        Ok(FormulaGap { feature_length: self.feature_length(waves), bound: self, largest, known })
     }
 }
 
@@ -32,7 +60,25 @@ impl FormulaGap {
 
 impl Gap for FormulaGap {
     fn jet(&self, r: f64) -> Jet {
-        self.bound.jet(r)
+        if self.known.is_some_and(|known| r >= known) { Jet::UNKNOWN } else { self.bound.jet(r) }
+    }
+
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        self.bound.values(s, nodes, values);
+        for (value, x) in values.iter_mut().zip(nodes) {
+            if self.known.is_some_and(|known| s * x >= known) {
+                *value = f64::NAN;
+            }
+        }
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
+        self.bound.derivatives(s, nodes, [&mut *first, &mut *second, &mut *third]);
+        for (i, x) in nodes.iter().enumerate() {
+            if self.known.is_some_and(|known| s * x >= known) {
+                (first[i], second[i], third[i]) = (f64::NAN, f64::NAN, f64::NAN);
+            }
+        }
     }
 
     fn feature_length(&self) -> Option<f64> {
@@ -42,5 +88,9 @@ impl Gap for FormulaGap {
     /// The largest radius: a formula need not have a radius of curvature.
     fn reference_length(&self) -> f64 {
         self.largest
+    }
+
+    fn largest_radius(&self) -> Option<f64> {
+        self.known
     }
 }

@@ -15,17 +15,20 @@
 //! | [`bound`] | the formula with its parameters given: h and its derivatives anywhere |
 //! | [`survey`] | is it finite up to a radius, and how short are its waves? |
 //! | [`gap`] | the formula as the gap of a problem |
+//! | [`typed`] | its text and its parameters, with the lengths that follow |
 
 pub mod bound;
 pub mod fold;
 pub mod gap;
 pub mod jets;
 pub mod survey;
+pub mod typed;
 
 pub use crate::expression::{FormulaError, Place, Problem};
 pub use bound::Bound;
 pub use gap::FormulaGap;
 pub use survey::NotFinite;
+pub use typed::{FormulaParameter, TypedError, TypedGap};
 
 use crate::expression::Program;
 use crate::expression::grammar::{self, NAME};

@@ -7,10 +7,12 @@
 //! | [`harmonics`] | r²/(2R) and any sum of cosines |
 //! | [`random_waves`] | r²/(2R) and cosines drawn from a power law with a seed |
 //! | [`profile`] | a curve through measured rows, by the spline of [`spline`] |
+//! | [`measured`] | the same with the file and the rows it came from |
 //! | [`split_mix`] | the random numbers of all this, the same on every machine |
 
 pub mod exact_sphere;
 pub mod harmonics;
+pub mod measured;
 pub mod power_law;
 pub mod profile;
 pub mod random_waves;
@@ -19,6 +21,7 @@ pub mod split_mix;
 
 pub use exact_sphere::ExactSphere;
 pub use harmonics::{Harmonic, Harmonics};
+pub use measured::{Measured, Rows};
 pub use power_law::PowerLaw;
 pub use profile::{Profile, Smoothing};
 pub use random_waves::RandomWaves;

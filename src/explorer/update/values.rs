@@ -175,7 +175,7 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
 }
 
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let Some(row) = crate::preset::parameter(key) else { return Vec::new() };
+    let Some(row) = model.preset.row(key) else { return Vec::new() };
     let mut preset = model.preset.clone();
     let result = row.parse(text).and_then(|value| preset.set(key, value));
     match result {

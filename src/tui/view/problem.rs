@@ -79,7 +79,7 @@ fn group_lines(theme: Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> 
     add("A/λ ", groups.amplitude_over_wavelength);
     add("λ/R ", groups.wavelength_over_radius);
     add("λ²/AR ", groups.connectivity);
-    add("γ' ", Some(groups.adhesion));
+    add("γ' ", groups.adhesion);
     add("α ", groups.johnson);
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;

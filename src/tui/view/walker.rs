@@ -46,11 +46,11 @@ fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
 fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     let case = &node.setting.case;
     let state = node.state.in_units(case.units());
-    let critical = case.smooth().pull_off_force();
+    let critical = case.critical_force();
     let wave = case.reduced.gap.feature_length();
     let s = node.state.contact_radius;
     let mut force = pair(theme, " P ", &significant(state.force, 4)).to_vec();
-    if critical > 0.0 {
+    if let Some(critical) = critical {
         force.extend(pair(theme, "  /Pc ", &significant(state.force / critical, 4)));
     }
     let mut radius = pair(theme, " s ", &significant(state.contact_radius, 4)).to_vec();

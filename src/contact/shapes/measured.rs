@@ -1,0 +1,73 @@
+//! A measured profile together with the file it came from.
+
+use super::profile::{InvalidProfile, Profile, Smoothing};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The rows of a file, in one unit of length. Equal where the name and the rows are.
+#[derive(Debug, Clone, Default)]
+pub struct Rows {
+    /// The file as a person wrote it.
+    pub name: String,
+    /// The folder that a relative `name` is relative to.
+    pub folder: Option<PathBuf>,
+    /// r, ascending.
+    pub radii: Vec<f64>,
+    /// h.
+    pub gaps: Vec<f64>,
+    /// What was put right, in words.
+    pub notes: Vec<String>,
+}
+
+impl PartialEq for Rows {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.name, &self.radii, &self.gaps) == (&other.name, &other.radii, &other.gaps)
+    }
+}
+
+/// A measured profile as a gap, with its rows. Equal where what a person sees is: the name, the rows, the smoothing.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    rows: Arc<Rows>,
+    smoothing: Smoothing,
+    profile: Profile,
+}
+
+impl Measured {
+    /// The gap of `rows`.
+    ///
+    /// # Errors
+    /// [`InvalidProfile`].
+    pub fn new(rows: Arc<Rows>, smoothing: Smoothing) -> Result<Self, InvalidProfile> {
+        let profile = Profile::new(&rows.radii, &rows.gaps, smoothing)?;
+        Ok(Self { rows, smoothing, profile })
+    }
+
+    /// The same gap from a file of this name.
+    #[must_use]
+    pub fn named(self, name: String) -> Self {
+        Self { rows: Arc::new(Rows { name, ..Rows::clone(&self.rows) }), ..self }
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &Arc<Rows> {
+        &self.rows
+    }
+
+    /// The smoothing as chosen.
+    pub fn smoothing(&self) -> Smoothing {
+        self.smoothing
+    }
+
+    /// The curve through the rows.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+}
+
+impl PartialEq for Measured {
+    fn eq(&self, other: &Self) -> bool {
+        // The curve follows from the rows and the smoothing; rows shared need no look.
+        self.smoothing == other.smoothing && (Arc::ptr_eq(&self.rows, &other.rows) || self.rows == other.rows)
+    }
+}

@@ -1,0 +1,334 @@
+//! The values of `[gap]` → the gap's shape, and back: rows, values and what a new shape begins with.
+
+use super::build::{Given, Values};
+use super::family::{self, PARAMETER_KEYS, WAVE_KEYS, is_parameter, parameter_key, wave_key};
+use super::invalid::Invalid;
+use super::measured;
+use super::schema::{AUTO, Key, Kind, NONE, Parameter, START_KEYS, START_OVER_CURVATURE, parameter};
+use super::suggest::closest;
+use super::value::Value;
+use crate::contact::Shape;
+use crate::contact::formula::typed::{MOST_PARAMETERS, RADIUS};
+use crate::contact::formula::{Formula, FormulaParameter, TypedError, TypedGap};
+use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Smoothing};
+use std::sync::Arc;
+
+impl Given<'_> {
+    /// The shape of the gap, for a path whose start is said by the key `start`. A shape that cannot be made is among the
+    /// faults, and a sphere stands in for it.
+    pub(super) fn shape(&mut self, start: Option<&str>) -> Shape {
+        let faults = self.faults.len();
+        let shape = match self.text("gap.shape").as_str() {
+            "wavy-sphere" => Shape::WavySphere {
+                radius_of_curvature: self.radius(),
+                amplitude: self.number("gap.amplitude"),
+                wavelength: self.number("gap.wavelength"),
+            },
+            "exact-sphere" => Shape::ExactSphere(ExactSphere { radius: self.radius() }),
+            "cone" => Shape::Cone { slope: self.number("gap.slope") },
+            "power-law" => Shape::PowerLaw(PowerLaw {
+                factor: self.number("gap.coefficient"),
+                exponent: self.number("gap.exponent"),
+            }),
+            "harmonics" => self.harmonics(),
+            "random-waves" => self.random_waves(faults),
+            "formula" => self.formula(start),
+            "profile" => self.profile(),
+            // An unknown word is among the faults already.
+            _ => Shape::Sphere { radius_of_curvature: self.radius() },
+        };
+        self.strays(&shape);
+        shape
+    }
+
+    fn radius(&mut self) -> f64 {
+        self.number("gap.radius_of_curvature")
+    }
+
+    fn fault(&mut self, key: &str, cause: &impl ToString) -> Shape {
+        self.faults.push(Invalid::Gap { key: key.to_owned().into(), cause: cause.to_string() });
+        Shape::Sphere { radius_of_curvature: f64::NAN }
+    }
+
+    fn harmonics(&mut self) -> Shape {
+        let mut waves = Vec::new();
+        while waves.len() < self.waves_given() {
+            let number = waves.len() + 1;
+            let [amplitude, wavelength, phase] = WAVE_KEYS.map(|name| self.number(&wave_key(number, name)));
+            waves.push(Harmonic { amplitude, wavelength, phase });
+            // One gap in the numbers is enough to say.
+            if amplitude.is_nan() && wavelength.is_nan() {
+                break;
+            }
+        }
+        match Harmonics::new(self.radius(), waves) {
+            Ok(harmonics) => Shape::Harmonics(Arc::new(harmonics)),
+            Err(error) => self.fault(family::WAVE_TABLE, &error),
+        }
+    }
+
+    /// The largest number of a wave.
+    fn waves_given(&self) -> usize {
+        let number = |key: &Key| -> Option<usize> {
+            family::below(key, family::WAVE_TABLE)?.split_once('.')?.0.parse().ok()
+        };
+        self.values.keys().filter_map(number).max().unwrap_or(0)
+    }
+
+    fn random_waves(&mut self, faults: usize) -> Shape {
+        let spectrum = RandomWaves {
+            radius_of_curvature: self.radius(),
+            rms: self.number("gap.rms"),
+            longest: self.number("gap.longest_wavelength"),
+            shortest: self.number("gap.shortest_wavelength"),
+            hurst: self.number("gap.hurst"),
+            count: usize::try_from(self.integer("gap.count")).unwrap_or_default(),
+            seed: u64::try_from(self.integer("gap.seed")).unwrap_or_default(),
+        };
+        match Shape::random_waves(spectrum) {
+            Ok(shape) => shape,
+            // What is missing or out of range has been said.
+            Err(_) if self.faults.len() > faults || !self.all_fine() => {
+                Shape::Sphere { radius_of_curvature: f64::NAN }
+            }
+            Err(error) => self.fault("gap.shortest_wavelength", &error),
+        }
+    }
+
+    fn all_fine(&self) -> bool {
+        self.values
+            .iter()
+            .all(|(key, value)| parameter(key).is_none_or(|row| row.check(value.clone()).is_ok()))
+    }
+
+    fn formula(&mut self, start: Option<&str>) -> Shape {
+        let nothing = Shape::Sphere { radius_of_curvature: f64::NAN };
+        let text = self.text("gap.formula");
+        if text.is_empty() {
+            return if self.values.contains_key("gap.formula") {
+                self.fault("gap.formula", &"the formula is empty")
+            } else {
+                nothing
+            };
+        }
+        let names = match Formula::parse(&text) {
+            Ok(formula) if formula.parameters().len() > MOST_PARAMETERS => {
+                return self.fault("gap.formula", &TypedError::TooMany(formula.parameters().len()));
+            }
+            Ok(formula) => formula.parameters().to_vec(),
+            Err(error) => return self.fault("gap.formula", &error),
+        };
+        let parameters: Vec<FormulaParameter> = names.iter().map(|name| self.parameter(name)).collect();
+        if parameters.iter().any(|p| p.value.is_nan()) {
+            return nothing;
+        }
+        let radius = || parameters.iter().find(|p| p.name == RADIUS && p.value > 0.0).map(|p| p.value);
+        let start = match start {
+            None => radius().map(|radius| START_OVER_CURVATURE * radius),
+            Some(key) if key == START_KEYS[0] => Some(self.number(key)).filter(|s| s.is_finite()),
+            Some(_) => None,
+        };
+        match TypedGap::new(&text, parameters, start) {
+            Ok(gap) => Shape::Formula(Arc::new(gap)),
+            Err(error) => self.fault("gap.formula", &error),
+        }
+    }
+
+    fn parameter(&mut self, name: &str) -> FormulaParameter {
+        let key = parameter_key(name);
+        let value = self.number(&key);
+        let limit = |part| match self.values.get(&*format!("{key}.{part}")) {
+            Some(Value::Number(x)) => Some(*x),
+            _ => None,
+        };
+        let (min, max) = (limit("min"), limit("max"));
+        let unit = match self.values.get(&*format!("{key}.unit")) {
+            Some(Value::Text(unit)) => Some(unit.clone()),
+            _ => None,
+        };
+        let parameter = FormulaParameter { name: name.to_owned(), value, min, max, unit };
+        if !value.is_nan()
+            && let Err(fault) = bounded(&parameter).check(Value::Number(value))
+        {
+            self.faults.push(fault);
+        }
+        parameter
+    }
+
+    fn profile(&mut self) -> Shape {
+        let smoothing = match self.value("gap.smoothing") {
+            Some(Value::Number(cutoff)) => Smoothing::Cutoff(cutoff),
+            Some(Value::Text(word)) if word == AUTO => Smoothing::Auto,
+            _ => Smoothing::None,
+        };
+        let rows = match self.value("gap.file") {
+            Some(Value::Profile(rows)) => rows,
+            Some(Value::Text(name)) => match measured::load(None, &name) {
+                Ok(rows) => Arc::new(rows),
+                Err(cause) => return self.fault("gap.file", &cause),
+            },
+            _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
+        };
+        match Measured::new(rows, smoothing) {
+            Ok(measured) => Shape::Profile(Arc::new(measured)),
+            Err(error) => self.fault("gap.file", &error),
+        }
+    }
+
+    /// Parameters that the formula does not use are faults.
+    fn strays(&mut self, shape: &Shape) {
+        let Shape::Formula(typed) = shape else { return };
+        let names = typed.formula().parameters();
+        for key in self.values.keys() {
+            let Some(name) = family::below(key, family::PARAMETER_TABLE) else { continue };
+            let name = name.split_once('.').map_or(name, |(name, _)| name);
+            if !names.iter().any(|known| known == name) {
+                let meant = closest(name, names.iter().map(String::as_str));
+                let meant = meant.map(|name| parameter_key(name).into());
+                self.faults.push(Invalid::Unused { key: key.clone(), meant });
+            }
+        }
+    }
+}
+
+/// The row of a parameter, with its range and unit.
+fn bounded(given: &FormulaParameter) -> Parameter {
+    let mut row = family::parameter(&given.name);
+    if given.min.is_some() || given.max.is_some() {
+        row.kind = Kind::Between {
+            min: given.min.unwrap_or(-super::schema::LARGEST),
+            max: given.max.unwrap_or(super::schema::LARGEST),
+        };
+    }
+    if let Some(unit) = &given.unit {
+        row.dimension = unit.clone().into();
+    }
+    row
+}
+
+/// The rows that a shape makes itself.
+pub(super) fn rows(shape: &Shape) -> Vec<Parameter> {
+    match shape {
+        Shape::Formula(typed) => typed
+            .parameters()
+            .iter()
+            .flat_map(|given| {
+                let limits = PARAMETER_KEYS.iter().filter_map(|part| family::limit(&given.name, part));
+                std::iter::once(bounded(given)).chain(limits)
+            })
+            .collect(),
+        Shape::Harmonics(waves) => (1..=waves.waves().len())
+            .flat_map(|number| WAVE_KEYS.iter().filter_map(move |name| family::wave(number, name)))
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The value of a key of the table `[gap]`.
+pub(super) fn get(shape: &Shape, key: &str) -> Option<Value> {
+    if key == "gap.shape" {
+        return Some(shape.name().into());
+    }
+    Some(match (shape, family::below(key, "gap")?) {
+        (Shape::Formula(_) | Shape::Profile(_), "radius_of_curvature") => return None,
+        (_, "radius_of_curvature") => shape.radius_of_curvature()?.into(),
+        (_, "amplitude") => shape.wave()?.0.into(),
+        (_, "wavelength") => shape.wave()?.1.into(),
+        (Shape::Cone { slope }, "slope") => (*slope).into(),
+        (Shape::PowerLaw(law), "coefficient") => law.factor.into(),
+        (Shape::PowerLaw(law), "exponent") => law.exponent.into(),
+        (Shape::RandomWaves { spectrum, .. }, "rms") => spectrum.rms.into(),
+        (Shape::RandomWaves { spectrum, .. }, "longest_wavelength") => spectrum.longest.into(),
+        (Shape::RandomWaves { spectrum, .. }, "shortest_wavelength") => spectrum.shortest.into(),
+        (Shape::RandomWaves { spectrum, .. }, "hurst") => spectrum.hurst.into(),
+        (Shape::RandomWaves { spectrum, .. }, "count") => i64::try_from(spectrum.count).ok()?.into(),
+        (Shape::RandomWaves { spectrum, .. }, "seed") => i64::try_from(spectrum.seed).ok()?.into(),
+        (Shape::Formula(typed), "formula") => typed.formula().to_string().as_str().into(),
+        (Shape::Formula(typed), _) => return parameter_value(typed, key),
+        (Shape::Harmonics(waves), _) => return wave_value(waves, key),
+        (Shape::Profile(measured), "file") => Value::Profile(Arc::clone(measured.rows())),
+        (Shape::Profile(measured), "smoothing") => match measured.smoothing() {
+            Smoothing::None => NONE.into(),
+            Smoothing::Auto => AUTO.into(),
+            Smoothing::Cutoff(cutoff) => cutoff.into(),
+        },
+        _ => return None,
+    })
+}
+
+fn parameter_value(typed: &TypedGap, key: &str) -> Option<Value> {
+    let rest = family::below(key, family::PARAMETER_TABLE)?;
+    let (name, part) = rest.split_once('.').map_or((rest, None), |(name, part)| (name, Some(part)));
+    let given = typed.parameters().iter().find(|given| given.name == name)?;
+    match part {
+        None => Some(given.value.into()),
+        Some("min") => given.min.map(Value::from),
+        Some("max") => given.max.map(Value::from),
+        Some("unit") => given.unit.as_deref().map(Value::from),
+        Some(_) => None,
+    }
+}
+
+fn wave_value(waves: &Harmonics, key: &str) -> Option<Value> {
+    let (number, name) = family::below(key, family::WAVE_TABLE)?.split_once('.')?;
+    let wave = waves.waves().get(number.parse::<usize>().ok()?.checked_sub(1)?)?;
+    match name {
+        "amplitude" => Some(wave.amplitude.into()),
+        "wavelength" => Some(wave.wavelength.into()),
+        "phase" => Some(wave.phase.into()),
+        _ => None,
+    }
+}
+
+/// Fits the parameters in `values` to a formula just chosen: names it does not have go, unless `keep` says that they
+/// stay, and names without a value begin with 1.
+pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) {
+    let Some(Value::Text(text)) = values.get("gap.formula") else { return };
+    let Ok(formula) = Formula::parse(text) else { return };
+    let names = formula.parameters();
+    values.retain(|key, _| {
+        let name =
+            family::below(key, family::PARAMETER_TABLE).map(|rest| rest.split('.').next().unwrap_or(rest));
+        name.is_none_or(|name| names.iter().any(|known| known == name) || keep(key))
+    });
+    for name in names {
+        values.entry(parameter_key(name).into()).or_insert(Value::Number(1.0));
+    }
+}
+
+/// What a shape chosen on the screen begins with where `values` lack it: a body of the radius `radius`, with the waves of
+/// the paper's Fig. 9.
+pub(super) fn begin(values: &mut Values, word: &str, radius: f64) {
+    let lengths = [
+        ("gap.radius_of_curvature", 1.0),
+        ("gap.amplitude", 0.0025),
+        ("gap.wavelength", 0.05),
+        ("gap.rms", 0.001),
+        ("gap.longest_wavelength", 0.1),
+        ("gap.shortest_wavelength", 0.02),
+    ];
+    let mut starts: Vec<(Key, Value)> =
+        lengths.iter().map(|(key, over)| ((*key).into(), Value::Number(over * radius))).collect();
+    starts.extend([
+        ("gap.slope".into(), Value::Number(0.1)),
+        ("gap.coefficient".into(), Value::Number(0.5 / radius)),
+        ("gap.exponent".into(), Value::Number(2.0)),
+        ("gap.file".into(), "shipped:rough-sphere.csv".into()),
+        ("gap.formula".into(), "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))".into()),
+        ("gap.parameters.R".into(), Value::Number(radius)),
+        ("gap.parameters.A".into(), Value::Number(0.0025 * radius)),
+        ("gap.parameters.lambda".into(), Value::Number(0.05 * radius)),
+        ("gap.waves.1.amplitude".into(), Value::Number(0.0025 * radius)),
+        ("gap.waves.1.wavelength".into(), Value::Number(0.05 * radius)),
+    ]);
+    for (key, value) in starts {
+        if parameter(&key).is_some_and(|row| row.fits("gap.shape", word)) {
+            values.entry(key).or_insert(value);
+        }
+    }
+}
+
+/// Whether a key may be left out of a list of knobs: the range and the unit of a parameter.
+pub(super) fn is_range(key: &str) -> bool {
+    key.rsplit_once('.').is_some_and(|(parent, part)| is_parameter(parent) && PARAMETER_KEYS.contains(&part))
+}
