@@ -2,7 +2,8 @@
 //!
 //! Inline for tests and scripts: each effect is done before the next command, so nothing depends on timing. On
 //! threads for the screen: the newest curve and the newest profile win, walks are done in order and stream their
-//! states, files have a lane of their own, and none of them waits for another.
+//! states, files have a lane of their own, and none of them waits for another. Which states of a curve are admissible
+//! is found in the lane of the curves, until another curve is wanted.
 
 use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};

@@ -16,6 +16,7 @@ const READING: &[&str] = &[
     "v marks a limit point of that control: there the edge lets go and runs, at constant control, to the",
     "next stable part, and the energy between is lost. d and p mark the limit points of displacement and force.",
     "Not every limit point is on the quasi-static path: the events are those where the edge lets go on it.",
+    "! marks states that cannot be: outside the disc the next crest would touch. They stand behind the events.",
     "Views follow each other with t: three of the curve, then the pressure in the disc, the gap outside it and the",
     "potential over the radius at the walker's state, and the unloading with its losses hatched. In the potential",
     "m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the crests.",

@@ -282,6 +282,33 @@ fn selection_instability_and_errors_have_their_styles() {
 }
 
 #[test]
+fn inadmissible_parts_need_no_colour() {
+    let mut screen = Screen::new("wavy-sphere");
+    assert!(!screen.text(160, 50).contains("inadmissible"));
+    let weak = Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() };
+    let effects = crate::explorer::update(&mut screen.app.model, weak);
+    screen.settle(effects);
+    for ascii in [false, true] {
+        screen.app.theme = Theme { ascii };
+        let text = screen.text(160, 50);
+        // In the legend and in the log; the others stand on the curves.
+        let told = text.matches("! inadmissible").count();
+        assert!(text.contains("! inadmissible s = ") && told > 3, "{text}");
+        assert!(text.matches('!').count() > told + screen.app.model.shown_inadmissible().len(), "{text}");
+    }
+    screen.keys("[[");
+    for _ in 0..200 {
+        if !screen.app.model.walker().unwrap().admissibility.holds {
+            break;
+        }
+        screen.keys(" ");
+    }
+    for (width, height) in [(80, 24), (160, 50)] {
+        assert_eq!(find(&screen.draw(width, height), "inadmissible: r 0.39").fg, Color::Red);
+    }
+}
+
+#[test]
 fn too_few_rings_are_a_warning_on_the_screen() {
     let mut screen = Screen::new("fig-9");
     let set = Command::Set { key: "basis.rings".into(), text: "40".to_owned() };
