@@ -59,8 +59,9 @@ pub fn unload(report: &UnloadReport) -> String {
         text.push_str(&aligned(&rows, 2));
     }
     if report.events.iter().any(|event| event.admissible == Some(false)) {
-        text.push_str("! limit point or landing inadmissible: the next crest would touch, or without adhesion the disc pull
-");
+        text.push_str(
+            "! limit point or landing inadmissible: the next crest would touch, or without adhesion the disc pull\n",
+        );
     }
     let _ = writeln!(
         text,
