@@ -76,7 +76,7 @@ fn what_is_not_admissible_is_drawn_over_the_curve() {
     let mut session = Session::new("wavy-sphere");
     let drawn = |session: &Session, view| count(&session.figure(view), Role::Inadmissible);
     assert_eq!(drawn(&session, View::ForceApproach), 0);
-    session.does(Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() });
+    session.does(Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() });
     let parts = session.model.shown_inadmissible().len();
     for view in [View::ForceApproach, View::RadiusForce, View::RadiusApproach, View::Unloading] {
         assert!(parts > 3 && drawn(&session, view) == parts, "{view:?} {parts}");

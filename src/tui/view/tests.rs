@@ -285,7 +285,7 @@ fn selection_instability_and_errors_have_their_styles() {
 fn inadmissible_parts_need_no_colour() {
     let mut screen = Screen::new("wavy-sphere");
     assert!(!screen.text(160, 50).contains("inadmissible"));
-    let weak = Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() };
+    let weak = Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, weak);
     screen.settle(effects);
     for ascii in [false, true] {
