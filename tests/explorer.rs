@@ -354,7 +354,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
 
     let effects = update(
         &mut session.model,
-        Command::Set { key: "material.work_of_adhesion", text: "1e-4".to_owned() },
+        Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() },
     );
     // While a newer curve is on its way nothing is asked about the old one.
     let [Effect::Curve(_)] = effects.as_slice() else { panic!("{effects:?}") };
@@ -368,7 +368,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     assert!(!session.model.curve.as_ref().unwrap().is_checked());
     // A curve that is wanted meanwhile makes the answer void, and giving it up has it asked again.
     let late = session.driver.run(check[0].clone()).unwrap();
-    update(&mut session.model, Command::Set { key: "gap.amplitude", text: "0.003".to_owned() });
+    update(&mut session.model, Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() });
     answer(&mut session.model, late);
     assert!(!session.model.curve.as_ref().unwrap().is_checked());
     let effects = update(&mut session.model, Id::Cancel.into());
