@@ -12,12 +12,17 @@
 
 use super::parallel::Progress;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::array;
+use wide::f64x4;
 
 /// Columns of a block: wide enough for fast products, few enough that stopping comes within milliseconds.
 pub const BLOCK: usize = 64;
 
 /// With fewer right-hand sides than this, products of blocks are slower than plain substitution.
 const MANY: usize = 6;
+
+/// Rows of L that plain substitution takes together: their sums do not wait for each other.
+const PANEL: usize = 4;
 
 /// Why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +36,7 @@ pub enum NoFactor {
 /// L of `A = LLᵀ`.
 #[derive(Debug)]
 pub struct Factor {
+    /// L, and Lᵀ above its diagonal: there each row of L lies in one piece.
     lower: DMatrix<f64>,
     /// `L_kk⁻¹` of every block.
     inverses: Vec<DMatrix<f64>>,
@@ -68,14 +74,14 @@ impl Factor {
             panel.rows_mut(width, n - end).copy_from(&below);
             inverses.push(inverse);
         }
+        a.fill_upper_triangle_with_lower_triangle();
         Ok(Self { lower: a, inverses })
     }
 
     /// Columns ← L⁻¹ columns, n rows each.
     pub fn forward(&self, columns: &mut DMatrix<f64>) {
         if columns.ncols() < MANY {
-            self.lower.solve_lower_triangular_unchecked_mut(columns);
-            return;
+            return self.substitute(columns);
         }
         let mut begin = 0;
         for inverse in &self.inverses {
@@ -90,11 +96,55 @@ impl Factor {
         }
     }
 
+    /// As [`Factor::forward`] row by row, up to four columns at once.
+    fn substitute(&self, columns: &mut DMatrix<f64>) {
+        let n = columns.nrows();
+        let lower = self.lower.as_slice();
+        let mut rows = vec![f64x4::ZERO; n];
+        for group in columns.as_mut_slice().chunks_mut(4 * n) {
+            for (i, row) in rows.iter_mut().enumerate() {
+                let mut four = [0.0; 4];
+                for (x, column) in four.iter_mut().zip(group.chunks(n)) {
+                    *x = column[i];
+                }
+                *row = f64x4::new(four);
+            }
+            for begin in (0..n).step_by(PANEL) {
+                let (known, rest) = rows.split_at_mut(begin);
+                // A row too many is not read.
+                let across = array::from_fn(|r| &lower[(begin + r).min(n - 1) * n..][..n]);
+                let sums = sums(across.map(|row| &row[..begin]), known);
+                for i in 0..PANEL.min(n - begin) {
+                    let row = &across[i][begin..];
+                    let sum = (0..i).fold(sums[i], |sum, j| sum + f64x4::splat(row[j]) * rest[j]);
+                    rest[i] = (rest[i] - sum) / f64x4::splat(row[i]);
+                }
+            }
+            for (i, row) in rows.iter().enumerate() {
+                for (x, column) in row.to_array().into_iter().zip(group.chunks_mut(n)) {
+                    column[i] = x;
+                }
+            }
+        }
+    }
+
     /// x ← A⁻¹ x.
     pub fn solve(&self, x: &mut DVector<f64>) {
         self.lower.solve_lower_triangular_unchecked_mut(x);
         self.lower.tr_solve_lower_triangular_unchecked_mut(x);
     }
+}
+
+/// The products of these rows with `known`.
+fn sums(rows: [&[f64]; PANEL], known: &[f64x4]) -> [f64x4; PANEL] {
+    let [a, b, c, d] = rows;
+    let mut sums = [f64x4::ZERO; PANEL];
+    for ((((a, b), c), d), x) in a.iter().zip(b).zip(c).zip(d).zip(known) {
+        for (sum, l) in sums.iter_mut().zip([a, b, c, d]) {
+            *sum += f64x4::splat(*l) * *x;
+        }
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -111,11 +161,12 @@ mod tests {
         for n in [1, 5, BLOCK, BLOCK + 1, 200] {
             let a = example(n);
             let factor = Factor::new(a.clone(), &mut |_| true).unwrap();
-            let back = &factor.lower * factor.lower.transpose();
+            let lower = factor.lower.lower_triangle();
+            let back = &lower * lower.transpose();
             assert!((back - &a).amax() < 1e-14, "{n}");
             let wanted = DMatrix::from_fn(n, 9, |i, j| ((i * 7 + j * 3) as f64).sin());
-            for columns in [1, 9] {
-                let mut x = &factor.lower * wanted.columns(0, columns);
+            for columns in [1, 4, 5, 9] {
+                let mut x = &lower * wanted.columns(0, columns);
                 factor.forward(&mut x);
                 assert!((x - wanted.columns(0, columns)).amax() < 1e-12, "{n} {columns}");
             }
