@@ -84,6 +84,11 @@ impl<const N: usize> Search<'_, N> {
 fn approach_to_zero(f: [f64; 2], d: [f64; 2], share: f64) -> Option<f64> {
     let sign = if f[0] + f[1] < 0.0 { -1.0 } else { 1.0 };
     let [f0, f1, d0, d1] = [f[0] * sign, f[1] * sign, d[0] * sign, d[1] * sign];
+    // A cubic lies between its four Bernstein coefficients.
+    let level = share * f0.max(f1);
+    if (f0 + d0 / 3.0).min(f1 - d1 / 3.0).min(f0.min(f1)) > level {
+        return None;
+    }
     // f = a x³ + b x² + d0 x + f0; extremes where 3a x² + 2b x + d0 = 0.
     let a = 2.0 * (f0 - f1) + d0 + d1;
     let b = 3.0 * (f1 - f0) - 2.0 * d0 - d1;
@@ -97,7 +102,7 @@ fn approach_to_zero(f: [f64; 2], d: [f64; 2], share: f64) -> Option<f64> {
     [q / (3.0 * a), d0 / q]
         .into_iter()
         .filter(|x| x.is_finite() && *x > 0.0 && *x < 1.0)
-        .filter(|x| value(*x) < share * f0.max(f1))
+        .filter(|x| value(*x) < level)
         .min_by(|x, y| value(*x).total_cmp(&value(*y)))
 }
 
