@@ -17,6 +17,9 @@ use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Point, Stiffness,
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
+/// The controls whose limit points are shown under every control.
+const SHOWN: [Control; 2] = [Control::Displacement, Control::Force];
+
 /// One point of the curve in the user's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
@@ -46,10 +49,8 @@ pub struct Sweep {
     pub preset: Preset,
     /// The same made ready.
     pub case: Case,
-    /// The curve between start and end, reduced.
+    /// The curve between start and end, reduced. It holds the limit points of [`SHOWN`].
     pub curve: Curve,
-    /// The limit points of displacement and of force, which are shown under every control.
-    held: [(Control, Vec<Limit>); 2],
     /// The theory over the same radii.
     pub theory: Theory,
     /// The dimensionless groups.
@@ -96,13 +97,13 @@ impl Sweep {
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &mut |_| go_on())?;
-        let curve = case.sweep(go_on)?;
-        let held =
-            [Control::Displacement, Control::Force].map(|control| (control, curve.limit_points(control)));
+        let mut curve = case.sweep(go_on)?;
+        for control in SHOWN {
+            curve.hold(control);
+        }
         let start = curve.branch.points.first().map(|point| curve.equilibrium.admissibility(point));
         Ok(Self {
             preset: preset.clone(),
-            held,
             start,
             inadmissible: None,
             theory: Theory::of(&case),
@@ -137,12 +138,6 @@ impl Sweep {
         };
         Inadmissible { report, places: from.into_iter().chain(inner).chain(to).map(place).collect() }
     }
-
-    /// The limit points of `control` (reduced), from the start inward.
-    fn limits(&self, control: Control) -> Vec<Limit> {
-        let known = self.held.iter().find(|(held, _)| *held == control);
-        known.map_or_else(|| self.curve.limit_points(control), |(_, limits)| limits.clone())
-    }
 }
 
 impl CurveData {
@@ -161,6 +156,8 @@ impl CurveData {
     /// # Errors
     /// [`CaseError::Cancelled`] when `go_on` said no.
     pub fn under(sweep: Arc<Sweep>, preset: &Preset, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+        // The unloading may extend its curve to find a landing; the one on the screen ends where asked.
+        let mut longer = sweep.curve.clone();
         let curve = &sweep.curve;
         let units = *sweep.case.units();
         let control = preset.path.control.in_units(units.stiffness);
@@ -175,15 +172,15 @@ impl CurveData {
             }
         };
         let points = curve.branch.points.iter().map(|p| shown(p, control)).collect();
-        let limits = sweep.limits(control);
-        let other_limits = sweep
-            .held
-            .iter()
-            .filter(|(held, _)| *held != control)
-            .flat_map(|(held, limits)| limits.iter().map(|limit| (*held, shown(&limit.point, *held))))
+        longer.hold(control);
+        let limits = longer.limit_points(control);
+        let other_limits = SHOWN
+            .into_iter()
+            .filter(|other| *other != control)
+            .flat_map(|other| curve.limit_points(other).into_iter().map(move |limit| (other, limit.point)))
+            .map(|(other, point)| (other, shown(&point, other)))
             .collect();
-        // The unloading may extend its curve to find a landing; the one on the screen ends where asked.
-        let unloading = match case.unload_while(&mut curve.clone(), control, go_on) {
+        let unloading = match case.unload_while(&mut longer, control, go_on) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|e| e.to_string()),
         };

@@ -66,11 +66,6 @@ impl Nodes {
         &self.points
     }
 
-    /// The limit points of the control among the nodes.
-    pub fn limit_points(&self) -> impl Iterator<Item = &Point> {
-        self.limits.iter().map(|&(at, _)| &self.points[at])
-    }
-
     /// The outermost state at which the control takes `value` while it grows with s; `None` when there is none.
     pub fn outermost(&self, curve: &Curve, value: f64) -> Option<Point> {
         // The outermost node that is not above the value ends the search; a limit point may be that node alone.

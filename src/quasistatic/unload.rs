@@ -173,6 +173,10 @@ pub fn unload_while(
     let asked_state = curve.branch.points.first().map(|p| curve.equilibrium.state(p));
     let stable = |curve: &Curve, point: &Point| curve.equilibrium.stability(point).under(control);
 
+    // Its own limit points make the events, the others' may be the smallest force or approach of the path.
+    for control in [control, Control::Force, Control::Displacement] {
+        curve.hold(control);
+    }
     let unstable_start = curve.branch.points.first().is_some_and(|p| !stable(curve, p));
     if unstable_start {
         run_outward(curve, control, asked_radius)?;
@@ -233,8 +237,7 @@ pub fn unload_while(
             Some(landing) => here = landing,
         }
     };
-    let least =
-        |of| least(curve, &nodes, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
+    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked_state.filter(|_| unstable_start);
     Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
@@ -256,14 +259,10 @@ fn landing_inward(curve: &mut Curve, nodes: &mut Nodes, limit: usize) -> Option<
 
 /// The point of a path at which the quantity that `of` controls is smallest: one of its own, or a limit point of
 /// that quantity between them.
-///
-/// Those of the unloading's own control are among its nodes already.
-fn least(curve: &Curve, nodes: &Nodes, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
+fn least(curve: &Curve, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
     let row = curve.equilibrium.control_row(of);
-    let others = if of == nodes.control { Vec::new() } else { curve.limit_points(of) };
-    let own = nodes.limit_points().filter(|_| of == nodes.control);
-    let between =
-        own.chain(others.iter().map(|l| &l.point)).filter(|p| is_on(&curve.equilibrium, path, events, p));
+    let limits = curve.limit_points(of);
+    let between = limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, path, events, p));
     path.iter().chain(between).min_by(|a, b| row.dot(&a.y).total_cmp(&row.dot(&b.y))).cloned()
 }
 
@@ -298,9 +297,7 @@ fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<(), Unl
             .unwrap_or(0);
         if let Some(landing) = nodes.run(curve, start, value, Run::Outward) {
             // The path starts at the landing: what lies outward of it is not on it.
-            let s = curve.equilibrium.contact_radius(&landing.point);
-            curve.branch.points.retain(|p| curve.equilibrium.contact_radius(p) < s);
-            curve.branch.points.insert(0, landing.point);
+            curve.begin_at(landing.point);
             return Ok(());
         }
         if !grew || reach >= limit {
