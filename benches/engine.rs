@@ -9,7 +9,7 @@ use pulloff::case::Case;
 use pulloff::contact::Control;
 use pulloff::preset::{BasisSpec, Functions, Store};
 use pulloff::ritz::moments::EdgeRules;
-use pulloff::ritz::{Evaluation, Grading, Rings};
+use pulloff::ritz::{Evaluation, Grading, Order, Rings};
 
 /// The ring numbers.
 const SIZES: [usize; 3] = [50, 200, 800];
@@ -98,7 +98,7 @@ fn dense_radii() -> Vec<f64> {
 }
 
 fn dense(case: &Case, radii: &[f64]) -> Vec<Evaluation> {
-    case.basis.equilibria(&case.reduced, radii, &mut || true)
+    case.basis.equilibria(&case.reduced, radii, Order::State, &mut || true)
 }
 
 /// 2000 explicit points.

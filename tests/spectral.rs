@@ -5,7 +5,7 @@
 use pulloff::case::Case;
 use pulloff::contact::Control;
 use pulloff::preset::{Preset, Store};
-use pulloff::ritz::{NewtonSettings, solve};
+use pulloff::ritz::{NewtonSettings, Order, solve};
 use pulloff::theory::Exact;
 
 /// A shipped preset in eigenfunctions.
@@ -82,7 +82,7 @@ fn without_adhesion_every_way_gives_hertz_to_rounding() {
 fn a_dense_curve_is_the_exact_one() {
     let case = Case::new(&preset("fig-9", &[])).unwrap();
     let radii: Vec<f64> = (0..2000).map(|i| 0.5 - 0.498 * f64::from(i) / 1999.0).collect();
-    let ours = case.basis.equilibria(&case.reduced, &radii, &mut || true);
+    let ours = case.basis.equilibria(&case.reduced, &radii, Order::State, &mut || true);
     assert_eq!(ours.len(), radii.len());
     let exact = Exact::of(&case.problem);
     let units = case.units();
@@ -103,7 +103,7 @@ fn a_dense_curve_is_the_exact_one() {
     }
     // It is made in one piece of work that can be given up between points.
     let mut asked = 0;
-    let few = case.basis.equilibria(&case.reduced, &radii, &mut || {
+    let few = case.basis.equilibria(&case.reduced, &radii, Order::State, &mut || {
         asked += 1;
         asked <= 7
     });

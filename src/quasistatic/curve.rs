@@ -5,7 +5,7 @@ use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::sweep::sweep;
 use crate::continuation::trace::trace;
 use crate::continuation::{Branch, End, Settings, Stop, Work, events, locate};
-use crate::ritz::{Basis, Evaluation};
+use crate::ritz::{Basis, Evaluation, Order};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -132,7 +132,7 @@ impl Curve {
     ) -> Option<Self> {
         let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
         let wanted = steps.len();
-        let mut evaluations = basis.equilibria(&problem, &steps, &mut go_on);
+        let mut evaluations = basis.equilibria(&problem, &steps, Order::Curvature, &mut go_on);
         evaluations.retain(|e| e.approach.is_finite() && e.force.is_finite());
         let reached = evaluations.last()?.contact_radius;
         let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
@@ -160,7 +160,7 @@ impl Curve {
         /// Coarse sampling for the ranges only.
         const STEPS_PER_WAVE: f64 = 8.0;
         let steps = radii(from, to, problem.gap.feature_length(), STEPS_PER_WAVE);
-        let evaluations = basis.equilibria(&problem, &steps, &mut go_on);
+        let evaluations = basis.equilibria(&problem, &steps, Order::State, &mut go_on);
         let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
         let start = equilibrium.explicit(from)?;
         let mut settings = settings(&equilibrium);
@@ -195,7 +195,7 @@ impl Curve {
         let ratio = if inward { INWARD_RATIO } else { SWEEP_RATIO };
         let steps = radii_by(ratio, from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
         let new = steps.get(1..).unwrap_or_default();
-        let mut evaluations = basis.equilibria(problem, new, &mut || true);
+        let mut evaluations = basis.equilibria(problem, new, Order::Curvature, &mut || true);
         if !inward {
             evaluations.reverse();
         }

@@ -13,6 +13,7 @@
 
 use super::equilibrium::{Equilibrium, State};
 use crate::contact::{Control, Gap};
+use crate::ritz::Order;
 use gauss_quad::GaussLegendre;
 
 /// Nodes of Gauss's rule in each piece of the area. 12: on a third of a wave the two losses agree to rounding.
@@ -81,7 +82,7 @@ pub fn area(
         piece += 1.0;
     }
     let radii: Vec<f64> = nodes.iter().map(|x| x * x).collect();
-    let solved = equilibrium.basis.equilibria(&equilibrium.problem, &radii, &mut || true);
+    let solved = equilibrium.basis.equilibria(&equilibrium.problem, &radii, Order::Slopes, &mut || true);
     if solved.len() < radii.len() {
         return None;
     }

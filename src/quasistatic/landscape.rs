@@ -22,7 +22,7 @@ use super::energy::potential;
 use super::equilibrium::{Equilibrium, State};
 use super::jump::{Nodes, Run};
 use crate::contact::{Control, Gap};
-use crate::ritz::Evaluation;
+use crate::ritz::{Evaluation, Order};
 
 /// Samples of a landscape at least: a short range is drawn with as many steps as this.
 const SAMPLES: f64 = 100.0;
@@ -166,7 +166,7 @@ impl Held<'_> {
         }
         nodes.extend(grid.last());
         let Equilibrium { problem, basis, .. } = self.equilibrium;
-        let evaluations = basis.equilibria(problem, &nodes, &mut || true);
+        let evaluations = basis.equilibria(problem, &nodes, Order::State, &mut || true);
         if evaluations.len() < nodes.len() {
             return None;
         }

@@ -54,6 +54,17 @@ pub enum BasisError {
     Spectral(#[from] SpectralError),
 }
 
+/// How much is asked of an equilibrium: each answers what the ones before it do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// δ and P, and what follows from P alone: its gradient, and its second derivatives with a δ in them.
+    State,
+    /// The gradient of the residual as well: the slopes of the curve.
+    Slopes,
+    /// Everything: the curvature of the curve.
+    Curvature,
+}
+
 /// A basis of trial pressures on a disc.
 pub trait Basis: Debug + Send + Sync {
     /// The residual and the force at contact radius `s > 0` and approach `delta`.
@@ -73,12 +84,13 @@ pub trait Basis: Debug + Send + Sync {
 
     /// The equilibria at `radii`, one after the other, up to the first radius that has none.
     ///
-    /// Shorter than `radii` there, and where `go_on`, asked before each radius, says no. A curve is made of these:
+    /// What is beyond `order` need not be there: it may be not a number. Shorter than `radii` there, and where `go_on`, asked before each radius, says no. A curve is made of these:
     /// a basis that samples the gap for many radii at once answers faster than one by one.
     fn equilibria(
         &self,
         problem: &Reduced,
         radii: &[f64],
+        _order: Order,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<Evaluation> {
         radii.iter().take_while(|_| go_on()).map_while(|&s| self.equilibrium(problem, s)).collect()

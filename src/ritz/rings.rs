@@ -17,7 +17,6 @@
 //! and the force to 1.4/N, with graded ones to 0.34/N² and 9.4/N²; without adhesion the radius to 0.5/N, graded 0.37/N,
 //! and the force to better than 1/N² with either.
 
-use super::Basis;
 use super::caution::Caution;
 use super::cholesky::{BLOCK, Factor, NoFactor};
 use super::functional::{Evaluation, Forms};
@@ -25,8 +24,9 @@ use super::kernel::disc_interaction;
 use super::mesh::Grading;
 use super::outside;
 use super::parallel::{self, Progress};
+use super::{Basis, Order};
 use crate::contact::{Gap, Reduced};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -156,78 +156,85 @@ impl Rings {
         Ok(Self { grading, nodes, weights, factor, ones, cc })
     }
 
-    /// W̃v for the first M of the gap's samples at radius `s`, as M columns one after the other.
-    fn integrate<const M: usize>(&self, gap: &dyn Gap, s: f64, columns: &mut [f64]) {
-        let samples = |x: f64| -> [f64; M] {
-            let jet = gap.jet(s * x);
-            let all = [jet.value, x * jet.first, x * x * jet.second, x * x * x * jet.third];
-            std::array::from_fn(|i| all[i])
-        };
-        let rings = self.size();
-        let mut inner = samples(self.nodes[0]);
-        for (a, (&x, &[in_weight, out_weight])) in self.nodes[1..].iter().zip(&self.weights).enumerate() {
-            let outer = samples(x);
-            for i in 0..M {
-                columns[i * rings + a] = in_weight * inner[i] + out_weight * outer[i];
-            }
-            inner = outer;
-        }
-    }
-
     /// L⁻¹W̃v for the first M samples at each of `radii`, M columns for each.
     fn reduced<const M: usize>(&self, gap: &dyn Gap, radii: &[f64]) -> DMatrix<f64> {
         let rings = self.size();
         let mut columns = DMatrix::zeros(rings, M * radii.len());
+        let mut samples = [(); SAMPLES].map(|()| vec![0.0; rings + 1]);
         for (&s, part) in radii.iter().zip(columns.as_mut_slice().chunks_mut(M * rings)) {
-            self.integrate::<M>(gap, s, part);
+            self.sample::<M>(gap, s, &mut samples);
+            for (samples, column) in samples.iter().zip(part.chunks_mut(rings)) {
+                let edges = samples.iter().zip(&samples[1..]);
+                for ((integral, [a, b]), (inner, outer)) in column.iter_mut().zip(&self.weights).zip(edges) {
+                    *integral = a * inner + b * outer;
+                }
+            }
         }
         self.factor.forward(&mut columns);
         columns
     }
 
-    /// The forms of the four columns of one radius.
-    fn forms_of(&self, columns: &[f64]) -> Forms {
-        let (h, rest) = columns.split_at(self.size());
-        let (h1, rest) = rest.split_at(self.size());
-        let (h2, h3) = rest.split_at(self.size());
-        let mut forms = Forms { cc: self.cc, ..Forms::default() };
-        // One pass: the sums do not wait for each other.
-        for ((((&c, &h), &h1), &h2), &h3) in self.ones.iter().zip(h).zip(h1).zip(h2).zip(h3) {
-            forms.ch += c * h;
-            forms.c1 += c * h1;
-            forms.c2 += c * h2;
-            forms.c3 += c * h3;
-            forms.hh += h * h;
-            forms.h1 += h * h1;
-            forms.h2 += h * h2;
-            forms.h3 += h * h3;
-            forms.f11 += h1 * h1;
-            forms.f12 += h1 * h2;
+    /// The first M samples of the gap at the nodes of a disc of radius `s`.
+    fn sample<const M: usize>(&self, gap: &dyn Gap, s: f64, [h, h1, h2, h3]: &mut [Vec<f64>; SAMPLES]) {
+        gap.values(s, &self.nodes, h);
+        if M > 1 {
+            gap.derivatives(s, &self.nodes, [&mut *h1, &mut *h2, &mut *h3]);
+            for (((x, h1), h2), h3) in self.nodes.iter().zip(h1).zip(h2).zip(h3) {
+                *h1 *= x;
+                *h2 *= x * x;
+                *h3 *= x * x * x;
+            }
         }
-        forms
+    }
+
+    /// The forms of the M columns of one radius; those that need more columns are not numbers.
+    fn forms_of<const M: usize>(&self, columns: &[f64]) -> Forms {
+        let columns = DMatrixView::from_slice(columns, self.size(), M);
+        let product = |a: usize, b: usize| {
+            if a.max(b) < M { columns.column(a).dot(&columns.column(b)) } else { f64::NAN }
+        };
+        let integral = |a: usize| if a < M { self.ones.dot(&columns.column(a)) } else { f64::NAN };
+        Forms {
+            cc: self.cc,
+            ch: integral(0),
+            c1: integral(1),
+            c2: integral(2),
+            c3: integral(3),
+            hh: product(0, 0),
+            h1: product(0, 1),
+            h2: product(0, 2),
+            h3: product(0, 3),
+            f11: product(1, 1),
+            f12: product(1, 2),
+        }
     }
 
     /// The forms of `gap` at radius `s`.
     fn forms(&self, gap: &dyn Gap, s: f64) -> Forms {
-        self.forms_of(self.reduced::<SAMPLES>(gap, &[s]).as_slice())
+        self.forms_of::<SAMPLES>(self.reduced::<SAMPLES>(gap, &[s]).as_slice())
     }
 
-    /// The equilibrium at each of `radii`, into `answers`.
-    fn solve_together(&self, problem: &Reduced, radii: &[f64], answers: &mut [Option<Evaluation>]) {
-        let columns = self.reduced::<SAMPLES>(problem.gap.as_ref(), radii);
-        let parts = columns.as_slice().chunks(SAMPLES * self.size());
+    /// The equilibrium at each of `radii` from the first M samples, into `answers`.
+    fn solve_together<const M: usize>(
+        &self,
+        problem: &Reduced,
+        radii: &[f64],
+        answers: &mut [Option<Evaluation>],
+    ) {
+        let columns = self.reduced::<M>(problem.gap.as_ref(), radii);
+        let parts = columns.as_slice().chunks(M * self.size());
         for ((&s, part), answer) in radii.iter().zip(parts).zip(answers) {
-            *answer = equilibrium_of(&self.forms_of(part), s, problem.work_of_adhesion);
+            *answer = equilibrium_of(&self.forms_of::<M>(part), s, problem.work_of_adhesion);
         }
     }
 
     /// The pressure on each ring.
     fn ring_pressures(&self, gap: &dyn Gap, s: f64, delta: f64) -> DVector<f64> {
-        let mut load = DVector::zeros(self.size());
-        self.integrate::<1>(gap, s, load.as_mut_slice());
-        for (load, [a, b]) in load.iter_mut().zip(&self.weights) {
-            *load -= delta * (a + b);
-        }
+        let mut samples = vec![0.0; self.nodes.len()];
+        gap.values(s, &self.nodes, &mut samples);
+        let edges = samples.windows(2).zip(&self.weights);
+        let loads = edges.map(|(h, [a, b])| a * (h[0] - delta) + b * (h[1] - delta));
+        let mut load = DVector::from_iterator(self.size(), loads);
         self.factor.solve(&mut load);
         load / -s
     }
@@ -299,8 +306,14 @@ impl Basis for Rings {
         &self,
         problem: &Reduced,
         radii: &[f64],
+        order: Order,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<Evaluation> {
+        let solve = match order {
+            Order::State => Self::solve_together::<2>,
+            Order::Slopes => Self::solve_together::<3>,
+            Order::Curvature => Self::solve_together::<SAMPLES>,
+        };
         let threads = if self.size() < RINGS_PER_THREAD { 1 } else { parallel::cores() };
         let mut found = Vec::with_capacity(radii.len());
         for round in radii.chunks(TOGETHER * threads) {
@@ -312,7 +325,7 @@ impl Basis for Rings {
             parallel::each(
                 round[..wanted].chunks(share).zip(answers.chunks_mut(share)),
                 |(radii, answers)| {
-                    self.solve_together(problem, radii, answers);
+                    solve(self, problem, radii, answers);
                 },
             );
             found.extend(answers.into_iter().map_while(|answer| answer));
@@ -417,7 +430,7 @@ mod tests {
         for (n, grading) in [(30, Grading::Uniform), (150, Grading::Edge)] {
             let basis = rings(n, grading);
             let radii: Vec<f64> = (0..150).map(|i| 0.4 - 0.002 * f64::from(i)).collect();
-            let all = basis.equilibria(&problem, &radii, &mut || true);
+            let all = basis.equilibria(&problem, &radii, Order::Curvature, &mut || true);
             assert_eq!(all.len(), radii.len());
             for (one, &s) in all.iter().zip(&radii) {
                 let alone = basis.equilibrium(&problem, s).unwrap();
@@ -425,17 +438,27 @@ mod tests {
                 assert!((one.force - alone.force).abs() < 1e-12);
                 assert!((one.residual_second[2] / alone.residual_second[2] - 1.0).abs() < 1e-9);
             }
+            // What is not asked for is missing, the rest is the same.
+            let of = |order| basis.equilibria(&problem, &radii, order, &mut || true);
+            let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+            for ((state, slopes), full) in of(Order::State).iter().zip(&of(Order::Slopes)).zip(&all) {
+                same(state.approach, full.approach);
+                same(state.force_gradient[1], full.force_gradient[1]);
+                same(slopes.residual_gradient[1], full.residual_gradient[1]);
+                same(slopes.slopes()[1], full.slopes()[1]);
+                assert!(state.residual_gradient[1].is_nan() && slopes.residual_second[2].is_nan());
+            }
             for wanted in [0, 1, 64, 70] {
                 let mut asked = 0;
                 let go_on = &mut || {
                     asked += 1;
                     asked <= wanted
                 };
-                assert_eq!(basis.equilibria(&problem, &radii, go_on).len(), wanted);
+                assert_eq!(basis.equilibria(&problem, &radii, Order::State, go_on).len(), wanted);
             }
             // A radius without an equilibrium ends them.
             let ended = [&radii[..40], &[f64::NAN], &radii[40..]].concat();
-            assert_eq!(basis.equilibria(&problem, &ended, &mut || true).len(), 40);
+            assert_eq!(basis.equilibria(&problem, &ended, Order::Slopes, &mut || true).len(), 40);
         }
     }
 
