@@ -7,6 +7,7 @@ use super::admissible::{Admissibility, Crest};
 use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
 use super::equilibrium::Equilibrium;
 use crate::contact::Gap;
+use crate::ritz::Order;
 
 /// Rounds for the ends of an interval, in which halving alone comes to 1e-6 of a step; false position needs a third.
 const ROUNDS: usize = 20;
@@ -63,7 +64,7 @@ pub fn passed_while(
     let mut found = Vec::new();
     for &[outer, inner] in pieces {
         let steps = radii(outer, inner, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let states = basis.equilibria(problem, &steps, &mut go_on);
+        let states = basis.equilibria(problem, &steps, Order::State, &mut go_on);
         found.extend(along(equilibrium, states.iter().map(|e| (e.contact_radius, e.approach)), &mut go_on)?);
     }
     wanted.then_some(found)
