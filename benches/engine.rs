@@ -138,6 +138,28 @@ fn spectral_limit_points(bencher: Bencher) {
     bencher.bench_local(|| controls.map(|control| curve.limit_points(control).len()));
 }
 
+/// The same, and every jump and loss of the three unloadings, from one swept curve.
+fn events(bencher: Bencher, case: &Case) {
+    let curve = case.sweep(|| true).unwrap();
+    bencher.with_inputs(|| curve.clone()).bench_local_values(|mut curve| {
+        let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
+        for control in controls {
+            curve.hold(control);
+        }
+        controls.map(|control| case.unload(&mut curve.clone(), control).unwrap())
+    });
+}
+
+#[divan::bench(args = TRACED, max_time = 5)]
+fn all_events(bencher: Bencher, rings: usize) {
+    events(bencher, &fig_9(rings));
+}
+
+#[divan::bench(max_time = 5)]
+fn spectral_all_events(bencher: Bencher) {
+    events(bencher, &fig_9_spectral());
+}
+
 /// The smallest automatic number of functions, its tail checked.
 #[divan::bench]
 fn spectral_case() -> Case {
