@@ -297,7 +297,10 @@ fn theory_adds_the_exact_columns_behind_the_others() {
     assert!(home.json(&short("trace", &[]))["points"][0].get("exact").is_none());
     for preset in ["fig-1-hertz", "fig-3-jkr"] {
         let rows = records(&home.quiet(&["trace", preset, "--theory"]));
-        assert!(rows.iter().all(|row| row[16].parse::<f64>().unwrap().abs() < 0.05), "{preset}");
+        // Over the largest force: P itself passes through zero.
+        let cell = |row: &Vec<String>, at: usize| row[at].parse::<f64>().unwrap().abs();
+        let largest = rows.iter().map(|row| cell(row, 14)).fold(0.0, f64::max);
+        assert!(rows.iter().all(|row| cell(row, 16) * cell(row, 14) < 0.01 * largest), "{preset}");
     }
 }
 

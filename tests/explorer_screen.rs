@@ -41,7 +41,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     let export = home.path().join("walk.csv");
     let env = [("XDG_CONFIG_HOME", config.to_str().unwrap()), ("HOME", home.path().to_str().unwrap())];
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve and its events");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve and its events");
 
     // Steps, one and several.
     pty.keys(" ");
@@ -98,10 +98,11 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 
     // The preset is there again, from the list.
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve");
     pty.keys("o");
     pty.wait_for(|screen| screen.contains("lab-3"), "the list");
-    pty.keys("jjjjjj\r");
+    // Last but one: only "a file" stands behind it.
+    pty.keys("jjjjjjjjjjjjjjjjjjjjjjjjjjjk\r");
     pty.wait_for(|screen| screen.contains(" lab-3  control") && screen.contains("0.003 "), "the preset");
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
@@ -110,7 +111,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 #[test]
 fn every_view_a_closer_look_and_a_pin() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
-    pty.wait_for(|screen| screen.contains("Events: on curve 2"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 2"), "the curve");
     for title in
         ["s/λ over P/Pc", "s/λ over δ", "p/E* over r/λ", "gap over r/λ", "U over s/λ", "unloading: P/Pc"]
     {
@@ -148,7 +149,7 @@ fn every_view_a_closer_look_and_a_pin() {
 #[test]
 fn quitting_with_unsaved_changes_asks_first() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
-    pty.wait_for(|screen| screen.contains("Events: on curve 2"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 2"), "the curve");
     pty.keys("}");
     pty.wait_for(|screen| screen.contains("unsaved"), "a change");
     pty.keys("q");
@@ -170,7 +171,7 @@ fn a_bad_preset_is_an_error_before_the_screen_is_taken() {
 #[test]
 fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
     let mut pty = Pty::spawn(program(), &[], &[], 120, 40);
-    pty.wait_for(|screen| screen.contains("Events: on curve 6"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve");
     pty.keys("n");
     pty.wait_for(|screen| screen.contains("Limit point 1/"), "a limit point of the displacement");
     select(&mut pty, "control");
@@ -200,7 +201,7 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
 #[test]
 fn a_curve_that_takes_long_can_be_given_up() {
     let mut pty = Pty::spawn(program(), &["fig-9"], &[], 100, 30);
-    pty.wait_for(|screen| screen.contains("Events: on curve 8"), "the curve");
+    pty.wait_for(|screen| screen.contains("Events on the curve: 8"), "the curve");
     select(&mut pty, "N ");
     // Two thousand rings take seconds to factorize.
     pty.keys("\r");
@@ -209,7 +210,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.wait_for(|screen| screen.contains("computing"), "the new curve under way");
     pty.keys("\x1b");
     pty.wait_for(|screen| screen.contains("cancelled: the curve shown is of the values before"), "given up");
-    assert!(pty.screen().contains("Events: on curve 8") && pty.screen().contains("unsaved"));
+    assert!(pty.screen().contains("Events on the curve: 8") && pty.screen().contains("unsaved"));
     pty.keys("u");
     pty.wait_for(|screen| !screen.contains("unsaved") && !screen.contains("computing"), "the values back");
     pty.keys("n");

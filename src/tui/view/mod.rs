@@ -20,11 +20,14 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders};
 
+/// Lines of inadmissible parts that get room of their own: they come late, and more would move the charts far.
+const PARTS: usize = 3;
+
 /// Draws the whole screen, and says for how many views it has room.
 pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
-    let events = app.model.shown_events().len();
+    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
     let Some(regions) = regions(area, app.model.view, events) else {
         let (width, height) = SMALLEST;
         let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
