@@ -19,6 +19,7 @@
 //! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
 //! | [`measured`] | the file of a measured profile → rows of a gap |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
+//! | [`beside`] | the data of a profile copied beside a preset |
 //! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 //! | [`atomic`] | writing a file whole or not at all |
 //! | [`lock`] | one saver at a time in a folder |
@@ -27,6 +28,7 @@
 //! | [`suggest`] | "did you mean" |
 
 pub mod atomic;
+pub mod beside;
 pub mod build;
 pub mod family;
 pub mod file;

@@ -234,8 +234,8 @@ impl Preset {
         Ok(())
     }
 
-    /// The same preset for a file in `folder`: the name of a profile's file that is relative to another folder becomes
-    /// absolute.
+    /// The same preset for a file in `folder`: the name of a profile's file becomes relative to it where the file lies in
+    /// it or below, else absolute.
     #[must_use]
     pub fn placed_in(&self, folder: &Path) -> Self {
         let mut preset = self.clone();
@@ -243,10 +243,12 @@ impl Preset {
             let rows = measured.rows();
             let own = rows.folder.as_deref().unwrap_or(Path::new("."));
             let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();
-            let is_path =
-                !rows.name.starts_with(measured::SHIPPED_DATA) && Path::new(&rows.name).is_relative();
-            if let (false, true, Ok(path)) = (is_same, is_path, std::path::absolute(own.join(&rows.name)))
-                && let Some(name) = path.to_str()
+            let stays = rows.name.starts_with(measured::SHIPPED_DATA)
+                || (is_same && Path::new(&rows.name).is_relative());
+            if let (false, Ok(path), Ok(folder)) =
+                (stays, std::path::absolute(own.join(&rows.name)), std::path::absolute(folder))
+                && let Some(name) = path.strip_prefix(folder).unwrap_or(&path).to_str()
+                && !name.starts_with(measured::SHIPPED_DATA)
             {
                 let moved = Measured::clone(measured).named(name.to_owned());
                 preset.gap = Shape::Profile(Arc::new(moved));

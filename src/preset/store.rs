@@ -4,6 +4,7 @@
 //! never by anything else. Nothing here overwrites a file that the caller did not load or ask to replace.
 
 use super::atomic::{Overwrite, WriteError, folder_of, follow, write_verified};
+use super::beside::copy_beside;
 use super::file::{self, FileError, Fingerprint, read_text};
 use super::invalid::Invalid;
 use super::lock::{FolderLock, PATIENCE};
@@ -129,6 +130,9 @@ pub enum StoreError {
         /// What the system says.
         cause: io::Error,
     },
+    /// The data of a profile cannot be copied.
+    #[error("{0}")]
+    Data(String),
     /// The file cannot be written; nothing has changed.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -285,12 +289,36 @@ impl Store {
         overwrite: Overwrite,
     ) -> Result<(Source, Fingerprint), StoreError> {
         let path = self.path_of(name)?;
-        let folder = folder_of(&path);
-        let made = fs::DirBuilder::new().recursive(true).mode(0o700).create(folder);
-        made.map_err(|cause| StoreError::Folder { path: show_path(folder), cause })?;
+        make_folder(folder_of(&path))?;
         let fingerprint = save_file(&path, preset, overwrite)?;
         Ok((Source::User { name: name.to_owned(), path }, fingerprint))
     }
+
+    /// The same with the data of a profile copied beside it: the preset with them is what was saved.
+    ///
+    /// # Errors
+    /// As [`save`](Self::save), or the data cannot be copied; no preset has changed then.
+    pub fn save_with_data(
+        &self,
+        name: &str,
+        preset: &Preset,
+        overwrite: Overwrite,
+    ) -> Result<(Source, Fingerprint, Preset), StoreError> {
+        let path = self.path_of(name)?;
+        // Asked about before anything is copied; whether it is still so, the save itself makes sure.
+        if matches!(overwrite, Overwrite::Never) && path.exists() {
+            return Err(WriteError::Exists { path: show_path(&path) }.into());
+        }
+        make_folder(folder_of(&path))?;
+        let preset = copy_beside(folder_of(&path), preset).map_err(StoreError::Data)?;
+        let (source, fingerprint) = self.save(name, &preset, overwrite)?;
+        Ok((source, fingerprint, preset))
+    }
+}
+
+fn make_folder(folder: &Path) -> Result<(), StoreError> {
+    let made = fs::DirBuilder::new().recursive(true).mode(0o700).create(folder);
+    made.map_err(|cause| StoreError::Folder { path: show_path(folder), cause })
 }
 
 /// Saves a preset to a file by its path: the whole text anew, read back before it takes the file's place.

@@ -1,0 +1,93 @@
+//! The data of a profile copied beside a preset, so that both can be handed on together.
+
+use super::atomic::{Overwrite, WriteError, write_atomically};
+use super::file::read_bytes;
+use super::measured::{self, SHIPPED_DATA};
+use super::model::Preset;
+use super::profile::LARGEST;
+use super::text::show_path;
+use crate::contact::Shape;
+use crate::contact::shapes::Measured;
+use std::path::Path;
+use std::sync::Arc;
+
+/// `preset` with its data in `folder`, where they are copied under their own name. Data there already stay if they are the
+/// same; another file is never replaced. Presets without a file of their own are as they were.
+///
+/// # Errors
+/// Why the data cannot be copied, in words: they are gone, others than those in the preset, or another file has the name.
+pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
+    let mut copy = preset.clone();
+    let Shape::Profile(measured) = &preset.gap else { return Ok(copy) };
+    let rows = measured.rows();
+    if rows.name.starts_with(SHIPPED_DATA) {
+        return Ok(copy);
+    }
+    let from = rows.folder.as_deref().unwrap_or(Path::new("")).join(&rows.name);
+    let shown = show_path(&from);
+    let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
+        return Err(format!("{shown}: is no name of a file"));
+    };
+    let now = measured::load(rows.folder.as_deref(), &rows.name)?;
+    if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
+        return Err(format!("{shown}: holds other rows than were read; choose the file again first"));
+    }
+    let (bytes, _) = read_bytes(&from, LARGEST).map_err(|error| error.to_string())?;
+    let to = folder.join(name);
+    match write_atomically(&to, &bytes, Overwrite::Never) {
+        Ok(_) => {}
+        Err(WriteError::Exists { .. }) if read_bytes(&to, LARGEST).is_ok_and(|(there, _)| there == bytes) => {
+        }
+        Err(error) => return Err(error.to_string()),
+    }
+    let copied = Arc::new(measured::load(Some(folder), name)?);
+    let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
+    copy.gap = Shape::Profile(Arc::new(measured));
+    Ok(copy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::store::Store;
+    use std::fs;
+
+    #[test]
+    fn data_are_copied_once_and_replace_nothing() {
+        let home = tempfile::tempdir().unwrap();
+        let at = |name: &str| home.path().join(name);
+        fs::create_dir(at("data")).unwrap();
+        let radii = (0..100).map(|i| f64::from(4 * i));
+        let rows = radii.map(|r| format!("{r} {}\n", r * r / 2000.0)).collect::<Vec<_>>().concat();
+        fs::write(at("data/scan.dat"), &rows).unwrap();
+        let store = Store::at(at("presets"), &[]);
+        let source = store.resolve("profile").unwrap();
+        let shipped = store.load(&source, &[] as &[&str]).unwrap().preset;
+        let mut preset = shipped.clone();
+        preset.set("gap.file", at("data/scan.dat").to_str().unwrap().into()).unwrap();
+        let (source, _, saved) = store.save_with_data("mine", &preset, Overwrite::Never).unwrap();
+        assert_eq!(fs::read_to_string(at("presets/scan.dat")).unwrap(), rows);
+        assert_eq!(saved.get("gap.file").unwrap().to_string(), "scan.dat");
+        // Without the data it came from it is the same preset.
+        fs::rename(at("data"), at("gone")).unwrap();
+        assert_eq!(store.load(&source, &[] as &[&str]).unwrap().preset, saved);
+        let error = store.save_with_data("other", &preset, Overwrite::Never).unwrap_err().to_string();
+        assert!(error.contains("cannot read"), "{error}");
+        // The same data may be there already, others may not, nor may they have changed meanwhile.
+        fs::rename(at("gone"), at("data")).unwrap();
+        store.save_with_data("other", &preset, Overwrite::Never).unwrap();
+        let taken = store.save_with_data("mine", &preset, Overwrite::Never).unwrap_err().to_string();
+        assert!(taken.contains("exists"), "{taken}");
+        fs::write(at("presets/scan.dat"), "mine").unwrap();
+        let error = store.save_with_data("third", &preset, Overwrite::Always).unwrap_err().to_string();
+        assert!(error.contains("scan.dat"), "{error}");
+        assert_eq!(fs::read_to_string(at("presets/scan.dat")).unwrap(), "mine");
+        assert!(!at("presets/third.toml").exists());
+        fs::write(at("data/scan.dat"), rows.replace("8 0.032", "8 0.033")).unwrap();
+        let error = store.save_with_data("third", &preset, Overwrite::Never).unwrap_err().to_string();
+        assert!(error.contains("other rows"), "{error}");
+        // Data of the program need no copy.
+        let (_, _, saved) = store.save_with_data("fourth", &shipped, Overwrite::Never).unwrap();
+        assert_eq!(saved, shipped);
+    }
+}
