@@ -205,7 +205,7 @@ impl Preset {
         match &*row.key {
             "gap.shape" => {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
-                shape::begin(&mut values, &value.to_string(), radius);
+                shape::begin(&mut values, &value.to_string(), radius, self.gap.wave());
             }
             key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}

@@ -297,12 +297,11 @@ pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) {
 }
 
 /// What a shape chosen on the screen begins with where `values` lack it: a body of the radius `radius`, with the waves of
-/// the paper's Fig. 9.
-pub(super) fn begin(values: &mut Values, word: &str, radius: f64) {
+/// the paper's Fig. 9, or with `wave`, the amplitude and wavelength of the shape before.
+pub(super) fn begin(values: &mut Values, word: &str, radius: f64, wave: Option<(f64, f64)>) {
+    let (amplitude, wavelength) = wave.unwrap_or((0.0025 * radius, 0.05 * radius));
     let lengths = [
         ("gap.radius_of_curvature", 1.0),
-        ("gap.amplitude", 0.0025),
-        ("gap.wavelength", 0.05),
         ("gap.rms", 0.001),
         ("gap.longest_wavelength", 0.1),
         ("gap.shortest_wavelength", 0.02),
@@ -310,16 +309,18 @@ pub(super) fn begin(values: &mut Values, word: &str, radius: f64) {
     let mut starts: Vec<(Key, Value)> =
         lengths.iter().map(|(key, over)| ((*key).into(), Value::Number(over * radius))).collect();
     starts.extend([
+        ("gap.amplitude".into(), Value::Number(amplitude)),
+        ("gap.wavelength".into(), Value::Number(wavelength)),
         ("gap.slope".into(), Value::Number(0.1)),
         ("gap.coefficient".into(), Value::Number(0.5 / radius)),
         ("gap.exponent".into(), Value::Number(2.0)),
         ("gap.file".into(), "shipped:rough-sphere.csv".into()),
         ("gap.formula".into(), "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))".into()),
         ("gap.parameters.R".into(), Value::Number(radius)),
-        ("gap.parameters.A".into(), Value::Number(0.0025 * radius)),
-        ("gap.parameters.lambda".into(), Value::Number(0.05 * radius)),
-        ("gap.waves.1.amplitude".into(), Value::Number(0.0025 * radius)),
-        ("gap.waves.1.wavelength".into(), Value::Number(0.05 * radius)),
+        ("gap.parameters.A".into(), Value::Number(amplitude)),
+        ("gap.parameters.lambda".into(), Value::Number(wavelength)),
+        ("gap.waves.1.amplitude".into(), Value::Number(amplitude)),
+        ("gap.waves.1.wavelength".into(), Value::Number(wavelength)),
     ]);
     for (key, value) in starts {
         if parameter(&key).is_some_and(|row| row.fits("gap.shape", word)) {
