@@ -6,6 +6,7 @@
 use super::model::{Model, Panel};
 use super::view::{Overlay, Window};
 use crate::preset::Key;
+use std::path::PathBuf;
 
 /// A command's identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -129,6 +130,17 @@ pub enum Command {
         /// What was typed.
         text: String,
     },
+    /// Another value for a key while it is typed: what was there before can be taken back.
+    Try {
+        /// The dotted key.
+        key: Key,
+        /// What has been typed.
+        text: String,
+    },
+    /// Back to the values before those tried.
+    TakeBack,
+    /// List the profiles in this folder; without one, in that of the preset's own profile.
+    Browse(Option<PathBuf>),
     /// Closer to a place of the first view, or further away.
     Zoom {
         /// Whether closer.
@@ -148,6 +160,8 @@ pub enum Command {
         name: String,
         /// Whether a preset of that name is to be replaced.
         replace: bool,
+        /// Whether the data of a profile are copied beside it.
+        with_data: bool,
     },
     /// Save although the file was changed by somebody else meanwhile.
     SaveAnyway,
@@ -174,7 +188,8 @@ impl Command {
         match self {
             Self::Plain(id) => *id,
             Self::Steps(_) => Id::Step,
-            Self::Set { .. } => Id::Edit,
+            Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
+            Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
@@ -308,7 +323,7 @@ pub static ROWS: &[Row] = &[
             "edit",
             VALUES,
             "type value",
-            "type the selected value; in Events: go to the selected event",
+            "type the selected value, or choose it; in Events: go to the selected event",
             always,
         ),
     ),

@@ -1,8 +1,11 @@
-//! Opening, saving and exporting: what the driver does for the model.
+//! Opening, saving, exporting, and reading profiles: what the driver does for the model.
 
 use super::curve::CurveData;
+use super::data::{self, Folder};
 use super::history::{Node, NodeKind};
 use crate::contact::Control;
+use crate::contact::shapes::Rows;
+use crate::preset::measured;
 use crate::preset::{
     Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
 };
@@ -45,6 +48,20 @@ pub enum Job {
     List,
     /// Open a preset by name or path.
     Open(String),
+    /// List the profiles of a folder.
+    Browse {
+        /// The folder; without one, the profile's own.
+        folder: Option<PathBuf>,
+        /// The folder that names are relative to; the current one without it.
+        own: Option<PathBuf>,
+    },
+    /// Read a profile.
+    Read {
+        /// The folder that its name is relative to; the current one without it.
+        folder: Option<PathBuf>,
+        /// Its name.
+        name: String,
+    },
     /// Save back to the file it came from.
     Save {
         /// The file.
@@ -62,6 +79,8 @@ pub enum Job {
         preset: Box<Preset>,
         /// Whether a preset of that name may be replaced.
         replace: bool,
+        /// Whether the data of a profile are copied beside it.
+        with_data: bool,
     },
     /// Export a document.
     Export {
@@ -85,6 +104,10 @@ pub enum Job {
 pub enum Done {
     /// The presets.
     Listed(Box<Listing>),
+    /// The profiles of a folder.
+    Browsed(Box<Folder>),
+    /// A profile was read.
+    Read(Arc<Rows>),
     /// A preset was opened.
     Opened(Box<Loaded>),
     /// The preset was saved.
@@ -98,8 +121,8 @@ pub enum Done {
     },
     /// The file was changed by somebody else: not saved.
     Conflict,
-    /// A preset of this name exists: not saved.
-    NameTaken(String),
+    /// A preset of this name exists: not saved; whether its data were to be copied.
+    NameTaken(String, bool),
     /// An export was written.
     Exported(String),
     /// A file of this name exists: not written.
@@ -116,6 +139,17 @@ pub fn run(store: &Store, job: Job) -> Done {
             let loaded = store.resolve(&argument).and_then(|source| store.load(&source, &[] as &[&str]));
             loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
         }
+        Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
+            Ok(folder) => Done::Browsed(Box::new(folder)),
+            Err(reason) => Done::Failed(reason),
+        },
+        Job::Read { folder, name } => {
+            let path = target(&name).to_string_lossy().into_owned();
+            match measured::load(folder.as_deref(), &path) {
+                Ok(rows) => Done::Read(Arc::new(rows)),
+                Err(reason) => Done::Failed(reason),
+            }
+        }
         Job::Save { source, preset, overwrite } => {
             let Some(path) = source.path() else {
                 return Done::Failed("shipped presets are read-only; save it under a name".to_owned());
@@ -126,11 +160,19 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }
-        Job::SaveAs { name, preset, replace } => {
+        Job::SaveAs { name, preset, replace, with_data } => {
             let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-            match store.save(&name, &preset, overwrite) {
-                Ok((source, fingerprint)) => Done::Saved { source, fingerprint, preset },
-                Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name),
+            let saved = if with_data {
+                let saved = store.save_with_data(&name, &preset, overwrite);
+                saved.map(|(source, fingerprint, preset)| (source, fingerprint, Box::new(preset)))
+            } else {
+                store
+                    .save(&name, &preset, overwrite)
+                    .map(|(source, fingerprint)| (source, fingerprint, preset))
+            };
+            match saved {
+                Ok((source, fingerprint, preset)) => Done::Saved { source, fingerprint, preset },
+                Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name, with_data),
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }

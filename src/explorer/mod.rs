@@ -16,6 +16,7 @@
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
+//! | [`data`] | the profiles of a folder, to choose from |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -26,6 +27,7 @@
 
 pub mod command;
 pub mod curve;
+pub mod data;
 pub mod device;
 pub mod driver;
 pub mod files;

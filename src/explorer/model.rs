@@ -1,6 +1,7 @@
 //! The state of a session, without terminals, keys or colours.
 
 use super::curve::{CurveData, Inadmissible};
+use super::data::Folder;
 use super::history::{History, Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
@@ -53,8 +54,8 @@ pub enum EventSource {
 pub enum Question {
     /// Save although somebody else changed the file.
     SaveAnyway,
-    /// Replace the preset of this name.
-    ReplacePreset(String),
+    /// Replace the preset of this name; whether with the data of its profile.
+    ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::files::Document, String),
 }
@@ -75,6 +76,8 @@ pub struct Model {
     pub preset: Preset,
     /// The preset as loaded or last saved: what differs is unsaved.
     pub saved: Preset,
+    /// The preset before the value that is being typed, where such values are tried.
+    pub untried: Option<Box<Preset>>,
     /// Where it came from or went to.
     pub source: Source,
     /// How its file was when last seen.
@@ -133,6 +136,8 @@ pub struct Model {
     pub message: Option<(Level, String)>,
     /// The list of presets, once asked for.
     pub listing: Option<Listing>,
+    /// The profiles of a folder, once asked for.
+    pub folder: Option<Folder>,
     /// What a job on files wants to be asked before it goes on.
     pub question: Option<Question>,
     /// Numbers for requests.
@@ -163,6 +168,7 @@ impl Model {
         let mut model = Self {
             saved: loaded.preset.clone(),
             preset: loaded.preset,
+            untried: None,
             source: loaded.source,
             fingerprint: loaded.fingerprint,
             curve: None,
@@ -192,6 +198,7 @@ impl Model {
             profile_wanted: None,
             message: None,
             listing: None,
+            folder: None,
             question: None,
             next_request: 1,
             quit: false,

@@ -25,10 +25,10 @@ use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
-use files::{export, file, file_done, save, save_back};
+use files::{browse, export, file, file_done, save, save_back};
 use values::{
-    adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, turn, want_check,
-    want_curve,
+    adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
+    want_check, want_curve,
 };
 use walk::{restart, scale_length, stop, travel, walk, walked};
 use words::unavailable;
@@ -59,6 +59,9 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
         Command::Set { key, text } => set(model, &key, &text),
+        Command::Try { key, text } => try_out(model, &key, &text),
+        Command::TakeBack => untry(model),
+        Command::Browse(folder) => vec![browse(model, folder)],
         Command::Zoom { closer, about } => {
             look::zoom(model, closer, about);
             Vec::new()
@@ -72,9 +75,9 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             Vec::new()
         }
         Command::Open(name) => vec![file(Job::Open(name))],
-        Command::SaveAs { name, replace } => {
+        Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
-            vec![file(Job::SaveAs { name, preset, replace })]
+            vec![file(Job::SaveAs { name, preset, replace, with_data })]
         }
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),

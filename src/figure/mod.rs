@@ -12,6 +12,7 @@
 //! | [`walk`] | the states walked, the jumps, the walker |
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`state`] | pressure, gap and potential of the walker's state |
+//! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the nearest state of the curve |
 
 pub mod bounds;
@@ -19,6 +20,7 @@ pub mod curves;
 pub mod parts;
 pub mod reading;
 pub mod scale;
+pub mod shape;
 pub mod state;
 pub mod unloading;
 pub mod walk;

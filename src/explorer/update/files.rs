@@ -1,12 +1,14 @@
 //! Opening, saving and exporting: what is asked, and what becomes of the answers.
 
-use super::values::want_curve;
+use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
+use crate::contact::Shape;
 use crate::explorer::driver::Effect;
 use crate::explorer::files::{Document, Done, Job};
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
-use crate::preset::{Overwrite, Source};
+use crate::preset::{Overwrite, Preset, Source};
+use std::path::PathBuf;
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     if let Source::Shipped(_) = model.source {
@@ -40,6 +42,8 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
         Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Browsed(folder) => model.folder = Some(*folder),
+        Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let (mut opened, effects) = open(*loaded);
             // Request numbers go on, so that late replies to the old session are recognised; so do the views.
@@ -53,15 +57,17 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         }
         Done::Saved { source, fingerprint, preset } => {
             tell(model, Level::Info, format!("saved as {}", source.shown()));
+            let copied = with_copied_data(&model.preset, &preset);
             (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
+            return copied.map_or_else(Vec::new, |preset| change(model, preset));
         }
         Done::Conflict => {
             model.question = Some(Question::SaveAnyway);
             tell(model, Level::Error, "the file was changed by somebody else since it was read: not saved");
         }
-        Done::NameTaken(name) => {
+        Done::NameTaken(name, with_data) => {
             tell(model, Level::Error, format!("a preset called {name} exists: not saved"));
-            model.question = Some(Question::ReplacePreset(name));
+            model.question = Some(Question::ReplacePreset(name, with_data));
         }
         Done::Exported(path) => tell(model, Level::Info, format!("exported to {path}")),
         Done::FileExists(what, path) => {
@@ -71,6 +77,29 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }
     Vec::new()
+}
+
+/// `preset` with the rows of the profile where they were copied to, if `saved` names another file with the same rows.
+fn with_copied_data(preset: &Preset, saved: &Preset) -> Option<Preset> {
+    let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap) else { return None };
+    let same = (&now.rows().radii, &now.rows().gaps) == (&then.rows().radii, &then.rows().gaps);
+    (same && now.smoothing() == then.smoothing()).then(|| Preset { gap: saved.gap.clone(), ..preset.clone() })
+}
+
+/// The folder that the name of the preset's own profile is relative to.
+fn own_folder(model: &Model) -> Option<PathBuf> {
+    match &model.preset.gap {
+        Shape::Profile(measured) => measured.rows().folder.clone(),
+        _ => None,
+    }
+}
+
+pub(super) fn browse(model: &Model, folder: Option<PathBuf>) -> Effect {
+    file(Job::Browse { folder, own: own_folder(model) })
+}
+
+pub(super) fn read(model: &Model, name: String) -> Effect {
+    file(Job::Read { folder: own_folder(model), name })
 }
 
 pub(super) fn file(job: Job) -> Effect {

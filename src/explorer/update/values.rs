@@ -1,15 +1,20 @@
 //! Values changed, and the curve that follows from them.
 
+use super::files::read;
 use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
 use crate::contact::Control;
+use crate::contact::shapes::Rows;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
 use crate::explorer::history::NodeKind;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::walk::Action;
-use crate::preset::Preset;
+use crate::preset::schema::Kind;
+use crate::preset::text::{show_name, show_path};
+use crate::preset::{Preset, Value};
+use std::path::Path;
 use std::sync::Arc;
 
 pub(super) fn want_curve(model: &mut Model) -> Effect {
@@ -117,7 +122,7 @@ pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
 }
 
 /// Takes a changed preset and asks for its curve.
-fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
+pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     if preset == model.preset {
         return Vec::new();
     }
@@ -174,12 +179,58 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     }
 }
 
+/// Another value for a key, in place of those tried for it.
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let Some(row) = model.preset.row(key) else { return Vec::new() };
-    let mut preset = model.preset.clone();
-    let result = row.parse(text).and_then(|value| preset.set(key, value));
+    let mut preset = model.untried.as_deref().unwrap_or(&model.preset).clone();
+    let Some(row) = preset.row(key) else { return Vec::new() };
+    let result = match row.parse(text) {
+        // A file is read by those who may wait for it.
+        Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, name)],
+        value => value.and_then(|value| preset.set(key, value)),
+    };
     match result {
-        Ok(()) => change(model, preset),
+        Ok(()) => {
+            model.untried = None;
+            change(model, preset)
+        }
+        Err(invalid) => {
+            tell(model, Level::Error, invalid.to_string());
+            Vec::new()
+        }
+    }
+}
+
+/// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
+pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
+    let before = model.untried.clone().unwrap_or_else(|| Box::new(model.preset.clone()));
+    let effects = set(model, key, text);
+    model.untried = Some(before);
+    effects
+}
+
+/// The values before those tried.
+pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
+    model.untried.take().map_or_else(Vec::new, |before| change(model, *before))
+}
+
+/// The rows of a profile were read: they are the gap now.
+pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
+    // Each note begins with the path, which is said once and short.
+    let path = Path::new(&rows.name);
+    let whole =
+        show_path(&rows.folder.as_deref().map_or_else(|| path.to_owned(), |folder| folder.join(path)));
+    let notes = rows.notes.iter().map(|note| {
+        note.strip_prefix(&*whole).and_then(|note| note.strip_prefix(": ")).unwrap_or(note).to_owned()
+    });
+    let name = path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()));
+    let read = format!("{name}: {} rows", rows.radii.len());
+    let said = std::iter::once(read).chain(notes).collect::<Vec<_>>().join("; ");
+    let mut preset = model.preset.clone();
+    match preset.set("gap.file", Value::Profile(rows)) {
+        Ok(()) => {
+            tell(model, Level::Info, said);
+            change(model, preset)
+        }
         Err(invalid) => {
             tell(model, Level::Error, invalid.to_string());
             Vec::new()
