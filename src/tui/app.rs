@@ -1,5 +1,7 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
 
+mod gap;
+
 use super::keymap;
 use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
@@ -8,16 +10,16 @@ use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
+use crate::preset::schema::Kind;
 use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Source};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
-use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
 /// Longest count typed before a command.
 const COUNT: usize = 9999;
 /// Longest line typed or pasted.
-const LINE: usize = 1000;
+const LINE: usize = 4096;
 
 /// The explorer as a person sees it.
 #[derive(Debug)]
@@ -60,15 +62,20 @@ impl App {
     }
 
     /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
-    pub fn paste(&mut self, text: &str) {
-        if let Some(Over::Prompt(prompt)) = &mut self.overlay {
+    pub fn paste(&mut self, text: &str) -> Vec<Effect> {
+        let Some(mut over) = self.overlay.take() else { return Vec::new() };
+        let mut effects = Vec::new();
+        if let Over::Prompt(prompt) = &mut over {
             if std::mem::take(&mut prompt.fresh) {
                 prompt.input.reset();
             }
             for c in sanitize(text.split(['\n', '\r']).next().unwrap_or(""), LINE).chars() {
                 prompt.input.handle(tui_input::InputRequest::InsertChar(c));
             }
+            effects = self.check(prompt);
         }
+        self.overlay = Some(over);
+        effects
     }
 
     /// The screen has room for so many views.
@@ -79,7 +86,10 @@ impl App {
     /// A worker has answered.
     pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
         let effects = answer(&mut self.model, reply);
-        self.raise_questions();
+        // A line being typed is not torn away: the question waits for its end.
+        if !matches!(self.overlay, Some(Over::Prompt(_))) {
+            self.raise_questions();
+        }
         effects
     }
 
@@ -93,6 +103,10 @@ impl App {
     /// What the model wants to be asked becomes an overlay.
     fn raise_questions(&mut self) {
         let model = &mut self.model;
+        if let Some(folder) = model.folder.take() {
+            self.choose_profile(&folder);
+            return;
+        }
         if let Some(listing) = model.listing.take() {
             let shown = |title: &Result<String, String>| match title {
                 Ok(title) => title.clone(),
@@ -106,17 +120,10 @@ impl App {
                     action: Action::Command(Command::Open(entry.name.clone())),
                 })
                 .collect();
-            let prompt = Prompt {
-                title: "Open a file".to_owned(),
-                note: "a path with a / or ending in .toml".to_owned(),
-                input: Input::default(),
-                fresh: false,
-                purpose: Purpose::Path,
-                error: None,
-            };
+            let note = "a path with a / or ending in .toml";
+            let prompt = Prompt::new("Open a file", note, String::new(), Purpose::Path);
             items.push(Item { text: "a file ...".to_owned(), action: Action::Prompt(Box::new(prompt)) });
-            self.overlay =
-                Some(Over::Choose(Choose { title: "Open a preset".to_owned(), items, selected: 0 }));
+            self.choose("Open a preset", items, 0);
             return;
         }
         match model.question.take() {
@@ -125,9 +132,9 @@ impl App {
                 let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
                 self.ask(question.to_owned(), Command::SaveAnyway);
             }
-            Some(Question::ReplacePreset(name)) => {
+            Some(Question::ReplacePreset(name, with_data)) => {
                 let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
-                self.ask(question, Command::SaveAs { name, replace: true });
+                self.ask(question, Command::SaveAs { name, replace: true, with_data });
             }
             Some(Question::ReplaceFile(what, path)) => {
                 let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
@@ -186,7 +193,24 @@ impl App {
             Source::Shipped(shipped) => format!("my-{}", shipped.name),
             Source::File(_) => String::new(),
         };
-        self.prompt("Save the preset as", "small letters, digits, - and _", suggestion, Purpose::Name)
+        let prompt = |with_data| {
+            let note = "small letters, digits, - and _";
+            Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
+        };
+        if self.has_data() {
+            let item = |text: &str, with_data| Item {
+                text: text.to_owned(),
+                action: Action::Prompt(Box::new(prompt(with_data))),
+            };
+            let items = vec![
+                item("the preset       the data stay where they are", false),
+                item("save with data   the data are copied beside the preset", true),
+            ];
+            self.choose("Save", items, 0);
+        } else {
+            self.overlay = Some(Over::Prompt(prompt(false)));
+        }
+        Vec::new()
     }
 
     fn ask_export(&mut self) -> Vec<Effect> {
@@ -198,14 +222,9 @@ impl App {
             }
         };
         let items = Document::ALL.map(|what| {
-            let prompt = Prompt {
-                title: format!("Export the {} to", what.name()),
-                note: "a file ending in .csv or .json".to_owned(),
-                input: Input::new(format!("{}-{}.csv", sanitize(&base, 60), what.name())),
-                fresh: false,
-                purpose: Purpose::File(what),
-                error: None,
-            };
+            let file = format!("{}-{}.csv", sanitize(&base, 60), what.name());
+            let title = format!("Export the {} to", what.name());
+            let prompt = Prompt::new(title, "a file ending in .csv or .json", file, Purpose::File(what));
             let text = match what {
                 Document::Curve => "curve   every point of the equilibrium curve",
                 Document::Walk => "walk    the states walked by hand",
@@ -213,8 +232,7 @@ impl App {
             };
             Item { text: text.to_owned(), action: Action::Prompt(Box::new(prompt)) }
         });
-        let choose = Choose { title: "Export".to_owned(), items: items.to_vec(), selected: 0 };
-        self.overlay = Some(Over::Choose(choose));
+        self.choose("Export", items.to_vec(), 0);
         Vec::new()
     }
 
@@ -241,8 +259,7 @@ impl App {
             let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
             Item { text: format!("[{on}] {name}"), action: Action::Command(Command::Overlay(overlay)) }
         });
-        let title = "Theory over the curve".to_owned();
-        self.overlay = Some(Over::Choose(Choose { title, items: items.to_vec(), selected }));
+        self.choose("Theory over the curve", items.to_vec(), selected);
         Vec::new()
     }
 
@@ -255,13 +272,24 @@ impl App {
             })
             .collect();
         items.push(Item { text: "all".to_owned(), action: Action::Command(Command::Unpin(None)) });
-        let title = "Take a pinned curve away".to_owned();
-        self.overlay = Some(Over::Choose(Choose { title, items, selected: 0 }));
+        self.choose("Take a pinned curve away", items, 0);
         Vec::new()
+    }
+
+    /// Offers a list.
+    fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
+        let picture = items.get(selected).and_then(|item| self.picture(&item.action));
+        self.overlay = Some(Over::Choose(Choose { title: title.to_owned(), items, selected, picture }));
     }
 
     fn ask_value(&mut self) -> Vec<Effect> {
         let Some((row, value)) = self.model.selected_knob() else { return Vec::new() };
+        match (&*row.key, row.kind) {
+            ("gap.shape", Kind::Choice(words)) => return self.ask_shape(words),
+            ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
+            (_, Kind::File) => return self.run(Command::Browse(None)),
+            _ => {}
+        }
         let text = value.map_or_else(String::new, |value| value.to_string());
         self.prompt(
             &format!("{}: {}", row.label, row.meaning),
@@ -272,22 +300,21 @@ impl App {
     }
 
     fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
-        self.overlay = Some(Over::Prompt(Prompt {
-            title: title.to_owned(),
-            note: note.to_owned(),
-            input: Input::new(text),
-            fresh: matches!(purpose, Purpose::Value(_)),
-            purpose,
-            error: None,
-        }));
+        self.overlay = Some(Over::Prompt(Prompt::new(title, note, text, purpose)));
         Vec::new()
     }
 
     fn prompt_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
+        let mut effects = Vec::new();
         match key.code {
-            KeyCode::Esc => return Vec::new(),
+            KeyCode::Esc => return self.close(&prompt),
             KeyCode::Enter => {
                 let text = prompt.input.value().to_owned();
+                if let Some(fault) = gap::fault(&prompt) {
+                    prompt.refuse(&fault);
+                    self.overlay = Some(Over::Prompt(prompt));
+                    return Vec::new();
+                }
                 let effects = self.run(prompt.purpose.clone().command(text));
                 // A value that was refused stays to be mended.
                 if let Some((Level::Error, reason)) =
@@ -299,7 +326,7 @@ impl App {
                 return effects;
             }
             _ if keymap::command(key) == Some(Id::Quit) && key.code != KeyCode::Char('q') => {
-                return Vec::new();
+                return self.close(&prompt);
             }
             _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
             code => {
@@ -307,12 +334,15 @@ impl App {
                 if std::mem::take(&mut prompt.fresh) && matches!(code, KeyCode::Char(_)) && plain {
                     prompt.input.reset();
                 }
-                prompt.input.handle_event(&Event::Key(key));
-                prompt.error = None;
+                let is_changed =
+                    prompt.input.handle_event(&Event::Key(key)).is_some_and(|change| change.value);
+                if is_changed {
+                    effects = self.check(&mut prompt);
+                }
             }
         }
         self.overlay = Some(Over::Prompt(prompt));
-        Vec::new()
+        effects
     }
 
     fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
@@ -339,6 +369,7 @@ impl App {
             }
             _ => {}
         }
+        choose.picture = choose.items.get(choose.selected).and_then(|item| self.picture(&item.action));
         self.overlay = Some(Over::Choose(choose));
         Vec::new()
     }

@@ -58,10 +58,7 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
                     Vec::new()
                 }
                 Incoming::Key(key) => app.key(key),
-                Incoming::Paste(text) => {
-                    app.paste(&text);
-                    Vec::new()
-                }
+                Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
                     display.repaint();
                     Vec::new()

@@ -1,7 +1,9 @@
 //! What lies over the screen: prompts, choices, questions and the help, as data.
 
+use crate::contact::formula::FormulaError;
 use crate::explorer::Command;
 use crate::explorer::files::Document;
+use crate::figure::Figure;
 use crate::preset::Key;
 use tui_input::Input;
 
@@ -33,6 +35,8 @@ pub struct Prompt {
     pub purpose: Purpose,
     /// Why the last try was refused.
     pub error: Option<String>,
+    /// The column of what is wrong in the text, from 1, where it has one.
+    pub fault: Option<usize>,
 }
 
 /// What a typed line is for.
@@ -40,20 +44,46 @@ pub struct Prompt {
 pub enum Purpose {
     /// The value of a key.
     Value(Key),
+    /// The gap as a formula: tried while it is typed.
+    Formula(Key),
     /// The name to save under.
-    Name,
+    Name {
+        /// Whether the data of a profile are copied beside the preset.
+        with_data: bool,
+    },
     /// The file to export to.
     File(Document),
     /// The path of a preset to open.
     Path,
 }
 
+impl Prompt {
+    /// Asks for a line that begins as `text`; a value is replaced by the first character typed.
+    pub fn new(title: impl Into<String>, note: &str, text: String, purpose: Purpose) -> Self {
+        Self {
+            title: title.into(),
+            note: note.to_owned(),
+            input: Input::new(text),
+            fresh: matches!(purpose, Purpose::Value(_)),
+            purpose,
+            error: None,
+            fault: None,
+        }
+    }
+
+    /// What is wrong with the text, and where.
+    pub fn refuse(&mut self, fault: &FormulaError) {
+        self.error = Some(fault.to_string());
+        self.fault = Some(fault.place.column);
+    }
+}
+
 impl Purpose {
     /// The command for a typed line.
     pub fn command(self, text: String) -> Command {
         match self {
-            Self::Value(key) => Command::Set { key, text },
-            Self::Name => Command::SaveAs { name: text, replace: false },
+            Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
+            Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
             Self::Path => Command::Open(text),
         }
@@ -69,6 +99,8 @@ pub struct Choose {
     pub items: Vec<Item>,
     /// The selected one.
     pub selected: usize,
+    /// What the selected one looks like.
+    pub picture: Option<Figure>,
 }
 
 /// One line of a list.

@@ -52,7 +52,8 @@ fn computing() -> Chart {
     }
 }
 
-fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
+/// A figure as a chart.
+pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
     let zoom = if window.is_whole() {
         String::new()
     } else {

@@ -1,13 +1,21 @@
 //! Prompts, choices and questions.
 
-use super::panel;
+use super::{charts, panel};
+use crate::explorer::Window;
 use crate::tui::app::App;
-use crate::tui::overlay::{Choose, Confirm, Overlay, Prompt};
+use crate::tui::overlay::{Choose, Confirm, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
+
+/// A list beside a picture is so wide,
+const LIST: u16 = 46;
+/// the picture at least so wide,
+const NARROWEST: u16 = 20;
+/// and both so high, where there is room.
+const PICTURE: u16 = 16;
 
 /// Draws what lies over the screen, except the help.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
@@ -26,8 +34,15 @@ fn middle(area: Rect, width: u16, height: u16) -> Rect {
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
 }
 
+/// The same at the lower end, above the status: values and curve stay in sight.
+fn lower(area: Rect, width: u16, height: u16) -> Rect {
+    let middle = middle(area, width, height);
+    Rect { y: area.bottom().saturating_sub(middle.height + 2).max(area.y), ..middle }
+}
+
 fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
-    let area = middle(area, 76, if prompt.error.is_some() { 7 } else { 5 });
+    let place = if matches!(prompt.purpose, Purpose::Formula(_)) { lower } else { middle };
+    let area = place(area, 76, if prompt.error.is_some() { 7 } else { 5 });
     let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
@@ -35,9 +50,16 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
     let width = usize::from(inner.width.saturating_sub(3)).max(1);
     let scroll = prompt.input.visual_scroll(width);
     let shown: String = prompt.input.value().chars().skip(scroll).take(width).collect();
+    // Below what is wrong, where that is in sight.
+    let fault = prompt
+        .fault
+        .and_then(|column| (column + 1).checked_sub(scroll))
+        .filter(|at| (2..=width + 2).contains(at));
+    let caret = fault
+        .map_or_else(Line::default, |at| Line::styled(format!("{:>w$}", "^", w = at + 1), theme.error()));
     let mut lines = vec![
         Line::raw(format!("> {}", theme.text(&shown))),
-        Line::default(),
+        caret,
         Line::styled(theme.text(&prompt.note), theme.dim()),
     ];
     if let Some(error) = &prompt.error {
@@ -53,11 +75,20 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
 
 fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
     let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
-    let area = middle(area, 76, height);
+    let (width, height) = if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (76, height) };
+    let area = middle(area, width, height);
     let block = panel(theme, &format!("{}: Enter takes, Esc closes", choose.title), true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
+    let mut inner = inner;
+    if let Some(figure) = &choose.picture
+        && inner.width >= LIST + NARROWEST
+    {
+        let beside = Rect { x: inner.x + LIST, width: inner.width - LIST, ..inner };
+        charts::chart(figure, &Window::WHOLE, theme).draw(frame, beside, theme, false);
+        inner.width = LIST;
+    }
     let rows = usize::from(inner.height);
     let first = (choose.selected + 1).saturating_sub(rows);
     let lines: Vec<Line> = choose

@@ -364,3 +364,77 @@ fn the_footer_shows_only_what_can_be_done() {
     assert!(screen.text(120, 40).contains("x jump"));
     assert!(crate::explorer::command::row_of(Id::Undo).short.len() < 10);
 }
+
+#[test]
+fn shapes_are_chosen_by_their_pictures() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("kk\r");
+    let text = screen.text(100, 30);
+    assert!(
+        text.contains("> wavy-sphere   paraboloid with one wave") && text.contains("┌wavy-sphere─"),
+        "{text}"
+    );
+    // The disc ends at the start, which the picture shows beside the list.
+    let row = text.lines().find(|line| line.contains("random-waves")).unwrap();
+    assert!(row.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)), "{text}");
+    screen.keys("j");
+    assert!(screen.text(100, 30).contains("┌exact-sphere─"));
+    // Narrow screens show the list alone, and no size is too small to draw.
+    assert!(!screen.text(60, 18).contains("┌exact-sphere─"));
+    for width in 0..120 {
+        for height in [0, 1, 3, 9, 10, 12, 18, 24] {
+            screen.draw(width, height);
+        }
+    }
+    screen.app.theme = Theme { ascii: true };
+    let text = screen.text(100, 30);
+    assert!(text.is_ascii() && text.contains("> exact-sphere  R - sqrt(R2 - r2), up to R"), "{text}");
+    let row = text.lines().find(|line| line.contains("random-waves")).unwrap();
+    assert!(row.split("law").last().is_some_and(|picture| picture.contains('o')), "{text}");
+    screen.keys("\r");
+    assert_eq!(screen.app.model.preset.gap.name(), "exact-sphere");
+    assert!(screen.app.overlay.is_none());
+    // A chosen list closed again changes nothing.
+    screen.keys("\rj\x1b");
+    assert_eq!(screen.app.model.preset.gap.name(), "exact-sphere");
+}
+
+#[test]
+fn a_formula_shows_where_it_is_wrong() {
+    let mut screen = Screen::new("formula");
+    screen.keys("jjj\r");
+    let before = screen.app.model.preset.clone();
+    let curve = screen.app.model.curve.clone().unwrap();
+    for _ in 0..screen.app.model.preset.get("gap.formula").unwrap().to_string().len() {
+        screen.press(KeyCode::Backspace);
+    }
+    screen.keys("r^2/(2*R) + * B");
+    let text = screen.text(100, 30);
+    let lines: Vec<&str> = text.lines().collect();
+    let at = lines.iter().position(|line| line.contains("> r^2/(2*R) + * B")).unwrap();
+    // The column counts from the first character of the formula.
+    let column = |line: &str, what: &str| line.split(what).next().unwrap().chars().count();
+    assert_eq!(column(lines[at + 1], "^"), column(lines[at], "* B"), "{text}");
+    assert!(text.contains("column 13: expected a number, a name or '('"), "{text}");
+    // The knobs and the curve are those of the last text that was a formula, R^2/(2*R), and stay in sight.
+    assert!(screen.app.model.preset.get("gap.parameters.A").is_none() && text.contains("Problem"), "{text}");
+    let tried = screen.app.model.curve.clone().unwrap();
+    assert!(!std::sync::Arc::ptr_eq(&curve, &tried));
+    screen.keys("\r");
+    assert!(screen.text(100, 30).contains("column 13"), "Enter takes no text that is no formula");
+    for width in 0..100 {
+        for height in [0, 1, 3, 9, 10, 12, 18, 24] {
+            screen.draw(width, height);
+        }
+    }
+    screen.keys("\x1b");
+    assert_eq!(screen.app.model.preset, before);
+    assert!(screen.app.overlay.is_none() && !screen.app.model.is_computing());
+    // Pasted as well as typed.
+    screen.keys("\r");
+    let effects = screen.app.paste(" + 0*r");
+    screen.settle(effects);
+    screen.keys("\r");
+    assert!(screen.app.model.preset.get("gap.formula").unwrap().to_string().ends_with("lambda)) + 0*r"));
+    assert!(screen.app.model.untried.is_none() && screen.app.model.is_unsaved());
+}

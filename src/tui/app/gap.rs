@@ -1,0 +1,138 @@
+//! What is asked about the gap: its shape by pictures, its formula tried while it is typed, the file of its profile.
+
+use super::App;
+use crate::contact::Shape;
+use crate::contact::formula::{Formula, FormulaError};
+use crate::explorer::data::Folder;
+use crate::explorer::model::Level;
+use crate::explorer::{Command, Effect, update};
+use crate::figure::Figure;
+use crate::figure::shape::undeformed;
+use crate::preset::measured::SHIPPED_DATA;
+use crate::preset::shipped::DATA;
+use crate::preset::text::show_path;
+use crate::preset::{Key, Value};
+use crate::tui::overlay::{Action, Item, Prompt, Purpose};
+
+/// What each shape is, in a few words.
+const SHAPES: [(&str, &str); 9] = [
+    ("sphere", "paraboloid r²/(2R)"),
+    ("wavy-sphere", "paraboloid with one wave"),
+    ("exact-sphere", "R - √(R² - r²), up to R"),
+    ("cone", "c r"),
+    ("power-law", "c r^n"),
+    ("harmonics", "paraboloid with any waves"),
+    ("random-waves", "waves drawn from a power law"),
+    ("formula", "an expression you write"),
+    ("profile", "measured rows of a file"),
+];
+
+/// What is wrong with the text of a formula.
+pub(super) fn fault(prompt: &Prompt) -> Option<FormulaError> {
+    match prompt.purpose {
+        Purpose::Formula(_) => Formula::parse(prompt.input.value()).err(),
+        _ => None,
+    }
+}
+
+fn set(key: &Key, text: impl Into<String>) -> Action {
+    Action::Command(Command::Set { key: key.clone(), text: text.into() })
+}
+
+impl App {
+    pub(super) fn ask_shape(&mut self, words: &[&str]) -> Vec<Effect> {
+        let key: Key = "gap.shape".into();
+        let item = |word: &&str| {
+            let meaning = SHAPES.iter().find(|(name, _)| name == word).map_or("", |(_, meaning)| meaning);
+            Item { text: format!("{word:<13} {meaning}"), action: set(&key, *word) }
+        };
+        let selected = words.iter().position(|word| *word == self.model.preset.gap.name()).unwrap_or(0);
+        self.choose("Gap", words.iter().map(item).collect(), selected);
+        Vec::new()
+    }
+
+    pub(super) fn ask_formula(&mut self, key: Key, value: Option<Value>) -> Vec<Effect> {
+        let text = value.map_or_else(String::new, |value| value.to_string());
+        let note = "r, pi, e, parameters; + - * / ^ and functions as sqrt(), exp(), cos(), min(,)";
+        self.prompt("h(r) as a formula: the curve follows", note, text, Purpose::Formula(key))
+    }
+
+    /// The profiles of a folder, and the ways out of it.
+    pub(super) fn choose_profile(&mut self, folder: &Folder) {
+        let key: Key = "gap.file".into();
+        let go = |text: String, path| Item { text, action: Action::Command(Command::Browse(Some(path))) };
+        let up = folder.path.parent().map(|parent| go("../".to_owned(), parent.to_owned()));
+        let below = folder.folders.iter().map(|name| go(format!("{name}/"), folder.path.join(name)));
+        let files = folder
+            .files
+            .iter()
+            .map(|name| Item { text: name.clone(), action: set(&key, folder.name_of(name)) });
+        let shipped = DATA.iter().map(|data| {
+            let name = format!("{SHIPPED_DATA}{}", data.name);
+            Item { text: name.clone(), action: set(&key, name) }
+        });
+        let note = "a file with the columns r and h";
+        let prompt = Prompt::new("Read a profile", note, String::new(), Purpose::Value(key.clone()));
+        let path = Item { text: "a path ...".to_owned(), action: Action::Prompt(Box::new(prompt)) };
+        let selected =
+            usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
+        let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).collect();
+        self.choose(&format!("Profiles in {}", show_path(&folder.path)), items, selected);
+    }
+
+    /// Whether the gap has a file of its own, which can be saved with the preset.
+    pub(super) fn has_data(&self) -> bool {
+        let Shape::Profile(measured) = &self.model.preset.gap else { return false };
+        !measured.rows().name.starts_with(SHIPPED_DATA)
+    }
+
+    /// What choosing a line would make of the gap, where it is a shape that is chosen.
+    pub(super) fn picture(&self, action: &Action) -> Option<Figure> {
+        match action {
+            Action::Command(Command::Set { key, text }) if key == "gap.shape" => {
+                let mut preset = self.model.preset.clone();
+                preset.set(key, text.as_str().into()).ok()?;
+                Some(undeformed(&preset))
+            }
+            _ => None,
+        }
+    }
+
+    /// A formula whose text has changed is tried; one that is none leaves the curve as it is.
+    pub(super) fn check(&mut self, prompt: &mut Prompt) -> Vec<Effect> {
+        prompt.error = None;
+        prompt.fault = None;
+        let Purpose::Formula(key) = &prompt.purpose else { return Vec::new() };
+        if let Some(fault) = fault(prompt) {
+            prompt.refuse(&fault);
+            return Vec::new();
+        }
+        let command = Command::Try { key: key.clone(), text: prompt.input.value().to_owned() };
+        let effects = update(&mut self.model, command);
+        let refusal = self.model.message.take_if(|(level, _)| *level == Level::Error);
+        prompt.error = refusal.map(|(_, reason)| reason);
+        effects
+    }
+
+    /// A prompt left without an answer: what was tried for it is taken back.
+    pub(super) fn close(&mut self, prompt: &Prompt) -> Vec<Effect> {
+        match prompt.purpose {
+            Purpose::Formula(_) => self.run(Command::TakeBack),
+            _ => Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::parameter;
+    use crate::preset::schema::Kind;
+
+    #[test]
+    fn every_shape_has_its_words() {
+        let row = parameter("gap.shape").unwrap();
+        let Kind::Choice(words) = row.kind else { panic!("{:?}", row.kind) };
+        assert_eq!(words, SHAPES.map(|(word, _)| word));
+    }
+}
