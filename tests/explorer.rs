@@ -8,7 +8,8 @@ use pulloff::explorer::model::Level;
 use pulloff::explorer::{
     Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
 };
-use pulloff::preset::Source;
+use pulloff::preset::store::save_file;
+use pulloff::preset::{Overwrite, Source};
 use pulloff::quasistatic::EventKind;
 use session::Session;
 
@@ -221,18 +222,18 @@ fn presets_are_saved_opened_and_never_replaced_unasked() {
     session.does(Id::Save);
     assert!(session.status().contains("read-only"));
     for bad in ["", "Trace", "trace", "fig-9", "a/b", "x.toml"] {
-        session.does(Command::SaveAs { name: bad.to_owned(), replace: false });
+        session.does(Command::SaveAs { name: bad.to_owned(), replace: false, with_data: false });
         assert_eq!(session.model.status().0, Level::Error, "{bad}");
         assert!(session.model.is_unsaved());
     }
-    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false });
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false, with_data: false });
     assert!(!session.model.is_unsaved());
     assert!(matches!(&session.model.source, Source::User { name, .. } if name == "lab-3"));
     session.set("gap.amplitude", "0.004").does(Id::Save);
     assert!(!session.model.is_unsaved(), "{}", session.status());
     session.does(Command::Open("wavy-sphere".to_owned()));
     assert_eq!(session.model.history.nodes().len(), 1);
-    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false });
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false, with_data: false });
     assert!(session.model.question.take().is_some());
     session.does(Command::Open("lab-3".to_owned()));
     assert_eq!(session.model.preset.gap.wave(), Some((0.004, 0.05)));
@@ -481,4 +482,91 @@ fn zoom_and_cross_hair_have_their_limits() {
     assert!(session.status().contains("no closer"), "{}", session.status());
     session.does(Id::Fit).does(Id::Cancel);
     assert!(session.model.cross.is_none() && session.model.window(View::ForceApproach).is_whole());
+}
+
+#[test]
+fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
+    let mut session = Session::new("formula");
+    session.set("gap.parameters.lambda", "0.06");
+    let before = session.model.preset.clone();
+    let tries = |session: &mut Session, text: &str| {
+        session.does(Command::Try { key: "gap.formula".into(), text: text.to_owned() });
+    };
+    let value = |session: &Session, name: &str| session.model.preset.get(&format!("gap.parameters.{name}"));
+    // Halfway through a name: the new one is 1, the old one gone, the others as they were.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lam))");
+    assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(1.0.into()), None));
+    assert_eq!(value(&session, "A"), before.get("gap.parameters.A"));
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    // The whole name again: its value is the one from before.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + 0*B");
+    assert_eq!((value(&session, "lambda"), value(&session, "B")), (Some(0.06.into()), Some(1.0.into())));
+    // No formula: nothing changes.
+    let tried = session.model.preset.clone();
+    tries(&mut session, "r^2/(2*R");
+    assert!(session.status().contains("column 9"), "{}", session.status());
+    assert_eq!(session.model.preset, tried);
+    session.does(Command::TakeBack);
+    assert_eq!(session.model.preset, before);
+    assert!(session.model.untried.is_none() && !session.model.is_computing());
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, before);
+    tries(&mut session, "r^2/(2*R)");
+    session.set("gap.formula", "r^2/(2*R) + 0*lambda");
+    assert_eq!(value(&session, "lambda"), Some(0.06.into()));
+    assert!(session.model.untried.is_none());
+}
+
+#[test]
+fn another_shape_keeps_what_both_know() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("gap.amplitude", "0.003").set("gap.wavelength", "0.07").set("gap.radius_of_curvature", "1.1");
+    let value = |session: &Session, key: &str| session.model.preset.get(key);
+    session.set("gap.shape", "harmonics");
+    assert_eq!(value(&session, "gap.radius_of_curvature"), Some(1.1.into()));
+    assert_eq!(value(&session, "gap.waves.1.amplitude"), Some(0.003.into()));
+    assert_eq!(value(&session, "gap.waves.1.wavelength"), Some(0.07.into()));
+    session.set("gap.shape", "wavy-sphere").set("gap.amplitude", "0.003").set("gap.shape", "formula");
+    assert_eq!(value(&session, "gap.parameters.A"), Some(0.003.into()));
+    assert_eq!(value(&session, "gap.parameters.R"), Some(1.1.into()));
+}
+
+#[test]
+fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
+    let mut session = Session::new("profile");
+    let folder = session.folder.path().canonicalize().unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let rows = |radii: &[f64]| -> String {
+        radii.iter().map(|r| format!("{r}, {}\n", r * r / 2000.0)).collect::<Vec<_>>().concat()
+    };
+    let mut radii: Vec<f64> = (0..100).map(|i| 4.0 * f64::from(i)).collect();
+    std::fs::write(path("good.csv"), rows(&radii)).unwrap();
+    radii.swap(3, 7);
+    std::fs::write(path("mixed.txt"), rows(&radii)).unwrap();
+    std::fs::write(path("bad.csv"), rows(&radii) + "400.0, much\n").unwrap();
+    session.does(Command::Browse(Some(folder.clone())));
+    let listed = session.model.folder.take().unwrap();
+    assert_eq!(listed.files, ["bad.csv", "good.csv", "mixed.txt"]);
+    let (before, curve) = (session.model.preset.clone(), session.model.curve.clone().unwrap());
+    session.set("gap.file", &listed.name_of("bad.csv"));
+    assert!(session.status().contains("line 101: the gap \"much\" is no number"), "{}", session.status());
+    assert_eq!(session.model.preset, before);
+    assert_eq!(session.model.curve.as_ref().unwrap().setting.preset, curve.setting.preset);
+    session.set("gap.file", &listed.name_of("mixed.txt"));
+    assert!(session.status().contains("have been sorted"), "{}", session.status());
+    session.set("gap.file", &listed.name_of("good.csv"));
+    assert!(session.status().contains("good.csv: 100 rows"), "{}", session.status());
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    // Saved beside the data, the preset names it by its path from there.
+    let target = folder.join("mine.toml");
+    save_file(&target, &session.model.preset, Overwrite::Never).unwrap();
+    assert!(std::fs::read_to_string(&target).unwrap().contains("file = \"good.csv\""));
+    // With its data elsewhere: the preset of the session names the copy.
+    session.does(Command::SaveAs { name: "scan".to_owned(), replace: false, with_data: true });
+    assert!(session.status().contains("saved as scan"), "{}", session.status());
+    assert!(!session.model.is_unsaved() && folder.join("presets/good.csv").is_file());
+    assert_eq!(session.model.preset.get("gap.file").unwrap().to_string(), "good.csv");
+    session.does(Command::Browse(None));
+    assert_eq!(session.model.folder.take().unwrap().path, folder.join("presets"));
+    session.does(Command::Browse(Some(folder.join("gone"))));
+    assert!(session.status().contains("cannot be listed"), "{}", session.status());
 }

@@ -101,8 +101,12 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve");
     pty.keys("o");
     pty.wait_for(|screen| screen.contains("lab-3"), "the list");
-    // Last but one: only "a file" stands behind it.
-    pty.keys("jjjjjjjjjjjjjjjjjjjjjjjjjjjk\r");
+    while !pty.screen().contains("> lab-3") {
+        let before = pty.screen();
+        pty.keys("j");
+        pty.wait_for(|screen| screen != before, "the next preset");
+    }
+    pty.keys("\r");
     pty.wait_for(|screen| screen.contains(" lab-3  control") && screen.contains("0.003 "), "the preset");
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
@@ -215,6 +219,122 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.wait_for(|screen| !screen.contains("unsaved") && !screen.contains("computing"), "the values back");
     pty.keys("n");
     pty.wait_for(|screen| screen.contains("Limit point 1/"), "the walk goes on");
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+#[test]
+fn a_formula_is_typed_and_its_parameters_are_knobs() {
+    let mut pty = Pty::spawn(program(), &["formula"], &[], 100, 30);
+    pty.wait_for(|screen| screen.contains("Events on the curve: 8"), "the curve");
+    select(&mut pty, "h(r)");
+    pty.wait_for(|screen| !screen.contains("computing"), "all of it");
+    let waves = chart(&pty.screen());
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("the curve follows"), "the prompt");
+    // Without its waves: their parameters go, the curve follows, and the prompt is still there.
+    pty.keys("\x15r^2/(2*R)");
+    pty.wait_for(
+        |screen| {
+            screen.contains("> r^2/(2*R)") && line_of(screen, "│ A ").is_none() && chart(screen) != waves
+        },
+        "the curve of what is typed",
+    );
+    pty.wait_for(|screen| !screen.contains("computing"), "the last of it");
+    let smooth = chart(&pty.screen());
+    pty.keys(" + * B");
+    pty.wait_for(|screen| screen.contains("column 13: expected a number"), "what is wrong, and where");
+    assert_eq!(chart(&pty.screen()), smooth, "the old curve stays");
+    // Taken back as a whole.
+    pty.keys("\x1b");
+    pty.wait_for(
+        |screen| screen.contains("Events on the curve: 8") && !screen.contains("unsaved"),
+        "as it was",
+    );
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("the curve follows"), "the prompt");
+    pty.keys("\x15");
+    pty.paste("r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + depth*r^4");
+    pty.wait_for(|screen| line_of(screen, " depth").is_some(), "a knob for the new parameter");
+    pty.keys("\r");
+    pty.wait_for(
+        |screen| !screen.contains("the curve follows") && screen.contains("unsaved"),
+        "the formula kept",
+    );
+    select(&mut pty, "depth");
+    pty.wait_for(|screen| !screen.contains("computing"), "its curve");
+    pty.keys("}");
+    pty.wait_for(
+        |screen| line_of(screen, ">depth").is_some_and(|line| line.contains("1.1")),
+        "the knob turned",
+    );
+    pty.wait_for(|screen| !screen.contains("computing"), "its curve");
+    pty.keys("qy");
+    assert_eq!(pty.exit_code(), 0);
+}
+
+/// What is drawn in the upper chart, above all that may lie over it.
+fn chart(screen: &str) -> Vec<String> {
+    screen.lines().skip(2).take(8).map(|line| line.chars().skip(34).collect()).collect()
+}
+
+/// The line of a screen with this text, if there is one.
+fn line_of<'a>(screen: &'a str, text: &str) -> Option<&'a str> {
+    screen.lines().find(|line| line.contains(text))
+}
+
+#[test]
+fn a_shape_is_chosen_and_a_profile_loaded() {
+    let home = tempfile::tempdir().unwrap();
+    let rows = |radii: &mut dyn Iterator<Item = u32>| -> String {
+        radii
+            .map(f64::from)
+            .map(|r| format!("{}, {}\n", r / 100.0, r * r / 20000.0))
+            .collect::<Vec<_>>()
+            .concat()
+    };
+    fs::write(home.path().join("scan.csv"), rows(&mut (0..100).rev())).unwrap();
+    fs::write(home.path().join("worse.csv"), rows(&mut (0..100)) + "one, 2\n").unwrap();
+    let config = home.path().join("config");
+    let env = [("XDG_CONFIG_HOME", config.to_str().unwrap())];
+    let mut pty = Pty::spawn(program(), &[], &env, 120, 40);
+    pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve");
+    // Two lines above the amplitude.
+    pty.keys("kk");
+    pty.wait_for(|screen| screen.contains(">gap"), "the shape");
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("> wavy-sphere") && screen.contains("measured rows"), "the shapes");
+    pty.keys("jjjjjjj\r");
+    pty.wait_for(|screen| screen.contains("shipped:rough"), "a profile");
+    pty.wait_for(|screen| !screen.contains("computing"), "its curve");
+    select(&mut pty, "file");
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("Profiles in") && screen.contains("../"), "the files");
+    // The path is at the end of the list.
+    for (name, said) in [("worse.csv", "worse.csv: line 101"), ("scan.csv", "have been sorted")] {
+        if !pty.screen().contains("Profiles in") {
+            pty.keys("\r");
+            pty.wait_for(|screen| screen.contains("Profiles in"), "the files");
+        }
+        while !pty.screen().contains("> a path ...") {
+            let before = pty.screen();
+            pty.keys("j");
+            pty.wait_for(|screen| screen != before, "the next file");
+        }
+        pty.keys("\r");
+        pty.wait_for(|screen| screen.contains("Read a profile"), "the prompt");
+        pty.paste(home.path().join(name).to_str().unwrap());
+        pty.keys("\r");
+        pty.wait_for(|screen| screen.contains(said), said);
+    }
+    pty.wait_for(|screen| !screen.contains("computing") && !screen.contains("shipped:"), "its curve");
+    pty.keys("S");
+    pty.wait_for(|screen| screen.contains("save with data"), "the choice");
+    pty.keys("j\r");
+    pty.wait_for(|screen| screen.contains("Save the preset as"), "the prompt");
+    pty.keys("\x15mine\r");
+    pty.wait_for(|screen| screen.contains("saved as mine"), "saved");
+    assert!(config.join("pulloff/presets/scan.csv").is_file());
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
 }
