@@ -238,7 +238,7 @@ fn both_documents_carry_the_resolved_problem() {
         let problem = &document["problem"];
         assert_eq!(
             keys(problem),
-            ["preset", "start_contact_radius", "end_contact_radius", "groups", "critical_force"]
+            ["preset", "units", "start_contact_radius", "end_contact_radius", "groups", "critical_force"]
         );
         assert_eq!(
             keys(&problem["groups"]),

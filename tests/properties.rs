@@ -48,6 +48,7 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     };
     Preset {
         title: String::new(),
+        units: pulloff::units::UnitSystem::Reduced,
         material: Material { effective_modulus: modulus, work_of_adhesion: gamma * modulus * radius },
         gap: shape,
         basis: BasisSpec::Rings {
@@ -301,6 +302,7 @@ fn unloading_agrees_with_a_walk_on_the_explicit_curve() {
 fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f64) -> Preset {
     Preset {
         title: String::new(),
+        units: pulloff::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion: gamma },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },

@@ -1,7 +1,6 @@
 //! `pulloff unload`: the quasi-static unloading, instability by instability.
 
 use super::{Failure, Problem, admissible, output, warn};
-use crate::contact::Control;
 use crate::quasistatic::PathStop;
 use crate::report::{UnloadReport, json, table};
 use clap::{Args, ValueEnum};
@@ -13,9 +12,9 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
-    /// What the loading device prescribes: displacement, force or stiffness=K (instead of the preset's)
+    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
     #[arg(long, value_name = "CONTROL")]
-    control: Option<Control>,
+    control: Option<String>,
     /// table is for reading; csv has one row per instability; json has everything
     #[arg(long, value_enum, default_value = "table")]
     format: Format,
@@ -36,9 +35,9 @@ enum Format {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut preset = arguments.problem.load()?.preset;
-    if let Some(control) = arguments.control {
+    if let Some(control) = &arguments.control {
         preset
-            .set("path.control", control.into())
+            .assign("path.control", control)
             .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
     }
     let report = UnloadReport::compute(&preset)?;

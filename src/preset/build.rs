@@ -2,16 +2,19 @@
 //!
 //! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
 
+use super::family::is_parameter;
 use super::invalid::Invalid;
 use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
 use super::schema::{
-    Applies, CHOOSERS, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
-    parameter, table_of,
+    Applies, CHOOSERS, DISPLAY, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS,
+    START_OVER_CURVATURE, SYSTEMS, parameter, table_of,
 };
+use super::shape::measured_in;
 use super::value::Value;
 use crate::contact::Start;
 use crate::contact::{Control, Gap};
 use crate::ritz::Grading;
+use crate::units::{DisplayUnits, Quantity, UnitSystem, ValueError, parse_quantity};
 use std::collections::BTreeMap;
 
 /// Values by dotted key. A part of a value (`path.control.stiffness`) is not a key here.
@@ -22,7 +25,10 @@ pub type Values = BTreeMap<Key, Value>;
 /// # Errors
 /// All that is wrong, at least one.
 pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
-    let mut given = Given { values, faults: Vec::new() };
+    let mut faults = Vec::new();
+    let units = system(values, &mut faults);
+    let values = &resolved(values, &units, &mut faults);
+    let mut given = Given { values, units: units.clone(), faults };
     given.check_each();
     given.check_choices();
     let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(*key)).collect();
@@ -42,6 +48,7 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
     let end = "path.end_contact_radius";
     let preset = Preset {
         title: given.text("title"),
+        units,
         material: Material {
             effective_modulus: given.number("material.effective_modulus"),
             work_of_adhesion: given.number("material.work_of_adhesion"),
@@ -59,6 +66,61 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
         faults = across(&preset);
     }
     if faults.is_empty() { Ok(preset) } else { Err(faults) }
+}
+
+/// The units that these values state.
+fn system(values: &Values, faults: &mut Vec<Invalid>) -> UnitSystem {
+    if chosen(values, CHOOSERS[2]).as_deref() != Some(SYSTEMS[1]) {
+        return UnitSystem::Reduced;
+    }
+    let mut units = DisplayUnits::default();
+    for (key, quantity) in DISPLAY {
+        let Some(Value::Text(name)) = values.get(key) else { continue };
+        match units.clone().with(quantity, name) {
+            Ok(changed) => units = changed,
+            Err(cause) => faults.push(Invalid::Units { key: key.into(), cause }),
+        }
+    }
+    UnitSystem::Si(units)
+}
+
+/// The values with every text that stands for a number read in the units of the preset; a text that has no value
+/// there stays one.
+fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Invalid>) -> Values {
+    let mut all = values.clone();
+    for (key, value) in &mut all {
+        let Value::Typed(text) = value else { continue };
+        match in_units(values, units, key, text) {
+            Ok(k) if key == "path.control" => *value = Control::Stiffness(k).into(),
+            Ok(x) => *value = x.into(),
+            Err(cause) => faults.push(Invalid::Units { key: key.clone(), cause }),
+        }
+    }
+    all
+}
+
+/// The number of a text, in SI or reduced units.
+fn in_units(values: &Values, units: &UnitSystem, key: &str, text: &str) -> Result<f64, ValueError> {
+    let typed = parse_quantity(text)?;
+    if *units == UnitSystem::Reduced {
+        return typed.pure();
+    }
+    let quantity = match table_of(key) {
+        _ if key == "path.control" => Some(Quantity::ForcePerLength),
+        // A parameter of a formula is of the dimension that its own unit names, or of any.
+        Some(table) if is_parameter(key) || is_parameter(table) => {
+            let whole = if is_parameter(key) { key } else { table };
+            match values.get(&*format!("{whole}.unit")) {
+                Some(Value::Text(unit)) => measured_in(unit),
+                _ => None,
+            }
+        }
+        _ => parameter(key).map(|row| row.quantity),
+    };
+    match quantity {
+        Some(quantity) => typed.in_si(quantity, None),
+        None => Ok(typed.unit.as_ref().map_or(typed.number, |unit| unit.to_si(typed.number))),
+    }
 }
 
 /// The checks that span several keys.
@@ -116,6 +178,7 @@ pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
 /// the rest going; no preset comes of it.
 pub(super) struct Given<'a> {
     pub(super) values: &'a Values,
+    pub(super) units: UnitSystem,
     pub(super) faults: Vec<Invalid>,
 }
 
@@ -139,6 +202,7 @@ impl Given<'_> {
                     ("gap.shape", "harmonics" | "random-waves") => ("gap", format!("one of {word}")),
                     ("gap.shape", "exact-sphere") => ("gap", format!("an {word}")),
                     ("gap.shape", _) => ("gap", format!("a {word}")),
+                    ("units", _) => ("unit system", word),
                     _ => ("basis", word),
                 };
                 self.faults.push(Invalid::OtherChoice { key: row.key.clone(), belongs, what, chosen });

@@ -13,6 +13,7 @@ use super::schema::{Applies, CHOOSERS, Fallback, Kind, Parameter};
 use crate::contact::shapes::harmonics::MOST_WAVES;
 use crate::expression::function::Function;
 use crate::expression::grammar::NAME;
+use crate::units::Quantity;
 use std::borrow::Cow::{self, Borrowed};
 use std::fmt::Display;
 
@@ -115,6 +116,7 @@ pub(super) fn parameter(name: &str) -> Parameter {
         label: name.to_owned().into(),
         meaning: Borrowed("a parameter of the formula"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Finite,
         fallback: Fallback::Required,
         applies: of_formula(),
@@ -125,9 +127,11 @@ pub(super) fn limit(name: &str, part: &str) -> Option<Parameter> {
     let (part, meaning, kind) = match part {
         "min" => ("min", "its smallest value", Kind::Finite),
         "max" => ("max", "its largest value", Kind::Finite),
-        "unit" => {
-            ("unit", "its unit, as a remark: the value is taken as it stands", Kind::Text { max_chars: 20 })
-        }
+        "unit" => (
+            "unit",
+            "its unit, as a remark: a bare value is taken as it stands, in an SI preset as SI",
+            Kind::Text { max_chars: 20 },
+        ),
         _ => return None,
     };
     Some(Parameter {
@@ -135,6 +139,7 @@ pub(super) fn limit(name: &str, part: &str) -> Option<Parameter> {
         label: format!("{name} {part}").into(),
         meaning: Borrowed(meaning),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind,
         fallback: Fallback::Described("none"),
         applies: of_formula(),
@@ -153,6 +158,7 @@ pub(super) fn wave(number: impl Display, name: &str) -> Option<Parameter> {
         label: Cow::Owned(format!("{label}{number}")),
         meaning: Borrowed(meaning),
         dimension: Borrowed(dimension),
+        quantity: if dimension.is_empty() { Quantity::Number } else { Quantity::Length },
         kind,
         fallback,
         applies: Applies::With { key: CHOOSERS[0], words: &["harmonics"] },

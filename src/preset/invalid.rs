@@ -2,6 +2,7 @@
 
 use super::schema::{FORMAT, Key, RADIUS_OVER_CURVATURE};
 use crate::ritz::Grading;
+use crate::units::ValueError;
 use thiserror::Error;
 
 /// A key or a value that a preset cannot have. Foreign text in it is already safe to show.
@@ -139,6 +140,14 @@ pub enum Invalid {
         /// The grading.
         grading: Grading,
     },
+    /// A value in units that it cannot have.
+    #[error("{key}: {cause}")]
+    Units {
+        /// The key.
+        key: Key,
+        /// Why.
+        cause: ValueError,
+    },
     /// A gap that cannot be made.
     #[error("{key}: {cause}")]
     Gap {
@@ -198,6 +207,7 @@ impl Invalid {
             | Self::Starts { second: key, .. }
             | Self::EndBeyondStart { key, .. }
             | Self::Rings { key, .. }
+            | Self::Units { key, .. }
             | Self::Gap { key, .. }
             | Self::Unused { key, .. }
             | Self::Beyond { key, .. }

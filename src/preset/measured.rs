@@ -1,7 +1,7 @@
 //! The file of a measured profile → rows of a gap.
 //!
 //! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
-//! folder of the preset. Radii are taken as they stand; where both columns name a unit of length, gaps are converted to
+//! folder of the preset. In an SI preset rows with a unit become metres; in any other radii are taken as they stand; where both columns name a unit of length, gaps are converted to
 //! the unit of the radii, so a gap in nm over µm is what it says.
 
 use super::profile::{LARGEST, TextError, parse};
@@ -49,6 +49,7 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
         folder: folder.map(Path::to_path_buf),
         radii: columns.radii,
         gaps: columns.gaps,
+        unit: radii_in.and_then(|unit| Unit::parse(&unit, 0).ok()),
         notes,
     })
 }

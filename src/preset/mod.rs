@@ -17,6 +17,7 @@
 //! | [`shipped`] | the presets that come with the program |
 //! | [`name`] | which names a person's preset may have |
 //! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
+//! | [`groups`] | the dimensionless groups as values to set |
 //! | [`measured`] | the file of a measured profile → rows of a gap |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
 //! | [`beside`] | the data of a profile copied beside a preset |
@@ -32,6 +33,7 @@ pub mod beside;
 pub mod build;
 pub mod family;
 pub mod file;
+pub mod groups;
 pub mod invalid;
 pub mod lock;
 pub mod manual;

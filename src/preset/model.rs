@@ -2,10 +2,12 @@
 
 use super::build::{Values, build};
 use super::family;
+use super::groups;
 use super::invalid::Invalid;
 use super::measured;
 use super::schema::{
-    AUTO, CHOOSERS, END_OVER_START, FORMAT, Fallback, Kind, PARAMETERS, Parameter, Row, START_KEYS, parameter,
+    AUTO, CHOOSERS, DISPLAY, END_OVER_START, FORMAT, Fallback, Kind, PARAMETERS, Parameter, Row, START_KEYS,
+    SYSTEMS, parameter,
 };
 use super::shape;
 use super::suggest::closest_key;
@@ -14,6 +16,7 @@ use super::value::Value;
 use crate::contact::shapes::Measured;
 use crate::contact::{Control, Problem, Reduced, Shape, Start};
 use crate::ritz::Grading;
+use crate::units::{Quantity, UnitSystem, parse_quantity};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,6 +25,8 @@ use std::sync::Arc;
 pub struct Preset {
     /// One line that says what the preset shows.
     pub title: String,
+    /// The units in which it is typed and shown; every number in it is in SI or in reduced units.
+    pub units: UnitSystem,
     /// The bodies.
     pub material: Material,
     /// The gap between the undeformed bodies.
@@ -122,10 +127,19 @@ impl Preset {
     /// to follow from others.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
-        let Self { title, material, gap, basis, path } = self;
+        let Self { title, units, material, gap, basis, path } = self;
         Some(match key {
             "format" => FORMAT.into(),
             "title" => title.as_str().into(),
+            // Reduced units are what a preset has when it says nothing.
+            "units" => match units {
+                UnitSystem::Reduced => return None,
+                UnitSystem::Si(_) => SYSTEMS[1].into(),
+            },
+            key if key.starts_with("display.") => {
+                let (_, quantity) = DISPLAY.iter().find(|(known, _)| *known == key)?;
+                units.unit(*quantity)?.ascii().as_str().into()
+            }
             "material.effective_modulus" => material.effective_modulus.into(),
             "material.work_of_adhesion" => material.work_of_adhesion.into(),
             key if key.starts_with("gap.") => return shape::get(gap, key),
@@ -145,6 +159,7 @@ impl Preset {
                 BasisSpec::Rings { grading, .. } => grading.name().into(),
                 BasisSpec::Spectral { .. } => return None,
             },
+            key if groups::row(key).is_some() => return groups::get(self, key),
             "path.control" => path.control.into(),
             "path.control.stiffness" => match path.control {
                 Control::Stiffness(k) => k.into(),
@@ -168,14 +183,21 @@ impl Preset {
     /// The row of a key: with the range that this preset gives it, where it does.
     #[must_use]
     pub fn row(&self, key: &str) -> Option<Row> {
-        self.rows().find(|row| row.key == key).or_else(|| parameter(key))
+        self.rows()
+            .find(|row| row.key == key)
+            .or_else(|| parameter(key))
+            .or_else(|| groups::row(key).map(Row::Borrowed))
     }
 
-    /// The rows that are turned and typed on a screen: all but the format, the ranges of parameters, and the waves
+    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, and the waves
     /// after the first [`WAVE_KNOBS`](family::WAVE_KNOBS).
     pub fn knobs(&self) -> impl Iterator<Item = Row> {
-        self.rows()
-            .filter(|row| row.key != "format" && !shape::is_range(&row.key) && family::has_knob(&row.key))
+        self.rows().filter(|row| {
+            row.key != "format"
+                && !is_of_units(&row.key)
+                && !shape::is_range(&row.key)
+                && family::has_knob(&row.key)
+        })
     }
 
     /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
@@ -189,13 +211,16 @@ impl Preset {
     /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
     /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
     /// parameters it has in common with the old one, its others begin with 1; a `basis.kind` drops the keys of the old
-    /// basis, and takes the defaults of its own. A `gap.file` is read here, relative to the folder of the one before.
+    /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. A `gap.file` is read here, relative to the folder of the one before.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
         let value = row.check(self.located(&row, value)?)?;
+        if groups::row(key).is_some() {
+            return self.set_group(&row, value);
+        }
         let mut values = self.keyed();
         if CHOOSERS.contains(&&*row.key) {
             values.retain(|key, _| {
@@ -216,6 +241,56 @@ impl Preset {
         }
         *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
         Ok(())
+    }
+
+    fn set_group(&mut self, row: &Parameter, value: Value) -> Result<(), Invalid> {
+        let x = match value {
+            Value::Number(x) => x,
+            other => {
+                let text = other.to_string();
+                let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
+                parse_quantity(&text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)?
+            }
+        };
+        let mut changed = self.clone();
+        for (key, value) in groups::changes(self, row, x)? {
+            changed.set(&key, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`] and [`Preset::set`].
+    pub fn assign(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let value = row.parse(text)?;
+        self.set(key, value)
+    }
+
+    /// The value of a row as a person types it beside its unit: in SI a bare number counts in the unit shown there.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`].
+    pub fn typed(&self, row: &Parameter, text: &str) -> Result<Value, Invalid> {
+        let quantity = if row.kind == Kind::Control { Quantity::ForcePerLength } else { row.quantity };
+        let (Some(unit), true) =
+            (self.units.unit(quantity), row.kind.is_number() || row.kind == Kind::Control)
+        else {
+            return row.parse(text);
+        };
+        let number = text.trim();
+        let number = if row.kind == Kind::Control {
+            number.strip_prefix("stiffness=").unwrap_or(number)
+        } else {
+            number
+        };
+        match parse_quantity(number) {
+            Ok(value) if value.unit.is_none() => row.parse(&format!("{number} {}", unit.ascii())),
+            _ => row.parse(text),
+        }
     }
 
     /// Lets an optional key follow from others again, or takes its default.
@@ -292,11 +367,20 @@ impl Preset {
     }
 }
 
+/// Whether a key says units, not the problem.
+#[must_use]
+pub fn is_of_units(key: &str) -> bool {
+    key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
+}
+
 /// Stores a checked value; a part of a value becomes the whole.
 pub(super) fn put(values: &mut Values, row: &Parameter, value: Value) {
     match (&*row.key, value) {
         ("path.control.stiffness", Value::Number(k)) => {
             values.insert("path.control".into(), Control::Stiffness(k).into());
+        }
+        ("path.control.stiffness", Value::Typed(text)) => {
+            values.insert("path.control".into(), Value::Typed(text));
         }
         (_, value) => {
             values.insert(row.key.clone(), value);
@@ -322,6 +406,7 @@ pub(super) mod tests {
     pub fn wavy() -> Preset {
         Preset {
             title: "a wave".to_owned(),
+            units: UnitSystem::Reduced,
             material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004 },
             gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
             basis: BasisSpec::Rings { rings: 200, grading: Grading::Uniform },
@@ -368,6 +453,7 @@ pub(super) mod tests {
                 };
                 Preset {
                     title,
+                    units: UnitSystem::Reduced,
                     material: Material { effective_modulus: e, work_of_adhesion: gamma },
                     gap,
                     basis,
@@ -417,10 +503,36 @@ pub(super) mod tests {
         }
     }
 
+    /// A value for a key that it does not have in [`wavy`].
+    fn another(key: &str) -> Value {
+        match key {
+            "format" => FORMAT.into(),
+            "title" => "t".into(),
+            "units" => "SI".into(),
+            "display.length" => "nm".into(),
+            "display.force" => "pN".into(),
+            "display.stress" => "MPa".into(),
+            "display.adhesion" | "display.stiffness" => "mN/m".into(),
+            "display.energy" => "eV".into(),
+            "gap.shape" => "sphere".into(),
+            "basis.kind" => "spectral".into(),
+            "basis.rings" | "basis.functions" => 77.into(),
+            "basis.grading" => "edge".into(),
+            "path.control" => Control::Force.into(),
+            "path.end_contact_radius" => 0.003.into(),
+            "gap.exponent" => 2.5.into(),
+            "gap.shortest_wavelength" => 0.03.into(),
+            "gap.count" | "gap.seed" => 9.into(),
+            "gap.formula" => "r^2/R".into(),
+            "gap.file" => Value::Profile(Arc::new(measured::load(None, "shipped:rough-sphere.csv").unwrap())),
+            _ => Value::Number(0.75),
+        }
+    }
+
     #[test]
     fn the_table_is_total() {
         // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
-        let Preset { title: _, material, gap, basis, path } = wavy();
+        let Preset { title: _, units: _, material, gap, basis, path } = wavy();
         let Material { effective_modulus: _, work_of_adhesion: _ } = material;
         match basis {
             BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Spectral { functions: _ } => {}
@@ -452,6 +564,7 @@ pub(super) mod tests {
         let fields = [
             "format",
             "title",
+            "units",
             "material.effective_modulus",
             "material.work_of_adhesion",
             "gap.shape",
@@ -480,32 +593,24 @@ pub(super) mod tests {
             "path.start_approach",
             "path.start_force",
             "path.end_contact_radius",
+            "display.length",
+            "display.force",
+            "display.stress",
+            "display.adhesion",
+            "display.energy",
+            "display.stiffness",
         ];
         assert_eq!(PARAMETERS.iter().map(|row| &row.key).collect::<Vec<_>>(), fields);
 
         // Every row can be read back after it was set.
         for row in PARAMETERS {
             let mut preset = wavy();
-            let value = match &*row.key {
-                "format" => FORMAT.into(),
-                "title" => "t".into(),
-                "gap.shape" => "sphere".into(),
-                "basis.kind" => "spectral".into(),
-                "basis.rings" | "basis.functions" => 77.into(),
-                "basis.grading" => "edge".into(),
-                "path.control" => Control::Force.into(),
-                "path.end_contact_radius" => 0.003.into(),
-                "gap.exponent" => 2.5.into(),
-                "gap.shortest_wavelength" => 0.03.into(),
-                "gap.count" | "gap.seed" => 9.into(),
-                "gap.formula" => "r^2/R".into(),
-                "gap.file" => {
-                    Value::Profile(Arc::new(measured::load(None, "shipped:rough-sphere.csv").unwrap()))
-                }
-                _ => Value::Number(0.75),
-            };
+            let value = another(&row.key);
             if let Applies::With { key: "gap.shape", words } = row.applies {
                 preset.set("gap.shape", words[0].into()).unwrap();
+            }
+            if row.fits("units", "SI") && !row.fits("units", "reduced") {
+                preset.set("units", "SI".into()).unwrap();
             }
             if row.key == "basis.functions" {
                 preset.set("basis.kind", "spectral".into()).unwrap();

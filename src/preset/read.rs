@@ -1,10 +1,12 @@
 //! TOML text and `--set` assignments → preset.
 //!
-//! The file is laid down first, then the assignments in order; the whole is checked once. Every value
+//! The file is laid down first, then the assignments in order; the whole is checked once, and the assignments of groups
+//! are made last. Every value
 //! remembers where it came from, so a message can name the line or the assignment.
 
 use super::build::{Values, build};
 use super::family;
+use super::groups;
 use super::invalid::Invalid;
 use super::measured;
 use super::model::{Preset, put, unknown_key};
@@ -133,6 +135,8 @@ struct Sheet {
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     refit: bool,
     entries: BTreeMap<Key, Entry>,
+    /// Assignments of groups: laid over the whole, when all they follow from is known.
+    groups: Vec<(String, String, Origin)>,
     /// Where the file's tables begin.
     tables: BTreeMap<Key, Origin>,
     mistakes: Vec<Mistake>,
@@ -255,6 +259,9 @@ impl Sheet {
         {
             return self.lay_waves(waves, origin, &place);
         }
+        if groups::row(key).is_some() {
+            return self.groups.push((key.to_owned(), text.to_owned(), origin));
+        }
         match (parameter(key), Some(key).filter(|key| is_table(key)), inner) {
             (_, Some(table), Some(inner)) if !inner.is_empty() => self.lay(table, inner, &place),
             (Some(row), _, _) => {
@@ -346,7 +353,16 @@ impl Sheet {
             fit_parameters(&mut values, assigned);
         }
         match build(&values) {
-            Ok(preset) if mistakes.is_empty() => return Ok(preset),
+            Ok(mut preset) if mistakes.is_empty() => {
+                for (key, text, origin) in &self.groups {
+                    if let Err(invalid) = preset.assign(key, text) {
+                        mistakes.push(Mistake { origin: origin.clone(), invalid });
+                    }
+                }
+                if mistakes.is_empty() {
+                    return Ok(preset);
+                }
+            }
             Ok(_) => {}
             Err(faults) => {
                 let misspelt = meant_keys(&mistakes);

@@ -4,6 +4,7 @@
 //! `model` (get) and `build`; a test demands that none of the three is forgotten.
 
 use super::family;
+use crate::units::Quantity;
 use std::borrow::Cow::{self, Borrowed};
 
 /// The format number of the files this program reads and writes.
@@ -119,6 +120,8 @@ pub struct Parameter {
     pub meaning: Cow<'static, str>,
     /// Its dimension in words; empty for text, choices and pure numbers.
     pub dimension: Cow<'static, str>,
+    /// What is measured, for values with units; a pure number where there is no such quantity.
+    pub quantity: Quantity,
     /// What values it takes.
     pub kind: Kind,
     /// What it is when not given.
@@ -128,7 +131,32 @@ pub struct Parameter {
 }
 
 /// The keys whose word decides which other keys apply.
-pub const CHOOSERS: [&str; 2] = ["gap.shape", "basis.kind"];
+pub const CHOOSERS: [&str; 3] = ["gap.shape", "basis.kind", "units"];
+/// The words of the key `units`.
+pub const SYSTEMS: [&str; 2] = ["reduced", "SI"];
+/// The keys of the units in which an SI preset is shown, each with its quantity.
+pub const DISPLAY: [(&str, Quantity); 6] = [
+    ("display.length", Quantity::Length),
+    ("display.force", Quantity::Force),
+    ("display.stress", Quantity::Stress),
+    ("display.adhesion", Quantity::EnergyPerArea),
+    ("display.energy", Quantity::Energy),
+    ("display.stiffness", Quantity::ForcePerLength),
+];
+
+/// The row of the unit in which a quantity is shown.
+const fn display(at: usize, label: &'static str, meaning: &'static str, fallback: &'static str) -> Parameter {
+    Parameter {
+        key: Borrowed(DISPLAY[at].0),
+        label: Borrowed(label),
+        meaning: Borrowed(meaning),
+        dimension: Borrowed(""),
+        quantity: Quantity::Number,
+        kind: Kind::Text { max_chars: 20 },
+        fallback: Fallback::Text(fallback),
+        applies: Applies::With { key: CHOOSERS[2], words: &["SI"] },
+    }
+}
 
 /// Where the gap has one of these shapes.
 const fn of_shape(words: &'static [&'static str]) -> Applies {
@@ -142,6 +170,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("format"),
         meaning: Borrowed("version of this file format"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Integer { min: FORMAT, max: FORMAT },
         fallback: Fallback::Integer(FORMAT),
         applies: Applies::Always,
@@ -151,8 +180,21 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("title"),
         meaning: Borrowed("one line that says what the preset shows"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Text { max_chars: 100 },
         fallback: Fallback::Text(""),
+        applies: Applies::Always,
+    },
+    Parameter {
+        key: Borrowed("units"),
+        label: Borrowed("units"),
+        meaning: Borrowed(
+            "reduced: any consistent units; SI: bare numbers are SI, and text such as \"30 um\" has its unit",
+        ),
+        dimension: Borrowed(""),
+        quantity: Quantity::Number,
+        kind: Kind::Choice(&SYSTEMS),
+        fallback: Fallback::Text("reduced"),
         applies: Applies::Always,
     },
     Parameter {
@@ -160,6 +202,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("E*"),
         meaning: Borrowed("effective elastic modulus of the two bodies"),
         dimension: Borrowed("stress"),
+        quantity: Quantity::Stress,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: Applies::Always,
@@ -167,8 +210,11 @@ pub static PARAMETERS: &[Parameter] = &[
     Parameter {
         key: Borrowed("material.work_of_adhesion"),
         label: Borrowed("gamma"),
-        meaning: Borrowed("work of adhesion, the energy gained per unit area of contact"),
+        meaning: Borrowed(
+            "work of adhesion w, the energy gained per unit area of contact (of both faces together)",
+        ),
         dimension: Borrowed("stress x length"),
+        quantity: Quantity::EnergyPerArea,
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
         applies: Applies::Always,
@@ -178,6 +224,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("gap"),
         meaning: Borrowed("shape of the gap between the undeformed bodies"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Choice(&[
             "sphere",
             "wavy-sphere",
@@ -197,6 +244,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("R"),
         meaning: Borrowed("combined radius of curvature"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["sphere", "wavy-sphere", "exact-sphere", "harmonics", "random-waves"]),
@@ -206,6 +254,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("A"),
         meaning: Borrowed("amplitude of the wave"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
         applies: of_shape(&["wavy-sphere"]),
@@ -215,6 +264,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("lambda"),
         meaning: Borrowed("wavelength"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["wavy-sphere"]),
@@ -224,6 +274,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("slope"),
         meaning: Borrowed("slope of the cone, the cotangent of its half apex angle"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["cone"]),
@@ -233,6 +284,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("c"),
         meaning: Borrowed("coefficient c of the gap c r^n"),
         dimension: Borrowed("length^(1-n)"),
+        quantity: Quantity::Number,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["power-law"]),
@@ -242,6 +294,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("n"),
         meaning: Borrowed("exponent n of the gap c r^n"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Between { min: 1.0, max: 100.0 },
         fallback: Fallback::Required,
         applies: of_shape(&["power-law"]),
@@ -251,6 +304,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("rms"),
         meaning: Borrowed("root mean square of the random waves"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::NonNegative,
         fallback: Fallback::Required,
         applies: of_shape(&["random-waves"]),
@@ -260,6 +314,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("longest"),
         meaning: Borrowed("longest of the random waves"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["random-waves"]),
@@ -269,6 +324,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("shortest"),
         meaning: Borrowed("shortest of the random waves"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Required,
         applies: of_shape(&["random-waves"]),
@@ -278,6 +334,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("H"),
         meaning: Borrowed("Hurst exponent: near 0 the short waves are as high as the long ones"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Between { min: 0.01, max: 1.0 },
         fallback: Fallback::Number(0.8),
         applies: of_shape(&["random-waves"]),
@@ -287,6 +344,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("waves"),
         meaning: Borrowed("number of random waves"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Integer { min: 1, max: 1000 },
         fallback: Fallback::Integer(50),
         applies: of_shape(&["random-waves"]),
@@ -296,6 +354,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("seed"),
         meaning: Borrowed("which of all surfaces with these numbers"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Integer { min: 0, max: i64::MAX },
         fallback: Fallback::Integer(1),
         applies: of_shape(&["random-waves"]),
@@ -305,6 +364,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("h(r)"),
         meaning: Borrowed("the gap as a formula in r, pi, e and parameters"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Text { max_chars: 4096 },
         fallback: Fallback::Required,
         applies: of_shape(&["formula"]),
@@ -314,6 +374,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("file"),
         meaning: Borrowed("file with the columns r and h; relative to the preset's own folder"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::File,
         fallback: Fallback::Required,
         applies: of_shape(&["profile"]),
@@ -323,6 +384,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("smoothing"),
         meaning: Borrowed("wavelength that passes the smoothing by half"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Smoothing,
         fallback: Fallback::Text("none"),
         applies: of_shape(&["profile"]),
@@ -332,6 +394,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("basis"),
         meaning: Borrowed("functions in which the contact pressure is sought"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Choice(&["rings", "spectral"]),
         fallback: Fallback::Text("spectral"),
         applies: Applies::Always,
@@ -341,6 +404,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("N"),
         meaning: Borrowed("number of ring elements"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Integer { min: 4, max: 2000 },
         fallback: Fallback::Integer(200),
         applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
@@ -352,6 +416,7 @@ pub static PARAMETERS: &[Parameter] = &[
             "spacing of the rings: uniform as in the paper, edge crowds at most 400 towards the edge",
         ),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Choice(&["uniform", "edge"]),
         fallback: Fallback::Text("uniform"),
         applies: Applies::With { key: CHOOSERS[1], words: &["rings"] },
@@ -361,6 +426,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("functions"),
         meaning: Borrowed("number of eigenfunctions; auto takes enough for the waves in the largest contact"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Count { min: 4, max: 4096 },
         fallback: Fallback::Text(AUTO),
         applies: Applies::With { key: CHOOSERS[1], words: &["spectral"] },
@@ -370,6 +436,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("control"),
         meaning: Borrowed("what the loading device prescribes"),
         dimension: Borrowed(""),
+        quantity: Quantity::Number,
         kind: Kind::Control,
         fallback: Fallback::Text("displacement"),
         applies: Applies::Always,
@@ -379,6 +446,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("k"),
         meaning: Borrowed("stiffness of the loading device"),
         dimension: Borrowed("force / length"),
+        quantity: Quantity::ForcePerLength,
         kind: Kind::Positive,
         fallback: Fallback::Described("none: the device is not a spring"),
         applies: Applies::Spring,
@@ -388,6 +456,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("s start"),
         meaning: Borrowed("contact radius at which the path starts"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Described("0.5 x the radius of curvature, if no start is given"),
         applies: Applies::Always,
@@ -397,6 +466,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("delta start"),
         meaning: Borrowed("approach at which the path starts"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Finite,
         fallback: Fallback::Described("none: another start is used"),
         applies: Applies::Always,
@@ -406,6 +476,7 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("P start"),
         meaning: Borrowed("force at which the path starts, a preload"),
         dimension: Borrowed("force"),
+        quantity: Quantity::Force,
         kind: Kind::Finite,
         fallback: Fallback::Described("none: another start is used"),
         applies: Applies::Always,
@@ -415,10 +486,17 @@ pub static PARAMETERS: &[Parameter] = &[
         label: Borrowed("s end"),
         meaning: Borrowed("contact radius at which the path ends"),
         dimension: Borrowed("length"),
+        quantity: Quantity::Length,
         kind: Kind::Positive,
         fallback: Fallback::Described("0.004 x the contact radius at the start"),
         applies: Applies::Always,
     },
+    display(0, "lengths", "unit in which lengths are shown", "um"),
+    display(1, "forces", "unit in which forces are shown", "uN"),
+    display(2, "stresses", "unit in which stresses are shown", "kPa"),
+    display(3, "adhesions", "unit in which works of adhesion are shown", "mJ/m^2"),
+    display(4, "energies", "unit in which energies are shown", "pJ"),
+    display(5, "stiffnesses", "unit in which stiffnesses are shown", "N/m"),
 ];
 
 /// The row of a dotted key: of the table, or of a [`family`].
@@ -445,6 +523,24 @@ pub fn tables() -> impl Iterator<Item = &'static str> {
             (!seen).then_some(table)
         })
         .chain(families)
+}
+
+impl Kind {
+    /// Whether its values are real numbers, which may be typed with a unit.
+    #[must_use]
+    pub fn is_number(self) -> bool {
+        match self {
+            Self::Positive | Self::NonNegative | Self::Finite | Self::Between { .. } | Self::Smoothing => {
+                true
+            }
+            Self::Integer { .. }
+            | Self::Count { .. }
+            | Self::Text { .. }
+            | Self::File
+            | Self::Choice(_)
+            | Self::Control => false,
+        }
+    }
 }
 
 impl Parameter {
@@ -535,7 +631,7 @@ mod tests {
         assert!(said(START_KEYS[0], START_OVER_CURVATURE) && said("path.end_contact_radius", END_OVER_START));
         assert_eq!(
             tables().collect::<Vec<_>>(),
-            ["material", "gap", "basis", "path", "path.control", "gap.parameters", "gap.waves"]
+            ["material", "gap", "basis", "path", "path.control", "display", "gap.parameters", "gap.waves"]
         );
     }
 }

@@ -11,6 +11,7 @@ use crate::contact::Shape;
 use crate::contact::formula::typed::{MOST_PARAMETERS, RADIUS};
 use crate::contact::formula::{Formula, FormulaParameter, TypedError, TypedGap};
 use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Smoothing};
+use crate::units::{Quantity, Unit, UnitSystem};
 use std::sync::Arc;
 
 impl Given<'_> {
@@ -169,6 +170,7 @@ impl Given<'_> {
             },
             _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
         };
+        let rows = if self.units == UnitSystem::Reduced { rows } else { rows.in_metres() };
         match Measured::new(rows, smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),
             Err(error) => self.fault("gap.file", &error),
@@ -202,8 +204,15 @@ fn bounded(given: &FormulaParameter) -> Parameter {
     }
     if let Some(unit) = &given.unit {
         row.dimension = unit.clone().into();
+        row.quantity = measured_in(unit).unwrap_or(Quantity::Number);
     }
     row
+}
+
+/// The quantity that is measured in a unit, if it is one of ours.
+pub(super) fn measured_in(unit: &str) -> Option<Quantity> {
+    let dimension = Unit::parse(unit, 0).ok()?.dimension();
+    Quantity::ALL.into_iter().find(|quantity| quantity.dimension() == dimension)
 }
 
 /// The rows that a shape makes itself.

@@ -30,6 +30,7 @@ pub static SHIPPED: &[Shipped] = &[
     Shipped { name: "fig-3-jkr", text: include_str!("../../presets/fig-3-jkr.toml") },
     Shipped { name: "fig-8", text: include_str!("../../presets/fig-8.toml") },
     Shipped { name: "fig-9", text: include_str!("../../presets/fig-9.toml") },
+    Shipped { name: "fig-9-si", text: include_str!("../../presets/fig-9-si.toml") },
     Shipped { name: "fig-10-force", text: include_str!("../../presets/fig-10-force.toml") },
     Shipped { name: "exact-sphere", text: include_str!("../../presets/exact-sphere.toml") },
     Shipped { name: "cone", text: include_str!("../../presets/cone.toml") },
@@ -51,7 +52,7 @@ mod tests {
     use super::*;
     use crate::contact::Start;
     use crate::contact::{Control, Groups, Shape};
-    use crate::preset::model::{BasisSpec, Functions, Preset};
+    use crate::preset::model::{BasisSpec, Functions, Preset, is_of_units};
     use crate::preset::read::read;
     use crate::preset::schema::Row;
     use crate::preset::shape::is_range;
@@ -102,7 +103,16 @@ mod tests {
             // Of the rows that mean something here, two of three starts and the stiffness may be missing.
             let kind = preset.get("basis.kind").unwrap().to_string();
             let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
-            assert_eq!(preset.values().len() + 3, ranges(&preset) + preset.knobs().filter(fits).count() + 1);
+            // The knobs leave out the format, the units and their display.
+            let units = preset
+                .values()
+                .iter()
+                .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
+                .count();
+            assert_eq!(
+                preset.values().len() + 3,
+                ranges(&preset) + preset.knobs().filter(fits).count() + units
+            );
         }
     }
 

@@ -6,6 +6,7 @@ use super::suggest::closest;
 use super::text::{is_unsafe, quote};
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::units::parse_quantity;
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -22,6 +23,8 @@ pub enum Value {
     Text(String),
     /// What the loading device prescribes.
     Control(Control),
+    /// A number with its unit, or the stiffness of a control with its own, as typed: the preset's units read it.
+    Typed(String),
     /// The rows of a measured profile, with the name of their file.
     Profile(Arc<Rows>),
 }
@@ -33,7 +36,7 @@ impl Value {
         match self {
             Self::Number(x) => format!("{x:?}"),
             Self::Integer(n) => n.to_string(),
-            Self::Text(text) => toml::Value::String(text.clone()).to_string(),
+            Self::Text(text) | Self::Typed(text) => toml::Value::String(text.clone()).to_string(),
             Self::Profile(rows) => toml::Value::String(rows.name.clone()).to_string(),
             Self::Control(Control::Stiffness(k)) => format!("{{ stiffness = {k:?} }}"),
             Self::Control(other) => format!("\"{other}\""),
@@ -64,7 +67,7 @@ impl Value {
         match self {
             Self::Number(x) => format!("the number {x:?}"),
             Self::Integer(n) => format!("the number {n}"),
-            Self::Text(text) => format!("the text \"{}\"", quote(text)),
+            Self::Text(text) | Self::Typed(text) => format!("the text \"{}\"", quote(text)),
             Self::Profile(rows) => format!("the file \"{}\"", quote(&rows.name)),
             Self::Control(control) => format!("the control {control}"),
         }
@@ -76,7 +79,7 @@ impl fmt::Display for Value {
         match self {
             Self::Number(x) => write!(f, "{x:?}"),
             Self::Integer(n) => write!(f, "{n}"),
-            Self::Text(text) => f.write_str(text),
+            Self::Text(text) | Self::Typed(text) => f.write_str(text),
             Self::Profile(rows) => f.write_str(&rows.name),
             Self::Control(control) => write!(f, "{control}"),
         }
@@ -160,6 +163,8 @@ impl Parameter {
                 }
             }
             (Kind::Control, Value::Control(control)) => Ok(Value::Control(control)),
+            (Kind::Control, Value::Typed(text)) => Ok(Value::Typed(text)),
+            (kind, Value::Text(text) | Value::Typed(text)) if kind.is_number() => self.check_typed(text),
             (Kind::Control, Value::Text(word)) => match word.as_str() {
                 "displacement" => Ok(Value::Control(Control::Displacement)),
                 "force" => Ok(Value::Control(Control::Force)),
@@ -183,6 +188,11 @@ impl Parameter {
         if let (Kind::Control, Ok(stiffness)) = (self.kind, text.parse()) {
             return self.check(Value::Control(Control::Stiffness(stiffness)));
         }
+        let stiffness = text.strip_prefix("stiffness=").unwrap_or(text);
+        if let (Kind::Control, Ok(typed)) = (self.kind, parse_quantity(stiffness)) {
+            let number = Value::Control(Control::Stiffness(typed.number));
+            return self.check(typed.unit.map_or(number, |_| Value::Typed(stiffness.to_owned())));
+        }
         let value = match (self.kind, DeValue::parse(text)) {
             // Text that happens to look like a number is still text.
             (Kind::Text { .. } | Kind::File, Ok(value)) => match value.get_ref() {
@@ -202,6 +212,15 @@ impl Parameter {
 
     pub(super) fn wrong_type(&self, found: String) -> Invalid {
         Invalid::Type { key: self.key.clone(), found, allowed: self.allowed() }
+    }
+
+    /// A text that stands for a number: an expression is one at once, a unit waits for those of the preset.
+    fn check_typed(&self, text: String) -> Result<Value, Invalid> {
+        match parse_quantity(&text) {
+            Ok(value) if value.unit.is_none() => self.check_number(value.number),
+            Ok(_) => Ok(Value::Typed(text)),
+            Err(cause) => Err(self.wrong_type(format!("{}: {cause}", Value::Text(text).described()))),
+        }
     }
 
     fn check_number(&self, x: f64) -> Result<Value, Invalid> {

@@ -4,6 +4,9 @@ use super::family::{self, is_parameter};
 use super::model::Preset;
 use super::schema::{Parameter, parameter};
 use super::shape::is_range;
+use super::value::Value;
+use crate::contact::Control;
+use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 /// The preset as a file.
 ///
@@ -11,21 +14,26 @@ use super::shape::is_range;
 /// follow from the start stands as a comment, so that a file read back is the preset written.
 #[must_use]
 pub fn write(preset: &Preset) -> String {
-    let mut text = String::from("# A pulloff preset. Any consistent units.\n");
+    let mut text = String::from(match preset.units {
+        UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
+        UnitSystem::Si(_) => "# A pulloff preset. Numbers without a unit are SI.\n",
+    });
     let mut table = None;
     for row in preset.rows().filter(|row| !row.is_part() && !is_range(&row.key)) {
         let line = match preset.get(&row.key) {
             Some(value) if is_parameter(&row.key) => {
                 let ranges = family::PARAMETER_KEYS.iter().filter_map(|part| {
                     let value = preset.get(&format!("{}.{part}", row.key))?;
-                    Some(format!(", {part} = {}", value.to_toml()))
+                    Some(format!(", {part} = {}", toml(preset, &row, &value)))
                 });
                 match ranges.collect::<String>().as_str() {
-                    "" => format!("{} = {}", row.name(), value.to_toml()),
-                    ranges => format!("{} = {{ value = {}{ranges} }}", row.name(), value.to_toml()),
+                    "" => format!("{} = {}", row.name(), toml(preset, &row, &value)),
+                    ranges => {
+                        format!("{} = {{ value = {}{ranges} }}", row.name(), toml(preset, &row, &value))
+                    }
                 }
             }
-            Some(value) => format!("{} = {}", row.name(), value.to_toml()),
+            Some(value) => format!("{} = {}", row.name(), toml(preset, &row, &value)),
             None if row.key == "path.end_contact_radius" => {
                 format!("# {} = {}", row.name(), row.fallback_text())
             }
@@ -47,6 +55,25 @@ pub fn write(preset: &Preset) -> String {
     text
 }
 
+/// A value of a row as TOML: in an SI preset as text with the unit in which it is shown, where that reads back as the
+/// very same number.
+fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
+    let text = |quantity, number| {
+        let shown = preset.units.shown(quantity, number);
+        let text = shown.text(&format!("{:?}", shown.number), true);
+        let back = parse_quantity(&text).and_then(|read| read.in_si(quantity, None));
+        (shown.unit.is_some() && back == Ok(number)).then(|| toml::Value::String(text).to_string())
+    };
+    match value {
+        Value::Number(x) => text(row.quantity, *x),
+        Value::Control(Control::Stiffness(k)) => {
+            text(Quantity::ForcePerLength, *k).map(|text| format!("{{ stiffness = {text} }}"))
+        }
+        _ => None,
+    }
+    .unwrap_or_else(|| value.to_toml())
+}
+
 /// What a row means, as a comment; format and title speak for themselves.
 fn comment(row: &Parameter) -> String {
     if row.table().is_none() {
@@ -64,8 +91,8 @@ fn comment(row: &Parameter) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::Shape;
     use crate::contact::Start;
-    use crate::contact::{Control, Shape};
     use crate::preset::model::tests::{any_preset, wavy};
     use crate::preset::read::read;
     use proptest::prelude::*;

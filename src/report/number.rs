@@ -1,5 +1,7 @@
 //! How numbers are written for people.
 
+use crate::units::{Quantity, UnitSystem};
+
 /// `x` with `digits` significant digits: plain where that is short, with an exponent otherwise.
 pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 {
@@ -44,6 +46,19 @@ pub fn difference(x: f64) -> String {
 
 fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// A value of a quantity, in SI or reduced units, as a person sees it: `number` writes it in its display unit, and the
+/// unit stands behind it.
+pub fn with_unit(
+    units: &UnitSystem,
+    quantity: Quantity,
+    x: f64,
+    ascii: bool,
+    number: impl Fn(f64) -> String,
+) -> String {
+    let shown = units.shown(quantity, x);
+    shown.text(&number(shown.number), ascii)
 }
 
 #[cfg(test)]

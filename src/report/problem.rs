@@ -3,14 +3,58 @@
 use crate::case::Case;
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
+use crate::preset::schema::SYSTEMS;
+use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use serde_json::{Map, Value};
+
+/// The units of every number of a document; null where numbers are in reduced units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitsReport {
+    /// `reduced` or `SI`.
+    pub system: &'static str,
+    /// Of radii, approaches and all other lengths.
+    pub length: Option<&'static str>,
+    /// Of forces.
+    pub force: Option<&'static str>,
+    /// Of E* and pressures.
+    pub stress: Option<&'static str>,
+    /// Of the work of adhesion.
+    pub energy_per_area: Option<&'static str>,
+    /// Of potentials and losses.
+    pub energy: Option<&'static str>,
+    /// Of stiffnesses.
+    pub force_per_length: Option<&'static str>,
+    /// The units in which a person sees them.
+    #[serde(skip)]
+    pub shown: UnitSystem,
+}
+
+impl UnitsReport {
+    /// The units of the numbers of `system`.
+    pub fn new(system: &UnitSystem) -> Self {
+        let [reduced, si] = SYSTEMS;
+        let unit = |quantity: Quantity| (*system != UnitSystem::Reduced).then(|| quantity.si()).flatten();
+        Self {
+            system: if *system == UnitSystem::Reduced { reduced } else { si },
+            length: unit(Quantity::Length),
+            force: unit(Quantity::Force),
+            stress: unit(Quantity::Stress),
+            energy_per_area: unit(Quantity::EnergyPerArea),
+            energy: unit(Quantity::Energy),
+            force_per_length: unit(Quantity::ForcePerLength),
+            shown: system.clone(),
+        }
+    }
+}
 
 /// The problem of a document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ProblemReport {
     /// Every key of the preset with its value, defaults filled in.
     pub preset: Map<String, Value>,
+    /// The units of every number in the document.
+    pub units: UnitsReport,
     /// The contact radius at the start, resolved.
     pub start_contact_radius: f64,
     /// The contact radius at the end, resolved.
@@ -26,6 +70,7 @@ impl ProblemReport {
     pub fn new(preset: &Preset, case: &Case) -> Self {
         Self {
             preset: document(preset),
+            units: UnitsReport::new(&preset.units),
             start_contact_radius: case.start * case.units().length,
             end_contact_radius: case.end * case.units().length,
             groups: Groups::of(&case.problem),
@@ -79,7 +124,7 @@ fn json_value(value: &crate::preset::Value) -> Value {
     match value {
         Preset::Number(x) => Value::from(*x),
         Preset::Integer(n) => Value::from(*n),
-        Preset::Text(text) => Value::from(text.as_str()),
+        Preset::Text(text) | Preset::Typed(text) => Value::from(text.as_str()),
         Preset::Profile(rows) => Value::from(rows.name.as_str()),
         Preset::Control(control) => control_json(*control),
     }

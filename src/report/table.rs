@@ -1,8 +1,10 @@
 //! An unloading and a verification as text for a terminal.
 
-use super::number::{difference, loss, short, significant};
+use super::number::{difference, loss, short, significant, with_unit};
 use super::unload::{EventReport, UnloadReport};
 use super::verify::{RowReport, VerifyReport};
+use crate::contact::Control;
+use crate::units::{Quantity, UnitSystem};
 use std::fmt::Write;
 
 /// Aligns cells in columns, the first `left` of them left and the others right; a line for each row.
@@ -33,14 +35,23 @@ fn aligned(rows: &[Vec<String>], left: usize) -> String {
 pub fn unload(report: &UnloadReport) -> String {
     let critical = report.problem.critical_force;
     let title = report.problem.preset.get("title").and_then(|t| t.as_str()).unwrap_or("");
-    let mut text = format!("{title}\ncontrol: {}\n", report.control);
+    let units = &report.problem.units.shown;
+    let control = match report.control {
+        Control::Stiffness(k) => {
+            format!("stiffness={}", ascii_unit(units, Quantity::ForcePerLength, k, |k| k.to_string()))
+        }
+        other => other.to_string(),
+    };
+    let length = |x| ascii_unit(units, Quantity::Length, x, |x| significant(x, 6));
+    let force = |x| ascii_unit(units, Quantity::Force, x, |x| significant(x, 6));
+    let mut text = format!("{title}\ncontrol: {control}\n");
     let start = &report.start;
     let _ = writeln!(
         text,
         "start: delta {}  P {}  s {}",
-        significant(start.approach, 6),
-        significant(start.force, 6),
-        significant(start.contact_radius, 6)
+        length(start.approach),
+        force(start.force),
+        length(start.contact_radius)
     );
     if let Some(note) = &start.note {
         let _ = writeln!(text, "note: {note}");
@@ -52,9 +63,24 @@ pub fn unload(report: &UnloadReport) -> String {
     if report.events.is_empty() {
         text.push_str("no instabilities\n");
     }
-    let heads = ["#", "event", "delta", "> delta", "P", "> P", "s", "> s", "crest", "lost", "by area"];
-    let mut rows = vec![heads.map(str::to_owned).to_vec()];
-    rows.extend(report.events.iter().enumerate().map(|(i, event)| row(i + 1, event)));
+    let head = |name: &str, quantity| match units.unit(quantity) {
+        Some(unit) => format!("{name} [{}]", unit.ascii()),
+        None => name.to_owned(),
+    };
+    let mut rows = vec![vec![
+        "#".to_owned(),
+        "event".to_owned(),
+        head("delta", Quantity::Length),
+        "> delta".to_owned(),
+        head("P", Quantity::Force),
+        "> P".to_owned(),
+        head("s", Quantity::Length),
+        "> s".to_owned(),
+        "crest".to_owned(),
+        head("lost", Quantity::Energy),
+        "by area".to_owned(),
+    ]];
+    rows.extend(report.events.iter().enumerate().map(|(i, event)| row(units, i + 1, event)));
     if rows.len() > 1 {
         text.push_str(&aligned(&rows, 2));
     }
@@ -66,13 +92,18 @@ pub fn unload(report: &UnloadReport) -> String {
     let _ = writeln!(
         text,
         "\nsmallest force on the path: {}{}",
-        significant(report.min_force, 7),
+        ascii_unit(units, Quantity::Force, report.min_force, |x| significant(x, 7)),
         ratio(report.min_force, critical)
     );
-    let _ = writeln!(text, "smallest approach on the path: {}", significant(report.min_approach, 7));
+    let smallest = ascii_unit(units, Quantity::Length, report.min_approach, |x| significant(x, 7));
+    let _ = writeln!(text, "smallest approach on the path: {smallest}");
     let unbounded = report.events.iter().any(|event| event.dissipated.is_none());
     let more = if unbounded { ", and without bound in the pull-off" } else { "" };
-    let _ = writeln!(text, "energy lost: {}{more}", loss(report.total_dissipated));
+    let _ = writeln!(
+        text,
+        "energy lost: {}{more}",
+        ascii_unit(units, Quantity::Energy, report.total_dissipated, loss)
+    );
     let _ = writeln!(text, "end: {}", report.stop);
     for event in report.events.iter().filter(|event| event.dissipated.is_none()) {
         let _ = writeln!(text, "{}: {}", event.kind, event.reason);
@@ -85,27 +116,35 @@ fn ratio(force: f64, critical: Option<f64>) -> String {
     critical.map_or_else(String::new, |critical| format!(" = {} P_c", short(force / critical, 6)))
 }
 
-fn row(number: usize, event: &EventReport) -> Vec<String> {
+/// A number with its unit in ASCII: a table may go anywhere.
+fn ascii_unit(units: &UnitSystem, quantity: Quantity, x: f64, number: impl Fn(f64) -> String) -> String {
+    with_unit(units, quantity, x, true, number)
+}
+
+fn row(units: &UnitSystem, number: usize, event: &EventReport) -> Vec<String> {
     let (before, after) = (&event.before, event.after.as_ref());
     let dash = || "-".to_owned();
-    let landed =
-        |of: fn(&super::unload::StateReport) -> f64| after.map_or_else(dash, |a| significant(of(a), 5));
+    let number_in = |quantity, x| significant(units.shown(quantity, x).number, 5);
+    let lost = |x| loss(units.shown(Quantity::Energy, x).number);
+    let landed = |quantity, of: fn(&super::unload::StateReport) -> f64| {
+        after.map_or_else(dash, |a| number_in(quantity, of(a)))
+    };
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
     let agreement = match event.losses_agree() {
         Some(true) => "agrees".to_owned(),
-        _ => event.dissipated_by_area.map_or_else(dash, loss),
+        _ => event.dissipated_by_area.map_or_else(dash, lost),
     };
     vec![
         number.to_string(),
         if event.admissible == Some(false) { format!("{} !", event.kind) } else { event.kind.to_owned() },
-        significant(before.approach, 5),
-        landed(|a| a.approach),
-        significant(before.force, 5),
-        landed(|a| a.force),
-        significant(before.contact_radius, 5),
-        landed(|a| a.contact_radius),
+        number_in(Quantity::Length, before.approach),
+        landed(Quantity::Length, |a| a.approach),
+        number_in(Quantity::Force, before.force),
+        landed(Quantity::Force, |a| a.force),
+        number_in(Quantity::Length, before.contact_radius),
+        landed(Quantity::Length, |a| a.contact_radius),
         format!("{}>{}", crest(before.wave), crest(after.and_then(|a| a.wave))),
-        event.dissipated.map_or_else(dash, loss),
+        event.dissipated.map_or_else(dash, lost),
         agreement,
     ]
 }

@@ -133,6 +133,19 @@ impl Quantity {
         }
     }
 
+    /// Its unit in SI; a pure number has none.
+    pub fn si(self) -> Option<&'static str> {
+        match self {
+            Self::Length => Some("m"),
+            Self::Force => Some("N"),
+            Self::Stress => Some("Pa"),
+            Self::EnergyPerArea => Some("J/m^2"),
+            Self::Energy => Some("J"),
+            Self::ForcePerLength => Some("N/m"),
+            Self::Number => None,
+        }
+    }
+
     /// A unit of it for a message; a pure number has none.
     pub fn example(self) -> Option<&'static str> {
         match self {

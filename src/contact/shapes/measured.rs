@@ -1,6 +1,7 @@
 //! A measured profile together with the file it came from.
 
 use super::profile::{InvalidProfile, Profile, Smoothing};
+use crate::units::{Quantity, Unit};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -15,8 +16,30 @@ pub struct Rows {
     pub radii: Vec<f64>,
     /// h.
     pub gaps: Vec<f64>,
+    /// The unit of both, where the file names one.
+    pub unit: Option<Unit>,
     /// What was put right, in words.
     pub notes: Vec<String>,
+}
+
+impl Rows {
+    /// The rows in metres; those without a unit are taken to be.
+    #[must_use]
+    pub fn in_metres(self: Arc<Self>) -> Arc<Self> {
+        let Some(unit) = self.unit.as_ref().filter(|unit| unit.dimension() == Quantity::Length.dimension())
+        else {
+            return self;
+        };
+        let scaled = |column: &[f64]| column.iter().map(|x| unit.to_si(*x)).collect();
+        Arc::new(Self {
+            radii: scaled(&self.radii),
+            gaps: scaled(&self.gaps),
+            unit: None,
+            name: self.name.clone(),
+            folder: self.folder.clone(),
+            notes: self.notes.clone(),
+        })
+    }
 }
 
 impl PartialEq for Rows {
