@@ -58,7 +58,7 @@ pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
 }
 
 /// The inadmissible parts, over the curve: whether they are stable is still seen beneath.
-pub fn inadmissible(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;
     let lines = subject.curve.sweep.inadmissible.iter().flatten().map(|part| {
         let points = part.places.iter().map(|at| scale.place(view, *at));
@@ -68,7 +68,7 @@ pub fn inadmissible(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
 }
 
 /// The line of the loading device, where it is shown; it has no radius.
-fn device(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+fn device(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     if let (View::ForceApproach, Some(ends)) = (figure.view, subject.device) {
         let points = ends.map(|(approach, force)| scale.place(figure.view, [approach, force, 0.0]));
         figure.lines.push(Line::new(Role::Device, "device", points.to_vec()));
@@ -76,7 +76,7 @@ fn device(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
 }
 
 /// The overlays that are on and exist, and what the envelope says.
-fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+fn theory(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let theory = &subject.curve.sweep.theory;
     let view = figure.view;
     let line = |role, name: &str, places: &[[f64; 3]]| {
@@ -108,7 +108,8 @@ fn theory(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
 fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for pin in subject.pins {
-        let scale = Scale::of(&pin.curve, subject.axes);
+        // On the axes of the curve that is not pinned.
+        let scale = Scale { units: subject.scale().units, ..Scale::of(&pin.curve, subject.axes) };
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(figure.view, place(point))).collect();
         all.extend(points.iter().copied());
@@ -118,7 +119,7 @@ fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
 }
 
 /// The limit points of the control and of the others, and the pull-off.
-fn limit_marks(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let curve = subject.curve;
     let (equilibrium, units) = (&curve.sweep.curve.equilibrium, curve.setting.case.units());
     let view = figure.view;

@@ -84,7 +84,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The divisors of the axes.
-    pub fn scale(&self) -> Scale {
+    pub fn scale(&self) -> Scale<'a> {
         Scale::of(self.curve, self.axes)
     }
 

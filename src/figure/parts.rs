@@ -102,6 +102,20 @@ pub struct Axis {
     pub symbol: String,
     /// Its dimension in words; empty for a pure number.
     pub unit: &'static str,
+    /// The unit of its values where the problem is in SI; empty elsewhere.
+    pub shown: String,
+}
+
+impl Axis {
+    /// An axis of a pure number.
+    pub fn pure(symbol: String) -> Self {
+        Self { symbol, unit: "", shown: String::new() }
+    }
+
+    /// What stands beside the axis: `δ (µm)`, `P/Pc`.
+    pub fn title(&self) -> String {
+        if self.shown.is_empty() { self.symbol.clone() } else { format!("{} ({})", self.symbol, self.shown) }
+    }
 }
 
 /// A figure: everything a renderer needs but strokes, letters and colours.

@@ -5,7 +5,8 @@ use super::bounds::Bounds;
 use super::curves::place;
 use super::parts::Axis;
 use crate::explorer::View;
-use crate::report::number::significant;
+use crate::report::number::{significant, with_unit};
+use crate::units::{Quantity, UnitSystem};
 
 /// The state of the curve nearest to a point of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +25,13 @@ pub struct Nearest {
 
 impl Nearest {
     /// The state in words.
-    pub fn text(&self) -> String {
+    pub fn text(&self, units: &UnitSystem) -> String {
+        let shown = |quantity, x| with_unit(units, quantity, x, false, |x| significant(x, 5));
         format!(
             "δ {} P {} s {} {}",
-            significant(self.approach, 5),
-            significant(self.force, 5),
-            significant(self.contact_radius, 5),
+            shown(Quantity::Length, self.approach),
+            shown(Quantity::Force, self.force),
+            shown(Quantity::Length, self.contact_radius),
             if self.stable { "stable" } else { "unstable" }
         )
     }
@@ -69,5 +71,5 @@ pub fn coordinates(bounds: &Bounds, [x, y]: [&Axis; 2], at: (f64, f64)) -> Strin
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         significant(value, digits as usize)
     };
-    format!("{} {}, {} {}", x.symbol, shown(bounds.x, at.0), y.symbol, shown(bounds.y, at.1))
+    format!("{} {}, {} {}", x.title(), shown(bounds.x, at.0), y.title(), shown(bounds.y, at.1))
 }

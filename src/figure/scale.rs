@@ -3,35 +3,42 @@
 use super::parts::Axis;
 use crate::contact::Gap;
 use crate::explorer::{Axes, CurveData, View};
+use crate::units::{Quantity, UnitSystem};
 
 /// The divisors of the axes; without adhesion there is no `P_c`, without waves no λ, and those axes stay raw.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub struct Scale<'a> {
     /// `P_c`.
     pub force: Option<f64>,
     /// λ.
     pub wave: Option<f64>,
     /// E*.
     pub modulus: Option<f64>,
+    /// The units in which the other axes are shown.
+    pub units: &'a UnitSystem,
 }
 
-impl Scale {
+impl<'a> Scale<'a> {
     /// The divisors for `curve`.
-    pub fn of(curve: &CurveData, axes: Axes) -> Self {
+    pub fn of(curve: &'a CurveData, axes: Axes) -> Self {
+        let units = &curve.setting.preset.units;
         if axes == Axes::Raw {
-            return Self { force: None, wave: None, modulus: None };
+            return Self { force: None, wave: None, modulus: None, units };
         }
         let problem = &curve.setting.case.problem;
         Self {
             force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
             wave: problem.shape.feature_length(),
             modulus: Some(problem.effective_modulus),
+            units,
         }
     }
 
     /// The place of δ, P and s (in the user's units) in a view of the curve.
     pub fn place(self, view: View, [approach, force, radius]: [f64; 3]) -> (f64, f64) {
-        let force = force / self.force.unwrap_or(1.0);
+        let approach = self.shown(Quantity::Length, approach);
+        let force =
+            self.force.map_or_else(|| self.shown(Quantity::Force, force), |critical| force / critical);
         let radius = self.radius(radius);
         match view {
             View::RadiusForce => (force, radius),
@@ -42,48 +49,59 @@ impl Scale {
 
     /// A radius on its axis.
     pub fn radius(self, r: f64) -> f64 {
-        r / self.wave.unwrap_or(1.0)
+        self.wave.map_or_else(|| self.shown(Quantity::Length, r), |wave| r / wave)
     }
 
     /// A pressure on its axis.
     pub fn pressure(self, p: f64) -> f64 {
-        p / self.modulus.unwrap_or(1.0)
+        self.modulus.map_or_else(|| self.shown(Quantity::Stress, p), |modulus| p / modulus)
     }
 
     /// The axes of a view of the curve: x, then y.
     pub fn axes(self, view: View) -> [Axis; 2] {
         match view {
             View::RadiusForce => [self.force_axis(), self.radius_axis("s")],
-            View::RadiusApproach => [length("δ"), self.radius_axis("s")],
-            _ => [length("δ"), self.force_axis()],
+            View::RadiusApproach => [self.length("δ"), self.radius_axis("s")],
+            _ => [self.length("δ"), self.force_axis()],
         }
     }
 
     /// The axis of a radius of this name.
     pub fn radius_axis(self, name: &str) -> Axis {
         match self.wave {
-            Some(_) => Axis { symbol: format!("{name}/λ"), unit: "" },
-            None => length(name),
+            Some(_) => Axis::pure(format!("{name}/λ")),
+            None => self.length(name),
         }
     }
 
     /// The axis of the pressure.
     pub fn pressure_axis(self) -> Axis {
         match self.modulus {
-            Some(_) => Axis { symbol: "p/E*".to_owned(), unit: "" },
-            None => Axis { symbol: "p".to_owned(), unit: "stress" },
+            Some(_) => Axis::pure("p/E*".to_owned()),
+            None => self.axis("p", "stress", Quantity::Stress),
         }
     }
 
     fn force_axis(self) -> Axis {
         match self.force {
-            Some(_) => Axis { symbol: "P/Pc".to_owned(), unit: "" },
-            None => Axis { symbol: "P".to_owned(), unit: "force" },
+            Some(_) => Axis::pure("P/Pc".to_owned()),
+            None => self.axis("P", "force", Quantity::Force),
         }
     }
-}
 
-/// The axis of a length of this name.
-pub fn length(name: &str) -> Axis {
-    Axis { symbol: name.to_owned(), unit: "length" }
+    /// The axis of a length of this name.
+    pub fn length(self, name: &str) -> Axis {
+        self.axis(name, "length", Quantity::Length)
+    }
+
+    /// The axis of a quantity that is divided by nothing.
+    pub fn axis(self, symbol: &str, unit: &'static str, quantity: Quantity) -> Axis {
+        let shown = self.units.unit(quantity).map_or_else(String::new, ToString::to_string);
+        Axis { symbol: symbol.to_owned(), unit, shown }
+    }
+
+    /// A value on an axis that is divided by nothing.
+    pub fn shown(self, quantity: Quantity, x: f64) -> f64 {
+        self.units.shown(quantity, x).number
+    }
 }

@@ -3,7 +3,7 @@
 //! Where the start is not given as a contact radius, nothing says how large the disc is without solving: then the gap is
 //! drawn over its own length.
 
-use super::{Axis, Bounds, Figure, Line, Mark, Role, Sign, View};
+use super::{Bounds, Figure, Line, Mark, Role, Scale, Sign, View};
 use crate::contact::{Gap, Start};
 use crate::preset::Preset;
 
@@ -14,20 +14,22 @@ const BEYOND: f64 = 1.5;
 
 /// The undeformed gap of `preset` in its own units.
 pub fn undeformed(preset: &Preset) -> Figure {
-    let axis = |symbol: &str| Axis { symbol: symbol.to_owned(), unit: "length" };
-    let mut figure = Figure::empty(View::Gap, preset.gap.name().to_owned(), axis("r"), axis("h"));
+    let scale = Scale { force: None, wave: None, modulus: None, units: &preset.units };
+    let name = preset.gap.name().to_owned();
+    let mut figure = Figure::empty(View::Gap, name, scale.length("r"), scale.length("h"));
     let disc = match preset.path.start {
         Start::ContactRadius(s) => Some(s),
         Start::Approach(_) | Start::Force(_) => None,
     };
     let end = disc.map_or_else(|| preset.gap.reference_length(), |s| BEYOND * s);
+    let shown_end = scale.radius(end);
     let points: Vec<(f64, f64)> = (0..=POINTS)
         .map(|i| end * f64::from(i) / f64::from(POINTS))
-        .map(|r| (r, preset.gap.jet(r).value))
+        .map(|r| (scale.radius(r), scale.radius(preset.gap.jet(r).value)))
         .collect();
-    figure.bounds = Bounds::of(points.iter().copied().chain([(0.0, 0.0), (end, 0.0)]));
+    figure.bounds = Bounds::of(points.iter().copied().chain([(0.0, 0.0), (shown_end, 0.0)]));
     figure.lines.push(Line::new(Role::Body, "", points));
-    if let Some(s) = disc {
+    if let Some(s) = disc.map(|s| scale.radius(s)) {
         figure.lines.push(Line::new(Role::Contact, "", vec![(0.0, 0.0), (s, 0.0)]));
         figure.marks.push(Mark { sign: Sign::Edge, at: (s, 0.0) });
     }

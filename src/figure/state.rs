@@ -3,13 +3,14 @@
 use super::Subject;
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
-use super::scale::{Scale, length};
+use super::scale::Scale;
 use crate::contact::Control;
 use crate::explorer::View;
 use crate::explorer::profile::Inside;
 use crate::quasistatic::landscape::Stationary;
 use crate::quasistatic::profile::Outside;
-use crate::report::number::{loss, significant};
+use crate::report::number::{loss, significant, with_unit};
+use crate::units::Quantity;
 
 /// The pressure grows without bound at an adhesive edge: the whole is fitted to the disc up to this share of its
 /// radius.
@@ -22,8 +23,8 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let scale = subject.scale();
     let (x, y) = match view {
         View::Pressure => (scale.radius_axis("r"), scale.pressure_axis()),
-        View::Gap => (scale.radius_axis("r"), length("gap")),
-        _ => (scale.radius_axis("s"), potential_axis(subject.curve.setting.case.control)),
+        View::Gap => (scale.radius_axis("r"), scale.length("gap")),
+        _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.setting.case.control)),
     };
     let mut figure = Figure::empty(view, format!("{} over {}", y.symbol, x.symbol), x, y);
     let Some(inside) = subject.inside else {
@@ -46,18 +47,18 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
 }
 
 /// What is smallest at a stable state when the control is held.
-fn potential_axis(control: Control) -> Axis {
+fn potential_axis(scale: Scale<'_>, control: Control) -> Axis {
     let symbol = match control {
         Control::Displacement => "U",
         Control::Force => "U-Pδ",
         Control::Stiffness(_) => "U+k(Δ-δ)²/2",
     };
-    Axis { symbol: symbol.to_owned(), unit: "energy" }
+    scale.axis(symbol, "energy", Quantity::Energy)
 }
 
 /// A state on its axes.
 struct Drawing<'a> {
-    scale: Scale,
+    scale: Scale<'a>,
     inside: &'a Inside,
 }
 
@@ -98,7 +99,11 @@ impl Drawing<'_> {
         let (edge, length) = (self.edge(), self.inside.units.length);
         let profile = &self.inside.profile;
         let line = |value: &dyn Fn(&Outside) -> f64| -> Vec<(f64, f64)> {
-            profile.outside.iter().map(|at| (self.radius(at.radius), value(at) * length)).collect()
+            profile
+                .outside
+                .iter()
+                .map(|at| (self.radius(at.radius), self.scale.shown(Quantity::Length, value(at) * length)))
+                .collect()
         };
         let deformed = line(&|at| at.gap);
         // As far above the other body as it would be undeformed, at the same approach.
@@ -128,7 +133,9 @@ impl Drawing<'_> {
             return;
         };
         // Counted from the present state.
-        let place = |s: f64, potential: f64| (self.radius(s), potential * self.inside.units.energy);
+        let place = |s: f64, potential: f64| {
+            (self.radius(s), self.scale.shown(Quantity::Energy, potential * self.inside.units.energy))
+        };
         let points: Vec<(f64, f64)> =
             landscape.points.iter().map(|at| place(at.contact_radius, at.potential)).collect();
         let here = place(landscape.present, 0.0);
@@ -141,7 +148,10 @@ impl Drawing<'_> {
         if let Some(height) = self.inside.barrier {
             let above = |at: &&Stationary| !at.stable && at.potential.total_cmp(&height).is_eq();
             let top = landscape.stationary.iter().find(above);
-            figure.notes.push(format!("barrier {}", loss(height * self.inside.units.energy)));
+            figure.notes.push(format!(
+                "barrier {}",
+                with_unit(self.scale.units, Quantity::Energy, height * self.inside.units.energy, false, loss)
+            ));
             if let Some(top) = top {
                 let top = place(top.contact_radius, top.potential);
                 figure.lines.push(Line::new(Role::Barrier, "height", vec![here, (top.0, here.1), top]));

@@ -4,6 +4,7 @@ use super::*;
 use crate::case::Case;
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
 use crate::preset::Store;
+use crate::units::UnitSystem;
 
 /// A session with every effect done inline, and room for every view.
 struct Session {
@@ -196,7 +197,7 @@ fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
     let at = subject.scale().place(View::ForceApproach, [point.approach, point.force, point.contact_radius]);
     let found = nearest(&subject, View::ForceApproach, &figure.bounds, at).unwrap();
     assert_eq!((found.at, found.contact_radius), (at, point.contact_radius));
-    assert!(found.text().contains("stable"));
+    assert!(found.text(&UnitSystem::Reduced).contains("stable"));
     assert!(nearest(&subject, View::Pressure, &figure.bounds, at).is_none());
     let axes = [&figure.x, &figure.y];
     let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [-1.0, 1.0] };

@@ -14,7 +14,8 @@ use crate::contact::{Control, Units};
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::{CurveData, View};
 use crate::quasistatic::{Event, State};
-use crate::report::number::loss;
+use crate::report::number::{loss, with_unit};
+use crate::units::Quantity;
 
 const VIEW: View = View::Unloading;
 
@@ -55,7 +56,9 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let bounded = figure.areas.len() == unloading.events.len();
     if !unloading.events.is_empty() {
         let all = if bounded { "" } else { " and the fall" };
-        figure.notes.push(format!("lost {}{all}", loss(lost)));
+        figure
+            .notes
+            .push(format!("lost {}{all}", with_unit(scale.units, Quantity::Energy, lost, false, loss)));
     }
     figure
 }
@@ -63,7 +66,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 /// What is needed to follow the curve between two of its states.
 struct Path<'a> {
     curve: &'a CurveData,
-    scale: Scale,
+    scale: Scale<'a>,
     units: Units,
 }
 

@@ -26,7 +26,11 @@ pub fn quantities(state: &State) -> [f64; 3] {
 }
 
 /// The limit points of the quasi-static path, as marks.
-pub fn events_before<'a>(subject: &Subject<'a>, scale: Scale, view: View) -> impl Iterator<Item = Mark> + 'a {
+pub fn events_before<'a>(
+    subject: &Subject<'a>,
+    scale: Scale<'a>,
+    view: View,
+) -> impl Iterator<Item = Mark> + 'a {
     let units = *subject.curve.setting.case.units();
     let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
     events.map(move |event| {
@@ -36,7 +40,7 @@ pub fn events_before<'a>(subject: &Subject<'a>, scale: Scale, view: View) -> imp
 }
 
 /// Adds the walk to a view of the curve; the walker is the last mark.
-pub fn walk(subject: &Subject<'_>, scale: Scale, figure: &mut Figure) {
+pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;
     let place = |node: &Node, state: &State| {
         scale.place(view, quantities(&state.in_units(node.setting.case.units())))

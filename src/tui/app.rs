@@ -5,6 +5,7 @@ mod gap;
 use super::keymap;
 use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
+use crate::contact::Control;
 use crate::explorer::files::Document;
 use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
@@ -12,7 +13,9 @@ use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer,
 use crate::figure::Subject;
 use crate::preset::schema::Kind;
 use crate::preset::text::sanitize;
-use crate::preset::{Loaded, Source};
+use crate::preset::{Loaded, Source, Value};
+use crate::report::number::with_unit;
+use crate::units::Quantity;
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::backend::crossterm::EventHandler;
 
@@ -290,13 +293,20 @@ impl App {
             (_, Kind::File) => return self.run(Command::Browse(None)),
             _ => {}
         }
-        let text = value.map_or_else(String::new, |value| value.to_string());
-        self.prompt(
-            &format!("{}: {}", row.label, row.meaning),
-            &row.allowed(),
-            text,
-            Purpose::Value(row.key.clone()),
-        )
+        let units = &self.model.preset.units;
+        let text = value.map_or_else(String::new, |value| match value {
+            // With its unit, which holds for a bare number typed instead of it too.
+            Value::Number(x) => with_unit(units, row.quantity, x, true, |x| format!("{x:?}")),
+            Value::Control(Control::Stiffness(k)) => {
+                with_unit(units, Quantity::ForcePerLength, k, true, |k| format!("stiffness={k}"))
+            }
+            other => other.to_string(),
+        });
+        let note = match units.unit(row.quantity) {
+            Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
+            None => row.allowed(),
+        };
+        self.prompt(&format!("{}: {}", row.label, row.meaning), &note, text, Purpose::Value(row.key.clone()))
     }
 
     fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {

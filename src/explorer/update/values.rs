@@ -183,7 +183,7 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let mut preset = model.untried.as_deref().unwrap_or(&model.preset).clone();
     let Some(row) = preset.row(key) else { return Vec::new() };
-    let result = match row.parse(text) {
+    let result = match preset.typed(&row, text) {
         // A file is read by those who may wait for it.
         Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, name)],
         value => value.and_then(|value| preset.set(key, value)),

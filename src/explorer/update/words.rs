@@ -4,8 +4,9 @@ use crate::explorer::command::Id;
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::model::Model;
 use crate::quasistatic::EventKind;
-use crate::report::number::{loss, significant};
+use crate::report::number::{loss, significant, with_unit};
 use crate::report::unload::{StateReport, control_name};
+use crate::units::Quantity;
 
 /// Why a command cannot be done now.
 pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
@@ -44,7 +45,12 @@ pub fn hint(model: &Model) -> String {
     let Some(control) = model.control() else { return String::new() };
     if let NodeKind::Jump(event) = &node.kind {
         let units = node.setting.case.units();
-        let lost = event.dissipated.map(|lost| format!(", lost {}", loss(lost * units.energy)));
+        let lost = event.dissipated.map(|lost| {
+            format!(
+                ", lost {}",
+                with_unit(&node.setting.preset.units, Quantity::Energy, lost * units.energy, false, loss)
+            )
+        });
         return match event.kind {
             EventKind::PullOff => {
                 format!(
@@ -97,9 +103,19 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let lands = match (after, after.and_then(|after| after.wave)) {
         (None, _) => "pulls off".to_owned(),
         (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
-        (Some(after), None) => format!("jumps to s {}", significant(after.contact_radius, 4)),
+        (Some(after), None) => format!(
+            "jumps to s {}",
+            with_unit(&node.setting.preset.units, Quantity::Length, after.contact_radius, false, |s| {
+                significant(s, 4)
+            })
+        ),
     };
-    let lost = ahead.dissipated.map(|lost| format!(" (loses {})", loss(lost * case.units().energy)));
+    let lost = ahead.dissipated.map(|lost| {
+        format!(
+            " (loses {})",
+            with_unit(&node.setting.preset.units, Quantity::Energy, lost * case.units().energy, false, loss)
+        )
+    });
     // The edge runs over the unstable part: walking the same way leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };

@@ -62,7 +62,7 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
     Chart {
         title: format!("{}{zoom}", figure.title),
         note: figure.notes.join(", "),
-        x_title: figure.x.symbol.clone(),
+        x_title: figure.x.title(),
         areas: figure.areas.iter().map(|area| area.outline.clone()).collect(),
         series: figure
             .lines

@@ -3,9 +3,10 @@
 use super::{is_selected, panel};
 use crate::explorer::{EventSource, Inadmissible, Model, Panel};
 use crate::report::OverlapReport;
-use crate::report::number::{fixed, loss, significant};
+use crate::report::number::{fixed, loss, significant, with_unit};
 use crate::report::unload::EventReport;
 use crate::tui::app::App;
+use crate::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Style;
@@ -20,7 +21,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let events = model.shown_events();
     let selected = is_selected(app, Panel::Events);
-    let title = title(model);
+    let title = theme.text(&title(model));
     let room = usize::from(area.width).saturating_sub(title.chars().count() + 3);
     let block = panel(theme, &title, selected)
         .title_top(Line::styled(theme.text(&headline(model, room)), theme.strong()).right_aligned());
@@ -41,7 +42,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let here = here(model, &events);
     let hidden = count.saturating_sub(first + rows);
     let texts = events.iter().enumerate().map(|(i, event)| {
-        let mut text = row(i + 1, event, critical, wide);
+        let mut text = row(&model.preset.units, i + 1, event, critical, wide);
         if event.admissible == Some(false) {
             text.push_str(" !");
         }
@@ -90,16 +91,25 @@ fn here(model: &Model, events: &[EventReport]) -> Option<usize> {
 fn title(model: &Model) -> String {
     let on_curve = model.curve.as_ref().and_then(|c| c.report.as_ref()).map_or(0, |r| r.events.len());
     let walked = model.walked_events().len();
+    let units = &model.preset.units;
+    let named = [Quantity::Length, Quantity::Force, Quantity::Energy].map(|quantity| units.unit(quantity));
+    let named: Vec<String> = named.into_iter().flatten().map(ToString::to_string).collect();
+    let units = if named.is_empty() { String::new() } else { format!(" in {}", named.join(", ")) };
     match model.events {
-        EventSource::Curve => format!("Events on the curve: {on_curve} (v: walked {walked})"),
-        EventSource::Walked => format!("Events walked: {walked} (v: on the curve {on_curve})"),
+        EventSource::Curve => format!("Events on the curve: {on_curve}{units} (v: walked {walked})"),
+        EventSource::Walked => format!("Events walked: {walked}{units} (v: on the curve {on_curve})"),
     }
 }
 
 /// Pull-off and total loss, as much of it as there is room for.
 fn headline(model: &Model, room: usize) -> String {
     let Some(curve) = &model.curve else { return String::new() };
-    let lost = |total: f64, bounded: bool| format!("lost {}{}", loss(total), if bounded { "" } else { "+" });
+    let units = &model.preset.units;
+    let lost = |total: f64, bounded: bool| {
+        let total = with_unit(units, Quantity::Energy, total, false, loss);
+        format!("lost {total}{}", if bounded { "" } else { "+" })
+    };
+    let shown = |quantity, x| with_unit(units, quantity, x, false, |x| significant(x, 4));
     if model.events == EventSource::Walked {
         let events = model.walked_events();
         let total = events.iter().filter_map(|(_, e)| e.dissipated).fold(0.0, |a, b| a + b);
@@ -109,12 +119,12 @@ fn headline(model: &Model, room: usize) -> String {
     let force = if curve.sweep.critical_force > 0.0 {
         format!("{} Pc", significant(report.min_force / curve.sweep.critical_force, 4))
     } else {
-        significant(report.min_force, 4)
+        shown(Quantity::Force, report.min_force)
     };
     let bounded = report.events.iter().all(|e| e.dissipated.is_some());
     let parts = [
         format!("least P {force}"),
-        format!("least δ {}", significant(report.min_approach, 4)),
+        format!("least δ {}", shown(Quantity::Length, report.min_approach)),
         lost(report.total_dissipated, bounded),
     ];
     let [force, _, lost] = &parts;
@@ -143,36 +153,44 @@ fn heads(wide: bool) -> &'static str {
     }
 }
 
-fn row(number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
+fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
+    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let energy = |x| loss(units.shown(Quantity::Energy, x).number);
     let dash = || "-".to_owned();
     let after = event.after.as_ref();
-    let force = |p: f64| if critical > 0.0 { fixed(p / critical, 3) } else { significant(p, 3) };
+    let force = |p: f64| {
+        if critical > 0.0 {
+            fixed(p / critical, 3)
+        } else {
+            significant(units.shown(Quantity::Force, p).number, 3)
+        }
+    };
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
     let crests = format!("{}>{}", crest(event.before.wave), crest(after.and_then(|a| a.wave)));
-    let lost = event.dissipated.map_or_else(|| "no bound".to_owned(), loss);
+    let lost = event.dissipated.map_or_else(|| "no bound".to_owned(), energy);
     let before = &event.before;
     let landed_force = after.map_or_else(dash, |a| force(a.force));
     if !wide {
         return format!(
             "{number:>3} {:>10} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {}",
-            significant(before.approach, 4),
+            length(before.approach),
             force(before.force),
-            significant(before.contact_radius, 4),
-            after.map_or_else(dash, |a| significant(a.contact_radius, 4)),
+            length(before.contact_radius),
+            after.map_or_else(dash, |a| length(a.contact_radius)),
             event.kind,
         );
     }
     let agreement = match event.losses_agree() {
         Some(true) => "agrees".to_owned(),
-        _ => event.dissipated_by_area.map_or_else(|| "dead load".to_owned(), loss),
+        _ => event.dissipated_by_area.map_or_else(|| "dead load".to_owned(), energy),
     };
     format!(
         "{number:>2} {:<8} {:>9} {:>9} {:>9} {:>9} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {agreement}",
         event.kind,
-        significant(before.approach, 4),
-        after.map_or_else(dash, |a| significant(a.approach, 4)),
-        significant(before.force, 4),
-        after.map_or_else(dash, |a| significant(a.force, 4)),
+        length(before.approach),
+        after.map_or_else(dash, |a| length(a.approach)),
+        significant(units.shown(Quantity::Force, before.force).number, 4),
+        after.map_or_else(dash, |a| significant(units.shown(Quantity::Force, a.force).number, 4)),
         force(before.force),
         significant(before.contact_radius, 5),
         after.map_or_else(dash, |a| significant(a.contact_radius, 5)),

@@ -2,8 +2,9 @@
 
 use crate::contact::Control;
 use crate::explorer::{Axes, Model};
-use crate::report::number::significant;
+use crate::report::number::{significant, with_unit};
 use crate::tui::app::App;
+use crate::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -32,7 +33,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if model.is_unsaved() {
         spans.push(Span::styled(" * unsaved", theme.error()));
     }
-    let control = model.preset.path.control.to_string().to_uppercase();
+    let control = match model.preset.path.control {
+        Control::Stiffness(k) => {
+            let k =
+                with_unit(&model.preset.units, Quantity::ForcePerLength, k, theme.ascii, |k| k.to_string());
+            format!("STIFFNESS={k}")
+        }
+        other => other.to_string().to_uppercase(),
+    };
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
     if let Some(share) = stiffness_share(model) {

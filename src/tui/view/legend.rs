@@ -93,7 +93,7 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     Some(match nearest(&subject, view, &bounds, at) {
-        Some(nearest) => format!("+ {here}; * {}", nearest.text()),
+        Some(nearest) => format!("+ {here}; * {}", nearest.text(&subject.curve.setting.preset.units)),
         None => format!("+ {here}"),
     })
 }

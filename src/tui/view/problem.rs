@@ -4,9 +4,10 @@ use super::{is_selected, pair, side_panel};
 use crate::contact::{Control, Groups};
 use crate::explorer::Panel;
 use crate::preset::{Parameter, Value};
-use crate::report::number::short;
+use crate::report::number::{short, with_unit};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
+use crate::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -42,7 +43,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         .skip(first)
         .take(rows)
         .map(|(i, (row, value))| {
-            knob_line(theme, row, value.as_ref(), i == model.parameter && selected, inner.width)
+            knob_line(
+                theme,
+                &model.preset.units,
+                row,
+                value.as_ref(),
+                i == model.parameter && selected,
+                inner.width,
+            )
         })
         .collect();
     while lines.len() < rows {
@@ -54,15 +62,19 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 
 fn knob_line(
     theme: Theme,
+    units: &UnitSystem,
     row: &Parameter,
     value: Option<&Value>,
     selected: bool,
     width: u16,
 ) -> Line<'static> {
+    let shown = |quantity, x, digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => short(*x, 7),
-        Some(Value::Control(Control::Stiffness(k))) => format!("k {}", short(*k, 5)),
+        Some(Value::Number(x)) => shown(row.quantity, *x, 7),
+        Some(Value::Control(Control::Stiffness(k))) => {
+            format!("k {}", shown(Quantity::ForcePerLength, *k, 5))
+        }
         Some(value) => theme.text(&value.to_string()),
     };
     let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };

@@ -5,9 +5,10 @@ use crate::contact::{Control, Gap};
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::{Model, Panel};
 use crate::quasistatic::equilibrium::wave_index;
-use crate::report::number::{difference, fixed, short, significant};
+use crate::report::number::{difference, fixed, short, significant, with_unit};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
+use crate::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -32,13 +33,19 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
+/// A value of the node's problem in the unit in which it is shown.
+fn shown(theme: Theme, node: &Node, quantity: Quantity, x: f64, digits: usize) -> String {
+    with_unit(&node.setting.preset.units, quantity, x, theme.ascii, |x| significant(x, digits))
+}
+
 fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
     let state = node.state.in_units(node.setting.case.units());
+    let shown = |quantity, x| shown(theme, node, quantity, x, 5);
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
-        Line::from(pair(theme, " pulled off at δ ", &significant(state.approach, 5)).to_vec()),
-        Line::from(pair(theme, "              P ", &significant(state.force, 5)).to_vec()),
-        Line::from(pair(theme, "              s ", &significant(state.contact_radius, 5)).to_vec()),
+        Line::from(pair(theme, " pulled off at δ ", &shown(Quantity::Length, state.approach)).to_vec()),
+        Line::from(pair(theme, "              P ", &shown(Quantity::Force, state.force)).to_vec()),
+        Line::from(pair(theme, "              s ", &shown(Quantity::Length, state.contact_radius)).to_vec()),
         Line::raw(" u goes back, 0 restarts"),
     ]
 }
@@ -49,11 +56,12 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     let critical = case.critical_force();
     let wave = case.reduced.gap.feature_length();
     let s = node.state.contact_radius;
-    let mut force = pair(theme, " P ", &significant(state.force, 4)).to_vec();
+    let mut force = pair(theme, " P ", &shown(theme, node, Quantity::Force, state.force, 4)).to_vec();
     if let Some(critical) = critical {
         force.extend(pair(theme, "  /Pc ", &significant(state.force / critical, 4)));
     }
-    let mut radius = pair(theme, " s ", &significant(state.contact_radius, 4)).to_vec();
+    let mut radius =
+        pair(theme, " s ", &shown(theme, node, Quantity::Length, state.contact_radius, 4)).to_vec();
     if let Some(wave) = wave {
         radius.extend(pair(theme, "  s/λ ", &significant(s / wave, 4)));
     }
@@ -82,7 +90,7 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         theme.glyph("→ outward", "> outward")
     };
     let mut lines = vec![
-        Line::from(pair(theme, " δ ", &significant(state.approach, 5)).to_vec()),
+        Line::from(pair(theme, " δ ", &shown(theme, node, Quantity::Length, state.approach, 5)).to_vec()),
         Line::from(force),
         Line::from(radius),
         Line::from(stable),
@@ -110,7 +118,7 @@ fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
         (false, Some(crest), _) => crest.radius,
         (false, None, pressure) => pressure?.0,
     };
-    let radius = significant(radius * node.setting.case.units().length, 4);
+    let radius = shown(theme, node, Quantity::Length, radius * node.setting.case.units().length, 4);
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
@@ -118,8 +126,13 @@ fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
 fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 2] {
     let stiffness = node.stiffness.in_units(node.setting.case.units());
     // At a limit point of the approach the slopes have no bound.
-    let slope = |x: f64| if x.is_infinite() { "infinite".to_owned() } else { significant(x, 4) };
-    let mut tangent = pair(theme, " dP/dδ ", &slope(stiffness.tangent)).to_vec();
-    tangent.extend(pair(theme, "  s held ", &significant(stiffness.contact, 4)));
-    [Line::from(tangent), Line::from(pair(theme, " dA/dδ ", &slope(stiffness.area_slope)).to_vec())]
+    let slope = |quantity, x: f64| {
+        if x.is_infinite() { "infinite".to_owned() } else { shown(theme, node, quantity, x, 4) }
+    };
+    let mut tangent = pair(theme, " dP/dδ ", &slope(Quantity::ForcePerLength, stiffness.tangent)).to_vec();
+    tangent.extend(pair(theme, "  s held ", &slope(Quantity::ForcePerLength, stiffness.contact)));
+    [
+        Line::from(tangent),
+        Line::from(pair(theme, " dA/dδ ", &slope(Quantity::Length, stiffness.area_slope)).to_vec()),
+    ]
 }
