@@ -49,7 +49,7 @@ pub struct Sweep {
     pub preset: Preset,
     /// The same made ready.
     pub case: Case,
-    /// The curve between start and end, reduced. It holds the limit points of [`SHOWN`].
+    /// The curve between start and end, reduced. It holds the limit points of `SHOWN`.
     pub curve: Curve,
     /// The theory over the same radii.
     pub theory: Theory,
