@@ -3,7 +3,8 @@
 //! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
 //! they all see the same numbers.
 
-use crate::contact::{Control, Problem, Reduced, Start, Units};
+use crate::contact::groups::LARGE_TABOR;
+use crate::contact::{Control, Groups, Problem, Reduced, Start, Units};
 use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::admissible::falls;
 use crate::quasistatic::start::{StartError, contact_radius};
@@ -32,6 +33,8 @@ pub struct Case {
     pub start: f64,
     /// The contact radius at the end, reduced.
     pub end: f64,
+    /// Tabor's μ, where it is known.
+    pub tabor: Option<f64>,
 }
 
 /// Why a preset could not be computed.
@@ -90,7 +93,8 @@ impl Case {
             return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
         }
         let control = preset.path.control.in_units(units.stiffness);
-        Ok(Self { problem, reduced, basis, control, start, end })
+        let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
+        Ok(Self { problem, reduced, basis, control, start, end, tabor })
     }
 
     /// The factors to the user's units.
@@ -186,6 +190,12 @@ impl Case {
     pub fn warnings(&self, largest: f64) -> Vec<String> {
         let mut warnings = self.problem.shape.notes();
         warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
+            warnings.push(format!(
+                "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \
+                 of this method does not hold"
+            ));
+        }
         warnings
     }
 

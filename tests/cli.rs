@@ -242,7 +242,14 @@ fn both_documents_carry_the_resolved_problem() {
         );
         assert_eq!(
             keys(&problem["groups"]),
-            ["amplitude_over_wavelength", "wavelength_over_radius", "connectivity", "adhesion", "johnson"]
+            [
+                "amplitude_over_wavelength",
+                "wavelength_over_radius",
+                "connectivity",
+                "adhesion",
+                "johnson",
+                "tabor"
+            ]
         );
         let preset = &problem["preset"];
         assert_eq!(keys(preset), ["format", "title", "material", "gap", "basis", "path"]);

@@ -49,7 +49,11 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     Preset {
         title: String::new(),
         units: pulloff::units::UnitSystem::Reduced,
-        material: Material { effective_modulus: modulus, work_of_adhesion: gamma * modulus * radius },
+        material: Material {
+            effective_modulus: modulus,
+            work_of_adhesion: gamma * modulus * radius,
+            range_of_action: None,
+        },
         gap: shape,
         basis: BasisSpec::Rings {
             rings: any(random, if wild { WILD_RINGS } else { RINGS }),
@@ -303,7 +307,7 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
     Preset {
         title: String::new(),
         units: pulloff::units::UnitSystem::Reduced,
-        material: Material { effective_modulus: 1.0, work_of_adhesion: gamma },
+        material: Material { effective_modulus: 1.0, work_of_adhesion: gamma, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
         path: PathSpec { control, start: Start::ContactRadius(start), end_contact_radius: None },

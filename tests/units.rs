@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
+use pulloff::case::Case;
 use pulloff::contact::{Control, Gap, Shape};
 use pulloff::preset::{Preset, Value, read, read_with, shipped, write};
 use pulloff::report::{UnloadReport, json, table};
@@ -207,4 +208,21 @@ fn figure_9_in_si_gives_the_reduced_answers() {
     let units = &document["problem"]["units"];
     assert_eq!((&units["system"], &units["length"]), (&"reduced".into(), &serde_json::Value::Null));
     assert_eq!(shipped_preset("fig-9").units, UnitSystem::Reduced);
+}
+
+/// Soft and large: the adhesion acts at the edge. Hard and small: it reaches beyond, and that is said.
+#[test]
+fn tabor_is_known_in_si_and_warned_of_where_the_method_does_not_hold() {
+    let case = |sets: &[&str]| Case::new(&read_with("p", WAVY, sets).unwrap()).unwrap();
+    let soft = case(&[]);
+    // (1e-3 · 0.03²/(2.5e6² · 2.7e-29))^{1/3}.
+    let mu: f64 = 1e-3 * 0.03 * 0.03 / (2.5e6 * 2.5e6 * 2.7e-29);
+    assert!((soft.tabor.unwrap() / mu.cbrt() - 1.0).abs() < 1e-12);
+    assert!(soft.warnings(soft.start).iter().all(|warning| !warning.contains("Tabor")));
+    let far = case(&["material.range_of_action=1 mm"]);
+    assert!(
+        far.warnings(far.start).iter().any(|warning| warning.starts_with("Tabor's mu = 0.00")),
+        "{far:?}"
+    );
+    assert_eq!(Case::new(&shipped_preset("fig-9")).unwrap().tabor, None);
 }

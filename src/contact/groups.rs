@@ -3,7 +3,7 @@
 use super::problem::Problem;
 use std::f64::consts::PI;
 
-/// Dimensionless groups of a problem; those of the wave and of R are `None` for a gap without one.
+/// Dimensionless groups of a problem; those of the wave, of R and of z₀ are `None` where there is none.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Groups {
     /// A/λ.
@@ -16,11 +16,17 @@ pub struct Groups {
     pub adhesion: Option<f64>,
     /// Johnson's α = √(2γλ/(π²E*A²)).
     pub johnson: Option<f64>,
+    /// Tabor's μ = (Rγ²/(E*²z₀³))^{1/3}, where a range of action z₀ is known; the JKR limit, which this method assumes,
+    /// needs [`LARGE_TABOR`] or more. D. Tabor, J. Colloid Interface Sci. 58, 2 (1977), doi:10.1016/0021-9797(77)90366-6.
+    pub tabor: Option<f64>,
 }
 
+/// Tabor's μ from which the adhesion acts as if at the edge alone.
+pub const LARGE_TABOR: f64 = 5.0;
+
 impl Groups {
-    /// The groups of `problem`.
-    pub fn of(problem: &Problem) -> Self {
+    /// The groups of `problem`, whose adhesion reaches as far as `range_of_action`, z₀, in its unit of length.
+    pub fn of(problem: &Problem, range_of_action: Option<f64>) -> Self {
         let Problem { effective_modulus: e, work_of_adhesion: gamma, ref shape } = *problem;
         let radius = shape.radius_of_curvature();
         let wave = shape.wave();
@@ -32,6 +38,10 @@ impl Groups {
             connectivity: rough.zip(radius).map(|((a, l), radius)| l * l / (a * radius)),
             adhesion: radius.map(|radius| 2.0 * PI * gamma / (e * radius)),
             johnson: rough.map(|(a, l)| (2.0 * gamma * l / (PI * PI * e * a * a)).sqrt()),
+            tabor: radius
+                .zip(range_of_action)
+                .filter(|_| gamma > 0.0)
+                .map(|(radius, z0)| (radius / z0).cbrt() * (gamma / (e * z0)).powi(2).cbrt()),
         }
     }
 }
@@ -48,12 +58,26 @@ mod tests {
             work_of_adhesion: 0.025 / (2.0 * PI),
             shape: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
         };
-        let groups = Groups::of(&problem);
+        let groups = Groups::of(&problem, None);
         let close = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
         assert!(close(groups.amplitude_over_wavelength, 0.05));
         assert!(close(groups.wavelength_over_radius, 0.05));
         assert!(close(groups.connectivity, 1.0));
         assert!((groups.adhesion.unwrap() - 0.025).abs() < 1e-15);
         assert!((groups.johnson.unwrap() - 2.54).abs() < 0.01);
+        assert_eq!(groups.tabor, None);
+    }
+
+    #[test]
+    fn tabor_of_a_soft_and_of_a_hard_sphere() {
+        let of = |effective_modulus, radius_of_curvature| {
+            let shape = Shape::Sphere { radius_of_curvature };
+            Groups::of(&Problem { effective_modulus, work_of_adhesion: 0.05, shape }, Some(3e-10))
+                .tabor
+                .unwrap()
+        };
+        // (5e-3 · 0.05²/(1e6² · 2.7e-29))^{1/3}, and a nanometre tip of glass.
+        assert!((of(1e6, 5e-3) / 7736.6 - 1.0).abs() < 1e-4, "{}", of(1e6, 5e-3));
+        assert!(of(7e10, 1e-8) < LARGE_TABOR);
     }
 }

@@ -107,7 +107,7 @@ impl Sweep {
             start,
             inadmissible: None,
             theory: Theory::of(&case),
-            groups: Groups::of(&case.problem),
+            groups: Groups::of(&case.problem, preset.range_of_action()),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
             critical_force: case.critical_force().unwrap_or(0.0),

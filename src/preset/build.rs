@@ -45,13 +45,14 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
             None => given.required(START_KEYS[0]),
         }),
     };
-    let end = "path.end_contact_radius";
+    let (end, range) = ("path.end_contact_radius", "material.range_of_action");
     let preset = Preset {
         title: given.text("title"),
         units,
         material: Material {
             effective_modulus: given.number("material.effective_modulus"),
             work_of_adhesion: given.number("material.work_of_adhesion"),
+            range_of_action: values.contains_key(range).then(|| given.number(range)),
         },
         gap,
         basis: given.basis(),

@@ -44,7 +44,12 @@ pub struct Material {
     pub effective_modulus: f64,
     /// γ, the work of adhesion, a stress times a length.
     pub work_of_adhesion: f64,
+    /// z₀, the range of action of the adhesion, a length; `None` leaves it to [`Preset::range_of_action`].
+    pub range_of_action: Option<f64>,
 }
+
+/// z₀ in metres where an SI preset does not give it: a few atoms.
+const RANGE_OF_ACTION: f64 = 0.3e-9;
 
 /// The basis of the contact pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,6 +121,13 @@ impl Preset {
         }
     }
 
+    /// z₀, the range of action of the adhesion: the one the preset says, 0.3 nm in SI, none in reduced units.
+    #[must_use]
+    pub fn range_of_action(&self) -> Option<f64> {
+        let usual = matches!(self.units, UnitSystem::Si(_)).then_some(RANGE_OF_ACTION);
+        self.material.range_of_action.or(usual)
+    }
+
     /// The contact radius at which the path ends, given that it starts at `start_contact_radius`:
     /// the one the preset says, or a fixed fraction of the start.
     #[must_use]
@@ -142,6 +154,7 @@ impl Preset {
             }
             "material.effective_modulus" => material.effective_modulus.into(),
             "material.work_of_adhesion" => material.work_of_adhesion.into(),
+            "material.range_of_action" => material.range_of_action?.into(),
             key if key.starts_with("gap.") => return shape::get(gap, key),
             "basis.kind" => match basis {
                 BasisSpec::Rings { .. } => "rings".into(),
@@ -407,7 +420,7 @@ pub(super) mod tests {
         Preset {
             title: "a wave".to_owned(),
             units: UnitSystem::Reduced,
-            material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004 },
+            material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None },
             gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
             basis: BasisSpec::Rings { rings: 200, grading: Grading::Uniform },
             path: PathSpec {
@@ -454,7 +467,11 @@ pub(super) mod tests {
                 Preset {
                     title,
                     units: UnitSystem::Reduced,
-                    material: Material { effective_modulus: e, work_of_adhesion: gamma },
+                    material: Material {
+                        effective_modulus: e,
+                        work_of_adhesion: gamma,
+                        range_of_action: None,
+                    },
                     gap,
                     basis,
                     path: PathSpec { control, start, end_contact_radius: end.map(|f| f * over * radius) },
@@ -533,7 +550,7 @@ pub(super) mod tests {
     fn the_table_is_total() {
         // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
         let Preset { title: _, units: _, material, gap, basis, path } = wavy();
-        let Material { effective_modulus: _, work_of_adhesion: _ } = material;
+        let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
         match basis {
             BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Spectral { functions: _ } => {}
         }
@@ -567,6 +584,7 @@ pub(super) mod tests {
             "units",
             "material.effective_modulus",
             "material.work_of_adhesion",
+            "material.range_of_action",
             "gap.shape",
             "gap.radius_of_curvature",
             "gap.amplitude",

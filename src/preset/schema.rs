@@ -220,6 +220,16 @@ pub static PARAMETERS: &[Parameter] = &[
         applies: Applies::Always,
     },
     Parameter {
+        key: Borrowed("material.range_of_action"),
+        label: Borrowed("z0"),
+        meaning: Borrowed("range of action of the adhesion, for Tabor's number alone"),
+        dimension: Borrowed("length"),
+        quantity: Quantity::Length,
+        kind: Kind::Positive,
+        fallback: Fallback::Described("0.3 nm in SI; in reduced units none, and no Tabor number"),
+        applies: Applies::Always,
+    },
+    Parameter {
         key: Borrowed("gap.shape"),
         label: Borrowed("gap"),
         meaning: Borrowed("shape of the gap between the undeformed bodies"),

@@ -100,7 +100,8 @@ mod tests {
                     row.key
                 );
             }
-            // Of the rows that mean something here, two of three starts and the stiffness may be missing.
+            // Of the rows that mean something here, two of three starts, the stiffness and the range of action may be
+            // missing.
             let kind = preset.get("basis.kind").unwrap().to_string();
             let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
             // The knobs leave out the format, the units and their display.
@@ -110,7 +111,7 @@ mod tests {
                 .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
                 .count();
             assert_eq!(
-                preset.values().len() + 3,
+                preset.values().len() + 4,
                 ranges(&preset) + preset.knobs().filter(fits).count() + units
             );
         }
@@ -118,7 +119,7 @@ mod tests {
 
     #[test]
     fn they_are_the_cases_of_the_paper() {
-        let adhesion = |name| Groups::of(&load(name).problem()).adhesion.unwrap();
+        let adhesion = |name| Groups::of(&load(name).problem(), None).adhesion.unwrap();
         for (name, expected) in [
             ("fig-1-hertz", 0.0),
             ("fig-3-jkr", 0.05),

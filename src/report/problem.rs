@@ -73,7 +73,7 @@ impl ProblemReport {
             units: UnitsReport::new(&preset.units),
             start_contact_radius: case.start * case.units().length,
             end_contact_radius: case.end * case.units().length,
-            groups: Groups::of(&case.problem),
+            groups: Groups::of(&case.problem, preset.range_of_action()),
             critical_force: case.smooth().map(|jkr| jkr.pull_off_force()),
         }
     }

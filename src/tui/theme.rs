@@ -135,6 +135,7 @@ fn transliterate(c: char) -> &'static str {
         'λ' => "l",
         'γ' => "g",
         'α' => "alpha",
+        'μ' => "mu",
         'Δ' => "D",
         '²' => "2",
         '′' => "'",

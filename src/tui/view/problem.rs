@@ -24,7 +24,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         width: area.width.saturating_sub(1),
         height: area.height.saturating_sub(1),
     };
-    let groups = group_lines(theme, &Groups::of(&model.preset.problem()), inner.width);
+    let groups =
+        group_lines(theme, &Groups::of(&model.preset.problem(), model.preset.range_of_action()), inner.width);
     let knobs = model.knobs();
     // The groups stand below as far as there is room for five parameters above them.
     let shown_groups = groups.len().min(usize::from(inner.height).saturating_sub(knobs.len().min(5)));
@@ -93,6 +94,7 @@ fn group_lines(theme: Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> 
     add("λ²/AR ", groups.connectivity);
     add("γ' ", groups.adhesion);
     add("α ", groups.johnson);
+    add("μ ", groups.tabor);
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
     for (name, value) in items {
