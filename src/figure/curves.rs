@@ -13,7 +13,7 @@ use crate::report::number::{fixed, significant};
 pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let scale = subject.scale();
     let [x, y] = scale.axes(view);
-    let mut figure = Figure::empty(view, format!("{} over {}", y.symbol, x.symbol), x, y);
+    let mut figure = Figure::empty(view, format!("{} over {}", y.title(), x.symbol), x, y);
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
     theory(subject, scale, &mut figure);

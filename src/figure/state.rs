@@ -26,7 +26,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
         View::Gap => (scale.radius_axis("r"), scale.length("gap")),
         _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.setting.case.control)),
     };
-    let mut figure = Figure::empty(view, format!("{} over {}", y.symbol, x.symbol), x, y);
+    let mut figure = Figure::empty(view, format!("{} over {}", y.title(), x.symbol), x, y);
     let Some(inside) = subject.inside else {
         figure.missing = Some(match subject.walk.last() {
             Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),

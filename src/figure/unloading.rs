@@ -23,7 +23,7 @@ const VIEW: View = View::Unloading;
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     let [x, y] = scale.axes(VIEW);
-    let mut figure = Figure::empty(VIEW, format!("unloading: {} over {}", y.symbol, x.symbol), x, y);
+    let mut figure = Figure::empty(VIEW, format!("unloading: {} over {}", y.title(), x.symbol), x, y);
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(VIEW, place(point))).collect();
     figure.bounds = Bounds::of(points.iter().copied());
