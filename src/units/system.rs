@@ -3,7 +3,7 @@
 use super::dimension::Quantity;
 use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, Named, PASCAL, PICO, Prefix};
 use super::unit::{Factor, Unit};
-use super::value::{ValueError, parse_quantity};
+use super::value::ValueError;
 use std::fmt;
 
 /// The units in which a problem is typed and shown.
@@ -119,20 +119,6 @@ impl UnitSystem {
         self.unit(quantity).map_or(1.0, |unit| unit.to_si(1.0))
     }
 
-    /// The value of a quantity as typed, in SI or reduced units.
-    ///
-    /// In SI a bare number is one of the unit in which the quantity is shown.
-    ///
-    /// # Errors
-    /// Text that is no value, a value that is not finite, a wrong dimension, any unit in reduced units.
-    pub fn read(&self, quantity: Quantity, text: &str) -> Result<f64, ValueError> {
-        let value = parse_quantity(text)?;
-        match self {
-            Self::Reduced => value.pure(),
-            Self::Si(units) => value.in_si(quantity, units.unit(quantity)),
-        }
-    }
-
     /// How `value`, in SI or reduced units, is shown.
     pub fn shown(&self, quantity: Quantity, value: f64) -> Shown<'_> {
         let unit = self.unit(quantity);
@@ -149,12 +135,9 @@ mod tests {
         let si = UnitSystem::Si(DisplayUnits::default());
         let shown = si.shown(Quantity::Length, 12.5e-6);
         assert_eq!((shown.to_string().as_str(), shown.text("12.5", true).as_str()), ("12.5 µm", "12.5 um"));
-        assert_eq!(si.read(Quantity::Length, "12.5"), Ok(12.5e-6));
-        assert_eq!(si.read(Quantity::Length, "12.5 nm"), Ok(12.5e-9));
         assert_eq!(si.factor(Quantity::Stress).to_bits(), 1e3f64.to_bits());
         assert_eq!(si.shown(Quantity::Number, 0.25).to_string(), "0.25");
         assert_eq!(UnitSystem::Reduced.shown(Quantity::Length, 0.25).to_string(), "0.25");
-        assert!(UnitSystem::Reduced.read(Quantity::Length, "12.5 nm").is_err());
     }
 
     #[test]

@@ -8,14 +8,15 @@ use super::row::{Group, Row};
 use crate::ritz::{Basis, BasisError, Spectral};
 use crate::theory::Exact;
 
-/// n, and the bounds of force and energy.
-const NUMBERS: [(usize, f64, f64); 6] = [
-    (16, 1e-5, 0.3),
-    (24, 1e-10, 0.15),
-    (32, 1e-12, 2e-2),
-    (40, 1e-12, 2e-9),
-    (48, 1e-12, 1e-12),
-    (64, 1e-12, 1e-12),
+/// n, and the bounds of force and energy. Below 40 functions the waves are not resolved, and the energy is not told: a bound
+/// of some percent would pass for agreement.
+const NUMBERS: [(usize, f64, Option<f64>); 6] = [
+    (16, 1e-5, None),
+    (24, 1e-10, None),
+    (32, 1e-12, None),
+    (40, 1e-12, Some(2e-9)),
+    (48, 1e-12, Some(1e-12)),
+    (64, 1e-12, Some(1e-12)),
 ];
 
 /// P and U at the start of Fig. 9.
@@ -34,7 +35,9 @@ pub fn group() -> Result<Group, BasisError> {
         let ours = basis.equilibrium(&problem, s).map(|e| (e.force, basis.energy(&problem, s, e.approach)));
         let (our_force, our_energy) = ours.unwrap_or((f64::NAN, f64::NAN));
         rows.push(Row::relative(format!("force, n = {n}"), our_force, force, of_force));
-        rows.push(Row::relative(format!("energy, n = {n}"), our_energy, energy, of_energy));
+        rows.extend(
+            of_energy.map(|bound| Row::relative(format!("energy, n = {n}"), our_energy, energy, bound)),
+        );
     }
     let title = "Fig. 9 at s = 0.5 R by the number of eigenfunctions".to_owned();
     Ok(Group { title, measure: "relative", rows })
