@@ -4,8 +4,8 @@
 //! they all see the same numbers.
 
 use crate::contact::groups::LARGE_TABOR;
-use crate::contact::{Control, Groups, Problem, Reduced, Start, Units};
-use crate::preset::{BasisSpec, Functions, Preset};
+use crate::contact::{Control, Groups, Problem, Reduced, Shape, Start, Units};
+use crate::preset::{BasisSpec, Functions, Material, Preset};
 use crate::quasistatic::admissible::falls;
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
@@ -174,16 +174,13 @@ impl Case {
 
     /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
     pub fn smooth(&self) -> Option<Jkr> {
-        Some(Jkr {
-            effective_modulus: self.problem.effective_modulus,
-            work_of_adhesion: self.problem.work_of_adhesion,
-            radius_of_curvature: self.problem.shape.radius_of_curvature()?,
-        })
+        let Problem { effective_modulus, work_of_adhesion, shape } = &self.problem;
+        smooth(*effective_modulus, *work_of_adhesion, shape)
     }
 
     /// Its pull-off force `P_c`, where there is one and it adheres.
     pub fn critical_force(&self) -> Option<f64> {
-        self.smooth().map(|jkr| jkr.pull_off_force()).filter(|force| *force > 0.0)
+        pull_off_force(self.smooth())
     }
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
@@ -209,6 +206,21 @@ impl Case {
     fn no_start(&self) -> CaseError {
         StartError::NoEquilibrium(self.start).in_units(self.units()).into()
     }
+}
+
+/// The smooth sphere of the curvature of `shape`, which may have none.
+fn smooth(effective_modulus: f64, work_of_adhesion: f64, shape: &Shape) -> Option<Jkr> {
+    Some(Jkr { effective_modulus, work_of_adhesion, radius_of_curvature: shape.radius_of_curvature()? })
+}
+
+fn pull_off_force(smooth: Option<Jkr>) -> Option<f64> {
+    smooth.map(|jkr| jkr.pull_off_force()).filter(|force| *force > 0.0)
+}
+
+/// [`Case::critical_force`] of a preset that is not made ready.
+pub fn critical_force(preset: &Preset) -> Option<f64> {
+    let Material { effective_modulus, work_of_adhesion, .. } = preset.material;
+    pull_off_force(smooth(effective_modulus, work_of_adhesion, &preset.gap))
 }
 
 /// The basis and the contact radius at the start, reduced.

@@ -29,7 +29,7 @@ fn radii(curve: &CurveData) -> Vec<f64> {
 fn assert_as_computed_afresh(session: &Session) {
     let fresh = CurveData::compute(&session.model.preset, || true).expect("a curve");
     let (ours, fresh) = (curve(session), fresh.checked(&mut || true).expect("not stopped"));
-    assert_eq!(ours.setting.case.control, fresh.setting.case.control);
+    assert_eq!(ours.case.control, fresh.case.control);
     assert_eq!(radii(&ours), radii(&fresh));
     assert_eq!(ours.points, fresh.points);
     assert_eq!(ours.other_limits, fresh.other_limits);

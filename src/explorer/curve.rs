@@ -76,6 +76,8 @@ pub struct Sweep {
 pub struct CurveData {
     /// What belongs to the problem, shared with the curves of the same problem under other controls.
     pub sweep: Arc<Sweep>,
+    /// The problem made ready, with the control.
+    pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
     pub setting: Arc<Setting>,
     /// The curve in the user's units, with its stability under the chosen control.
@@ -185,10 +187,10 @@ impl CurveData {
             unloading => unloading.map_err(|e| e.to_string()),
         };
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
-        let equilibrium = curve.equilibrium.clone();
-        let setting = Arc::new(Setting { preset: preset.clone(), equilibrium, case });
-        Ok(Self { sweep, setting, points, limits, other_limits, unloading, report })
+        let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
+        Ok(Self { sweep, case, setting, points, limits, other_limits, unloading, report })
     }
+
     /// Whether it is known which of its states, and of its path's, are admissible.
     pub fn is_checked(&self) -> bool {
         let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());
@@ -209,7 +211,7 @@ impl CurveData {
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
             let passed = passed_while(&sweep.curve.equilibrium, &unloading.pieces, go_on)?;
-            report = Some(unchecked.clone().checked(&self.setting.case, unloading, &passed));
+            report = Some(unchecked.clone().checked(&self.case, unloading, &passed));
         }
         Some(Self { sweep, report, ..self.clone() })
     }

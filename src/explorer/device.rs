@@ -14,7 +14,7 @@ use crate::contact::Control;
 pub fn line(model: &Model) -> Option<[(f64, f64); 2]> {
     let node = model.walker().filter(|node| model.shows_device() && !node.is_apart())?;
     let (curve, control) = (model.curve.as_ref()?, model.control()?);
-    let units = node.setting.case.units();
+    let units = node.setting.units();
     let walker = node.state.in_units(units);
     let at = (walker.approach, walker.force);
     let landing = node.ahead.filter(|_| node.is_limit(control)).and_then(|ahead| ahead.after);

@@ -35,6 +35,8 @@ pub enum Effect {
     Walk(Box<Request>),
     /// End the walk of this number; its states so far stay.
     StopWalk(u64),
+    /// Compute the curve of a pin of a resumed session, by its number.
+    Pin(usize, Box<Preset>),
     /// Work on files.
     File(Box<Job>),
 }
@@ -87,6 +89,8 @@ pub enum Reply {
         /// How it ended; `None` while it goes on.
         outcome: Option<Outcome>,
     },
+    /// The curve of a pin, by its number, or `None` where there is none any more.
+    Pinned(usize, Option<Arc<CurveData>>),
     /// A job on files ended.
     File(Box<Done>),
 }
@@ -128,9 +132,14 @@ impl Inline {
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
             Effect::StopWalk(_) | Effect::StopCurve(_) => None,
+            Effect::Pin(number, preset) => Some(pinned(number, &preset)),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
     }
+}
+
+fn pinned(number: usize, preset: &Preset) -> Reply {
+    Reply::Pinned(number, CurveData::compute(preset, || true).ok().map(Arc::new))
 }
 
 impl Check {
@@ -164,6 +173,7 @@ pub struct Workers {
     profile: Arc<Slot<Box<Ask>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
+    pins: Sender<(usize, Box<Preset>)>,
     stopped: Arc<AtomicU64>,
     given_up: Arc<AtomicU64>,
 }
@@ -223,14 +233,21 @@ impl Workers {
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
+        let (pins, pinnings) = channel::<(usize, Box<Preset>)>();
         let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), reply.clone());
         thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
         let (slot, send) = (Arc::clone(&profile), reply.clone());
         thread::Builder::new().name("profile".to_owned()).spawn(move || profiles(&slot, &send))?;
+        let send = reply.clone();
+        thread::Builder::new().name("pins".to_owned()).spawn(move || {
+            while let Ok((number, preset)) = pinnings.recv() {
+                send(pinned(number, &preset));
+            }
+        })?;
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, walks, files, stopped, given_up })
+        Ok(Self { curve, profile, walks, files, pins, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -250,6 +267,7 @@ impl Workers {
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
+            Effect::Pin(number, preset) => drop(self.pins.send((number, preset))),
             Effect::File(job) => drop(self.files.send(job)),
         }
     }

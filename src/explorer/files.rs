@@ -269,24 +269,24 @@ pub const WALK_COLUMNS: &[&str] = &[
 
 impl WalkRow {
     fn new(node: &Node) -> Self {
-        let case = &node.setting.case;
-        let state = node.state.in_units(case.units());
+        let setting = &node.setting;
+        let state = node.state.in_units(setting.units());
         let stability = node.stability();
         let event = match &node.kind {
-            NodeKind::Jump(event) => Some(EventReport::new(case, node.control, event)),
+            NodeKind::Jump(event) => Some(EventReport::new(&setting.reduced, node.control, event)),
             _ => None,
         };
-        let wave = case.problem.shape.wave();
+        let wave = setting.preset.gap.wave();
         let apart = node.is_apart();
         Self {
             step: node.step,
             kind: kind_name(&node.kind),
-            control: case.shown_control(node.control).to_string(),
+            control: setting.shown_control(node.control).to_string(),
             contact_radius: if apart { 0.0 } else { state.contact_radius },
             approach: state.approach,
             force: if apart { 0.0 } else { state.force },
             energy: if apart { 0.0 } else { state.energy },
-            wave: if apart { None } else { StateReport::new(case, &node.state).wave },
+            wave: if apart { None } else { StateReport::new(&setting.reduced, &node.state).wave },
             newton_iterations: node.point.rounds,
             stable: StableReport {
                 displacement: stability.under(Control::Displacement),
@@ -295,8 +295,8 @@ impl WalkRow {
             },
             dissipated: event.as_ref().and_then(|e| e.dissipated),
             dissipated_by_area: event.as_ref().and_then(|e| e.dissipated_by_area),
-            work_of_adhesion: case.problem.work_of_adhesion,
-            radius_of_curvature: case.problem.shape.radius_of_curvature(),
+            work_of_adhesion: setting.preset.material.work_of_adhesion,
+            radius_of_curvature: setting.preset.gap.radius_of_curvature(),
             amplitude: wave.map(|(a, _)| a),
             wavelength: wave.map(|(_, l)| l),
             admissible: Some(node.admissibility.holds).filter(|_| !apart),
@@ -339,12 +339,11 @@ fn text(
     events: &[EventReport],
     as_json: bool,
 ) -> Result<String, rows::RowsError> {
-    let setting = &curve.setting;
     let walked = |points: &[WalkRow], events: &[EventReport]| {
         json(&Walked {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
-            problem: ProblemReport::new(&setting.preset, &setting.case),
+            problem: ProblemReport::new(&curve.setting.preset, &curve.case),
             warnings: &curve.sweep.warnings,
             notes: &curve.sweep.notes,
             points,
@@ -353,7 +352,7 @@ fn text(
     };
     Ok(match what {
         Document::Curve => {
-            let report = TraceReport::new(&setting.preset, &setting.case, &curve.sweep.curve);
+            let report = TraceReport::new(&curve.setting.preset, &curve.case, &curve.sweep.curve);
             if as_json { json(&report)? } else { report.csv()? }
         }
         Document::Walk => {

@@ -1,20 +1,43 @@
 //! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
 
-use crate::case::Case;
-use crate::contact::Control;
+use crate::contact::{Control, Reduced, Units};
 use crate::preset::Preset;
-use crate::quasistatic::{Admissibility, Equilibrium, Event, Point, Stability, State, Stiffness};
+use crate::quasistatic::{Admissibility, Event, Point, Scales, Stability, State, Stiffness};
 use std::sync::Arc;
 
 /// The problem a node was solved in: the parameters may change from node to node.
+///
+/// Its basis is not here. It belongs to the curve, which is computed anew when the walker comes back to the problem:
+/// so a long walk through many problems stays small, and a saved one is read without computing any of them.
 #[derive(Debug, Clone)]
 pub struct Setting {
     /// The preset.
     pub preset: Preset,
-    /// The preset made ready.
-    pub case: Case,
-    /// The equations with the scales of their curve.
-    pub equilibrium: Equilibrium,
+    /// The problem in reduced units.
+    pub reduced: Reduced,
+    /// What is controlled, in reduced units.
+    pub control: Control,
+    /// The units of the unknowns: those of the curve on which the nodes lie.
+    pub scales: Scales,
+}
+
+impl Setting {
+    /// The problem of `preset` on a curve with these scales.
+    pub fn new(preset: Preset, scales: Scales) -> Self {
+        let reduced = preset.reduced();
+        let control = preset.path.control.in_units(reduced.units.stiffness);
+        Self { preset, reduced, control, scales }
+    }
+
+    /// The factors to the user's units.
+    pub fn units(&self) -> &Units {
+        &self.reduced.units
+    }
+
+    /// A control in the user's units.
+    pub fn shown_control(&self, control: Control) -> Control {
+        control.in_units(1.0 / self.units().stiffness)
+    }
 }
 
 /// How a node came about.
@@ -79,7 +102,7 @@ pub struct Node {
 impl Node {
     /// The slopes that tell the stability.
     pub fn stability(&self) -> Stability {
-        self.setting.equilibrium.stability(&self.point)
+        self.setting.scales.stability(&self.point)
     }
 
     /// The bodies are apart: the walk ends here.
@@ -93,19 +116,49 @@ impl Node {
     }
 }
 
-/// The tree.
+/// Nodes that share one piece of memory: a snapshot of the tree shares all pieces but the last with the tree itself.
+const CHUNK: usize = 256;
+
+/// A node with its place in the tree.
+#[derive(Debug, Clone)]
+struct Entry {
+    node: Node,
+    /// The child last gone to.
+    forward: Option<usize>,
+}
+
+/// The tree. A clone is cheap however long the walk: what is not changed afterwards stays shared.
 #[derive(Debug, Clone, Default)]
 pub struct History {
-    nodes: Vec<Node>,
+    chunks: Vec<Arc<Vec<Entry>>>,
     cursor: Option<usize>,
-    /// For each node the child last gone to.
-    forward: Vec<Option<usize>>,
+    revision: u64,
 }
 
 impl History {
+    /// The tree of these nodes, each with the child last gone to, and the walker on `cursor`; `None` where they make no
+    /// tree.
+    pub fn of(nodes: Vec<(Node, Option<usize>)>, cursor: Option<usize>) -> Option<Self> {
+        let count = nodes.len();
+        let parents: Vec<Option<usize>> = nodes.iter().map(|(node, _)| node.parent).collect();
+        let is_child = |of: usize, child: usize| parents.get(child).is_some_and(|parent| *parent == Some(of));
+        let grown = nodes.iter().enumerate().all(|(at, (node, forward))| {
+            node.parent.is_none_or(|parent| parent < at) && forward.is_none_or(|child| is_child(at, child))
+        });
+        if !grown || cursor.is_some_and(|cursor| cursor >= count) || cursor.is_some() != (count > 0) {
+            return None;
+        }
+        let mut tree = Self::default();
+        for (node, forward) in nodes {
+            tree.add(Entry { node, forward });
+        }
+        tree.cursor = cursor;
+        Some(tree)
+    }
+
     /// The node the walker stands on.
     pub fn current(&self) -> Option<&Node> {
-        self.nodes.get(self.cursor?)
+        self.node(self.cursor?)
     }
 
     /// Its number.
@@ -120,12 +173,56 @@ impl History {
 
     /// Where redo would go.
     pub fn redo_target(&self) -> Option<usize> {
-        *self.forward.get(self.cursor?)?
+        self.forward(self.cursor?)
     }
 
-    /// All nodes ever made.
-    pub fn nodes(&self) -> &[Node] {
-        &self.nodes
+    /// The child of a node last gone to.
+    pub fn forward(&self, number: usize) -> Option<usize> {
+        self.entry(number)?.forward
+    }
+
+    /// The node of a number.
+    pub fn node(&self, number: usize) -> Option<&Node> {
+        self.entry(number).map(|entry| &entry.node)
+    }
+
+    /// All nodes, by number; a node comes behind its parent.
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = &Node> {
+        (0..self.len()).map(|at| &self.chunks[at / CHUNK][at % CHUNK].node)
+    }
+
+    /// The number of nodes.
+    pub fn len(&self) -> usize {
+        self.chunks.last().map_or(0, |last| (self.chunks.len() - 1) * CHUNK + last.len())
+    }
+
+    /// Whether nothing has been walked.
+    pub fn is_empty(&self) -> bool {
+        self.chunks.is_empty()
+    }
+
+    /// Another number whenever anything in it changes.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    fn entry(&self, number: usize) -> Option<&Entry> {
+        self.chunks.get(number / CHUNK)?.get(number % CHUNK)
+    }
+
+    fn set_forward(&mut self, number: usize, child: usize) {
+        if let Some(chunk) = self.chunks.get_mut(number / CHUNK)
+            && chunk.get(number % CHUNK).is_some_and(|entry| entry.forward != Some(child))
+        {
+            Arc::make_mut(chunk)[number % CHUNK].forward = Some(child);
+        }
+    }
+
+    fn add(&mut self, entry: Entry) {
+        match self.chunks.last_mut().filter(|last| last.len() < CHUNK) {
+            Some(last) => Arc::make_mut(last).push(entry),
+            None => self.chunks.push(Arc::new(vec![entry])),
+        }
     }
 
     /// Appends a node behind the current one and stands on it.
@@ -141,37 +238,60 @@ impl History {
     }
 
     fn append(&mut self, node: Node) {
-        let at = self.nodes.len();
+        let at = self.len();
         if let Some(parent) = node.parent {
-            self.forward[parent] = Some(at);
+            self.set_forward(parent, at);
         }
-        self.nodes.push(node);
-        self.forward.push(None);
+        self.add(Entry { node, forward: None });
+        self.stand(at);
+    }
+
+    fn stand(&mut self, at: usize) {
         self.cursor = Some(at);
+        self.revision += 1;
     }
 
     /// Stands on the node before; false when there is none.
     pub fn undo(&mut self) -> bool {
-        let Some(parent) = self.parent() else { return false };
-        self.forward[parent] = self.cursor;
-        self.cursor = Some(parent);
+        let (Some(here), Some(parent)) = (self.cursor, self.parent()) else { return false };
+        self.set_forward(parent, here);
+        self.stand(parent);
         true
     }
 
     /// Stands on the child last gone to; false when there is none.
     pub fn redo(&mut self) -> bool {
         let target = self.redo_target();
-        if target.is_some() {
-            self.cursor = target;
+        if let Some(target) = target {
+            self.stand(target);
         }
         target.is_some()
     }
 
+    /// Stands on the node of this number, and redo leads back to it from wherever undo goes; false when there is none.
+    pub fn go(&mut self, number: usize) -> bool {
+        if self.node(number).is_none() {
+            return false;
+        }
+        let mut at = number;
+        while let Some(parent) = self.node(at).and_then(|node| node.parent) {
+            self.set_forward(parent, at);
+            at = parent;
+        }
+        self.stand(number);
+        true
+    }
+
     /// The walk that led to the current node: from where it began, each node with its number.
     pub fn path(&self) -> Vec<(usize, &Node)> {
+        self.cursor.map_or_else(Vec::new, |cursor| self.path_to(cursor))
+    }
+
+    /// The walk that led to the node of this number.
+    pub fn path_to(&self, number: usize) -> Vec<(usize, &Node)> {
         let mut path = Vec::new();
-        let mut at = self.cursor;
-        while let Some((number, node)) = at.and_then(|i| Some((i, self.nodes.get(i)?))) {
+        let mut at = Some(number);
+        while let Some((number, node)) = at.and_then(|i| Some((i, self.node(i)?))) {
             path.push((number, node));
             at = node.parent.filter(|_| !node.begins);
         }

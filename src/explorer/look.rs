@@ -117,11 +117,10 @@ pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
     let run = if model.inward { Run::Inward } else { Run::Outward };
     let mut ask = Box::new(Ask {
         id: 0,
-        setting: Arc::clone(&node.setting),
         curve: Arc::clone(curve),
         state: node.state,
         exact: model.overlays.exact,
-        barrier: (!node.is_limit(curve.setting.case.control)).then_some(run),
+        barrier: (!node.is_limit(curve.case.control)).then_some(run),
     });
     if model.profile_wanted.as_ref().is_some_and(|last| last.is_like(&ask)) {
         return None;

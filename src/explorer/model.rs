@@ -10,11 +10,13 @@ use super::walk::Action;
 use crate::contact::Control;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The panels that can be selected.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Panel {
     /// The parameters of the preset.
     Problem,
@@ -32,7 +34,8 @@ impl Panel {
 }
 
 /// What the axes show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Axes {
     /// `P/P_c`, δ, s/λ.
     Reduced,
@@ -41,7 +44,8 @@ pub enum Axes {
 }
 
 /// Where the events come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum EventSource {
     /// The quasi-static path along the whole curve.
     Curve,
@@ -72,6 +76,8 @@ pub enum Level {
 /// A session.
 #[derive(Debug, Clone)]
 pub struct Model {
+    /// Which session of the program it is: another after a preset was opened.
+    pub session: u64,
     /// The preset as it is now.
     pub preset: Preset,
     /// The preset as loaded or last saved: what differs is unsaved.
@@ -102,6 +108,8 @@ pub struct Model {
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
+    /// That the first curve is the one on which the walk of a resumed session has been tried already.
+    pub is_tried: bool,
     /// The walk request that is running.
     pub walking: Option<u64>,
     /// What is to be walked after it.
@@ -166,6 +174,7 @@ impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
         let mut model = Self {
+            session: 0,
             saved: loaded.preset.clone(),
             preset: loaded.preset,
             untried: None,
@@ -181,6 +190,7 @@ impl Model {
             history: History::default(),
             inward: true,
             length: FIRST_LENGTH,
+            is_tried: false,
             walking: None,
             queue: VecDeque::new(),
             panel: Panel::Problem,
@@ -208,9 +218,26 @@ impl Model {
         model
     }
 
+    /// Takes the place of `before`: request numbers go on, so that late replies to that session are recognised.
+    pub(super) fn follow(&mut self, before: &Self) {
+        self.session = before.session + 1;
+        self.next_request = before.next_request + 1;
+        (self.curve_wanted, self.curve_shown) = (before.next_request, before.next_request);
+        self.views = before.views;
+    }
+
     /// Whether the preset differs from its file.
     pub fn is_unsaved(&self) -> bool {
         self.preset != self.saved
+    }
+
+    /// Whether the walker has been tried on the problem as it is: no curve and no walk is under way.
+    pub fn is_settled(&self) -> bool {
+        self.walking.is_none()
+            && self.curve.as_ref().is_some_and(|curve| {
+                let control = curve.setting.preset.path.control;
+                curve.sweep.is_of(&self.preset) && control == self.preset.path.control
+            })
     }
 
     /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
@@ -242,7 +269,7 @@ impl Model {
 
     /// The control in reduced units, by the curve's problem.
     pub fn control(&self) -> Option<Control> {
-        self.curve.as_ref().map(|curve| curve.setting.case.control)
+        self.curve.as_ref().map(|curve| curve.case.control)
     }
 
     /// Whether the current node solves the problem of the curve on the screen.
@@ -281,7 +308,7 @@ impl Model {
     pub fn limit_number(&self) -> Option<usize> {
         let node = self.walker()?;
         let curve = self.curve.as_ref()?;
-        if !node.is_limit(curve.setting.case.control) {
+        if !node.is_limit(curve.case.control) {
             return None;
         }
         let s = node.state.contact_radius;
@@ -300,8 +327,8 @@ impl Model {
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
         let event = |(number, node): (usize, &Node)| match &node.kind {
             NodeKind::Jump(event) => {
-                let mut report = EventReport::new(&node.setting.case, node.control, event);
-                let before = node.parent.and_then(|parent| self.history.nodes().get(parent));
+                let mut report = EventReport::new(&node.setting.reduced, node.control, event);
+                let before = node.parent.and_then(|parent| self.history.node(parent));
                 let landed = node.is_apart() || node.admissibility.holds;
                 report.admissible = before.map(|before| before.admissibility.holds && landed);
                 Some((number, report))

@@ -37,17 +37,42 @@ impl Pin {
 
 /// The pinned curves, by number.
 #[derive(Debug, Clone, Default)]
-pub struct Pins(Vec<Pin>);
+pub struct Pins {
+    shown: Vec<Pin>,
+    /// Those of a resumed session whose curves are on their way, with their numbers.
+    awaited: Vec<(usize, Preset)>,
+}
 
 impl Pins {
+    /// Pins whose curves are still to be computed.
+    pub fn awaiting(presets: impl IntoIterator<Item = (usize, Preset)>) -> Self {
+        Self { shown: Vec::new(), awaited: presets.into_iter().take(MOST).collect() }
+    }
+
+    /// Those whose curves are still to be computed.
+    pub fn awaited(&self) -> &[(usize, Preset)] {
+        &self.awaited
+    }
+
+    /// The curve of an awaited pin has come; without one it is given up. False where it is no longer awaited.
+    pub fn came(&mut self, number: usize, curve: Option<Arc<CurveData>>) -> bool {
+        let Some(at) = self.awaited.iter().position(|(awaited, _)| *awaited == number) else { return false };
+        self.awaited.remove(at);
+        if let Some(curve) = curve {
+            self.shown.push(Pin { number, curve });
+            self.shown.sort_by_key(|pin| pin.number);
+        }
+        true
+    }
+
     /// All.
     pub fn all(&self) -> &[Pin] {
-        &self.0
+        &self.shown
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.shown.is_empty() && self.awaited.is_empty()
     }
 
     /// Pins `curve` under the smallest free number, which is given back.
@@ -59,23 +84,30 @@ impl Pins {
             let title = curve.setting.preset.title.clone();
             Preset { title, ..pin.preset().clone() } == curve.setting.preset
         };
-        if let Some(pin) = self.0.iter().find(same) {
+        if let Some(pin) = self.shown.iter().find(same) {
             return Err(format!("this curve is pinned already, as {}", pin.number));
         }
-        let free = (1..=MOST).find(|number| self.0.iter().all(|pin| pin.number != *number));
+        let free = (1..=MOST).find(|number| !self.numbers().any(|taken| taken == *number));
         let Some(number) = free else {
             return Err(format!("{MOST} curves are pinned, which is the most: P takes one away"));
         };
-        self.0.push(Pin { number, curve: Arc::clone(curve) });
-        self.0.sort_by_key(|pin| pin.number);
+        self.shown.push(Pin { number, curve: Arc::clone(curve) });
+        self.shown.sort_by_key(|pin| pin.number);
         Ok(number)
     }
 
     /// Takes away the pin of this number, or all; false when there is nothing to take away.
     pub fn remove(&mut self, number: Option<usize>) -> bool {
-        let before = self.0.len();
-        self.0.retain(|pin| number.is_some_and(|number| pin.number != number));
-        self.0.len() < before
+        let before = self.numbers().count();
+        let stays = |other: usize| number.is_some_and(|number| other != number);
+        self.shown.retain(|pin| stays(pin.number));
+        self.awaited.retain(|(awaited, _)| stays(*awaited));
+        self.numbers().count() < before
+    }
+
+    /// The numbers that are taken.
+    fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.shown.iter().map(|pin| pin.number).chain(self.awaited.iter().map(|(number, _)| *number))
     }
 }
 

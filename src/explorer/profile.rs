@@ -1,7 +1,6 @@
 //! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
 
 use super::curve::CurveData;
-use super::history::Setting;
 use crate::contact::{Control, Gap, Units};
 use crate::quasistatic::jump::{Nodes, Run};
 use crate::quasistatic::{Landscape, Profile, State};
@@ -21,9 +20,7 @@ const SHARES: [f64; 2] = [0.95, 0.6];
 pub struct Ask {
     /// Its number.
     pub id: u64,
-    /// The problem the state solves.
-    pub setting: Arc<Setting>,
-    /// The curve on which it lies, with the control whose potential is wanted.
+    /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
     /// The state, reduced.
     pub state: State,
@@ -36,13 +33,12 @@ pub struct Ask {
 impl Ask {
     /// Whether the answer to the one is the answer to the other.
     pub fn is_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.setting, &other.setting)
-            && Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
+        Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
             && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
     }
 
     fn control(&self) -> Control {
-        self.curve.setting.case.control
+        self.curve.case.control
     }
 }
 
@@ -68,7 +64,7 @@ pub struct Inside {
 impl Inside {
     /// Computes what `ask` wants.
     pub fn compute(ask: &Ask) -> Self {
-        let case = &ask.setting.case;
+        let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
         let landscape = landscape(ask);
         Self {
@@ -85,7 +81,7 @@ impl Inside {
 
 fn landscape(ask: &Ask) -> Option<Landscape> {
     let (curve, control, s) = (&ask.curve.sweep.curve, ask.control(), ask.state.contact_radius);
-    let wave = ask.setting.case.reduced.gap.feature_length();
+    let wave = ask.curve.case.reduced.gap.feature_length();
     let [inward, outward] = wave
         .map_or(SHARES.map(|share| share * s), |wave| WAVES.map(|waves| (waves * wave).min(SHARES[0] * s)));
     let nodes = Nodes::new(curve, control, &ask.curve.limits);
@@ -95,7 +91,7 @@ fn landscape(ask: &Ask) -> Option<Landscape> {
 
 /// The exact (r, p) in the problem's own units, made reduced; dense towards the edge.
 fn exact_pressure(ask: &Ask) -> Vec<(f64, f64)> {
-    let case = &ask.setting.case;
+    let case = &ask.curve.case;
     let (exact, units) = (Exact::of(&case.problem), case.units());
     let s = ask.state.contact_radius;
     (0..EXACT_POINTS)

@@ -26,9 +26,10 @@ use super::view::View;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
 use files::{browse, export, file, file_done, save, save_back};
+pub(in crate::explorer) use values::want_curve;
 use values::{
     adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
-    want_check, want_curve,
+    want_check,
 };
 use walk::{restart, scale_length, stop, travel, walk, walked};
 use words::unavailable;
@@ -95,6 +96,10 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
         }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
+            Vec::new()
+        }
+        Reply::Pinned(number, curve) => {
+            model.pins.came(number, curve);
             Vec::new()
         }
         Reply::File(done) => file_done(model, *done),
@@ -199,7 +204,7 @@ fn select(model: &mut Model) -> Vec<Effect> {
     if model.events == EventSource::Walked {
         let events = model.walked_events();
         let Some((node, _)) = events.get(model.event) else { return Vec::new() };
-        let Some(parent) = model.history.nodes().get(*node).and_then(|n| n.parent) else { return Vec::new() };
+        let Some(parent) = model.history.node(*node).and_then(|n| n.parent) else { return Vec::new() };
         // The state before the jump, as it was walked.
         while model.history.cursor() != Some(parent) && model.history.undo() {}
         return adopt_parameters(model);

@@ -3,8 +3,11 @@
 //! A window is kept in shares of the whole chart, not in values: it stays on the edge of the contact while the walker
 //! moves, on a snap while a knob is turned, and means the same on reduced and raw axes.
 
+use serde::{Deserialize, Serialize};
+
 /// The views of a problem and its walker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum View {
     /// P over δ.
     ForceApproach,
@@ -94,7 +97,7 @@ impl Overlay {
 }
 
 /// Which overlays are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Overlays {
     /// [`Overlay::Smooth`].
     pub smooth: bool,
@@ -132,7 +135,7 @@ impl Overlays {
 }
 
 /// The part of a chart that is shown: from and to along each axis, 0 and 1 the ends of the whole.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Along x.
     pub x: [f64; 2],
@@ -154,6 +157,11 @@ impl Window {
     /// Whether all of the chart is shown, and no more.
     pub fn is_whole(&self) -> bool {
         *self == Self::WHOLE
+    }
+
+    /// Whether it is a window at all: finite, ascending, neither too close nor too wide.
+    pub fn is_possible(&self) -> bool {
+        [self.x, self.y].iter().all(|[lo, hi]| lo.is_finite() && (CLOSEST..=WIDEST).contains(&(hi - lo)))
     }
 
     /// How many times closer than the whole.

@@ -128,11 +128,11 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
 
 impl Request {
     fn equilibrium(&self) -> &Equilibrium {
-        &self.curve.setting.equilibrium
+        &self.curve.sweep.curve.equilibrium
     }
 
     fn case(&self) -> &Case {
-        &self.curve.setting.case
+        &self.curve.case
     }
 }
 
@@ -178,7 +178,7 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
     if shrinking(&here) != request.inward {
         here = here.reversed();
     }
-    let case = &request.curve.setting.case;
+    let case = &request.curve.case;
     let mut just_left = request.on_limit;
     for _ in 0..count {
         if !run {
@@ -298,7 +298,7 @@ fn away(request: &Request, limit: &Point) -> Run {
 /// The state at the old control value after a change, from the old contact radius.
 fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let equilibrium = request.equilibrium();
-    let case = &request.curve.setting.case;
+    let case = &request.curve.case;
     let units = case.units();
     let value = request.control.value(old.approach / units.length, old.force / units.force);
     let s = old.contact_radius / units.length;

@@ -121,7 +121,7 @@ fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
 /// The limit points of the control and of the others, and the pull-off.
 fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let curve = subject.curve;
-    let (equilibrium, units) = (&curve.sweep.curve.equilibrium, curve.setting.case.units());
+    let (equilibrium, units) = (&curve.sweep.curve.equilibrium, curve.case.units());
     let view = figure.view;
     figure.marks.extend(
         curve

@@ -25,7 +25,7 @@ impl<'a> Scale<'a> {
         if axes == Axes::Raw {
             return Self { force: None, wave: None, modulus: None, units };
         }
-        let problem = &curve.setting.case.problem;
+        let problem = &curve.case.problem;
         Self {
             force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
             wave: problem.shape.feature_length(),

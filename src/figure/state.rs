@@ -24,7 +24,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let (x, y) = match view {
         View::Pressure => (scale.radius_axis("r"), scale.pressure_axis()),
         View::Gap => (scale.radius_axis("r"), scale.length("gap")),
-        _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.setting.case.control)),
+        _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.case.control)),
     };
     let mut figure = Figure::empty(view, format!("{} over {}", y.title(), x.symbol), x, y);
     let Some(inside) = subject.inside else {

@@ -154,7 +154,7 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
             let next = area.outline.iter().cycle().skip(1);
             let enclosed: f64 =
                 area.outline.iter().zip(next).map(|(a, b)| 0.5 * (a.0 * b.1 - b.0 * a.1)).sum();
-            let lost = event.dissipated.unwrap() * curve.setting.case.units().energy;
+            let lost = event.dissipated.unwrap() * curve.case.units().energy;
             assert!(
                 (enclosed.abs() * scale / lost - 1.0).abs() < 0.02,
                 "{control}: {} {lost}",
@@ -210,7 +210,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     let mut session = Session::new("wavy-sphere");
     session.does(Command::Overlay(Overlay::Exact)).does(Id::NextLimit).does(Id::Jump);
     let node = session.model.walker().unwrap();
-    let case: &Case = &node.setting.case;
+    let case: &Case = &session.model.curve.as_ref().unwrap().case;
     let radius = node.state.contact_radius / case.reduced.gap.feature_length().unwrap();
     let pressure = session.figure(View::Pressure);
     assert_eq!((count(&pressure, Role::Body), count(&pressure, Role::Exact)), (1, 1));

@@ -35,7 +35,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         }
     };
     figure.lines.push(Line::new(Role::Unstable, "passed by", points));
-    let path = Path { curve: subject.curve, scale, units: *subject.curve.setting.case.units() };
+    let path = Path { curve: subject.curve, scale, units: *subject.curve.case.units() };
     let mut from = unloading.start;
     for event in &unloading.events {
         figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, Some(&event.before))));

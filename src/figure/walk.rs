@@ -31,7 +31,7 @@ pub fn events_before<'a>(
     scale: Scale<'a>,
     view: View,
 ) -> impl Iterator<Item = Mark> + 'a {
-    let units = *subject.curve.setting.case.units();
+    let units = *subject.curve.case.units();
     let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
     events.map(move |event| {
         let sign = if event.kind == EventKind::PullOff { Sign::PullOff } else { Sign::Limit };
@@ -43,7 +43,7 @@ pub fn events_before<'a>(
 pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;
     let place = |node: &Node, state: &State| {
-        scale.place(view, quantities(&state.in_units(node.setting.case.units())))
+        scale.place(view, quantities(&state.in_units(node.setting.units())))
     };
     let mut steps: Vec<(f64, f64)> = Vec::new();
     let mut finish = |steps: &mut Vec<(f64, f64)>| {

@@ -1,6 +1,7 @@
 //! Reading regular files of bounded size, and recognising them again.
 
 use super::text::show_path;
+use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata, OpenOptions};
 use std::hash::{DefaultHasher, Hasher};
 use std::io::{self, Read};
@@ -12,7 +13,7 @@ use thiserror::Error;
 pub const LARGEST: u64 = 1 << 20;
 
 /// A file as it was at one moment: size, time, inode, content. Equal only if nothing changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     length: u64,
     seconds: i64,
@@ -26,7 +27,8 @@ impl Fingerprint {
     /// Of a file with this metadata and content.
     #[must_use]
     pub fn new(metadata: &Metadata, content: &[u8]) -> Self {
-        // Compared only within one run of the program, so the hash need not be a lasting one.
+        // Saved with sessions: should another build of the program hash otherwise, the file counts as changed, and the
+        // person is asked before it is replaced.
         let mut hasher = DefaultHasher::new();
         hasher.write(content);
         Self {

@@ -15,6 +15,7 @@ use super::shape::fit_parameters;
 use super::suggest::closest;
 use super::text::{quote, sanitize, show_name};
 use super::value::Value;
+use crate::contact::shapes::Rows;
 use crate::contact::shapes::harmonics::MOST_WAVES;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -120,6 +121,21 @@ pub fn read_in<S: AsRef<str>>(
     sheet.finish()
 }
 
+/// Reads a preset whose profile, where it has one, is `rows`, whatever its file holds by now; no file is read.
+///
+/// # Errors
+/// Every mistake found, with its line.
+pub fn read_holding(name: &str, text: &str, rows: Option<Arc<Rows>>) -> Result<Preset, ReadError> {
+    // Without rows the file is not asked for either: a profile that has none is a mistake.
+    let rows = Some(rows.unwrap_or_default());
+    let mut sheet = Sheet { name: show_name(name), rows, ..Sheet::default() };
+    match DeTable::parse(text) {
+        Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
+        Err(error) => sheet.syntax(text, &error),
+    }
+    sheet.finish()
+}
+
 /// What is known of one key.
 struct Entry {
     value: Result<Value, Invalid>,
@@ -132,6 +148,8 @@ struct Sheet {
     name: String,
     /// The folder of the file.
     folder: Option<PathBuf>,
+    /// The rows of its profile, where they are known and no file is to be read.
+    rows: Option<Arc<Rows>>,
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     refit: bool,
     entries: BTreeMap<Key, Entry>,
@@ -194,7 +212,10 @@ impl Sheet {
                         Place::File(_) => self.folder.as_deref(),
                         Place::Assignment(_) => None,
                     };
-                    let value = value.and_then(|value| located(&row, row.check(value)?, folder));
+                    let value = value.and_then(|value| match &self.rows {
+                        Some(rows) if row.kind == Kind::File => Ok(Value::Profile(Arc::clone(rows))),
+                        _ => located(&row, row.check(value)?, folder),
+                    });
                     self.put(&row, value, origin);
                 }
                 (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),

@@ -58,6 +58,17 @@ impl Scales {
         let [approach, force, contact_radius] = ranges.map(scale);
         Self { approach, force, contact_radius }
     }
+
+    /// δ, P and s of the unknowns.
+    pub fn quantities(&self, y: &Unknowns) -> [f64; 3] {
+        [y[0] * self.approach, y[1] * self.force, y[2] * self.contact_radius]
+    }
+
+    /// The slopes of the curve at a point.
+    pub fn stability(&self, point: &Point) -> Stability {
+        let [delta, force, s] = self.quantities(&point.frame.tangent);
+        Stability { approach: delta / s, force: force / s }
+    }
 }
 
 /// One equilibrium state.
@@ -172,8 +183,7 @@ impl Equilibrium {
 
     /// δ, P and s of the unknowns.
     pub fn quantities(&self, y: &Unknowns) -> [f64; 3] {
-        let Scales { approach, force, contact_radius } = self.scales;
-        [y[0] * approach, y[1] * force, y[2] * contact_radius]
+        self.scales.quantities(y)
     }
 
     /// s of a point.
@@ -206,8 +216,7 @@ impl Equilibrium {
 
     /// The slopes of the curve at a point.
     pub fn stability(&self, point: &Point) -> Stability {
-        let [delta, force, s] = self.quantities(&point.frame.tangent);
-        Stability { approach: delta / s, force: force / s }
+        self.scales.stability(point)
     }
 
     /// The stiffnesses at a point, its `P_δ` evaluated there.

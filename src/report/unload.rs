@@ -5,8 +5,7 @@ use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
 use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
-use crate::contact::Control;
-use crate::contact::Gap;
+use crate::contact::{Control, Gap, Reduced};
 use crate::preset::Preset;
 use crate::quasistatic::equilibrium::wave_index;
 use crate::quasistatic::overlap::passed_while;
@@ -129,7 +128,7 @@ impl UnloadReport {
     /// the rest.
     pub fn new(preset: &Preset, case: &Case, unloading: &Unloading) -> Self {
         let units = case.units();
-        let start = StateReport::new(case, &unloading.start);
+        let start = StateReport::new(&case.reduced, &unloading.start);
         let note = unloading.asked.map(|asked| {
             let asked = asked.in_units(units);
             format!(
@@ -162,7 +161,7 @@ impl UnloadReport {
             events: unloading
                 .events
                 .iter()
-                .map(|event| EventReport::new(case, unloading.control, event))
+                .map(|event| EventReport::new(&case.reduced, unloading.control, event))
                 .collect(),
         }
     }
@@ -191,24 +190,24 @@ impl UnloadReport {
 }
 
 impl StateReport {
-    /// A reduced state of `case` in the user's units.
-    pub fn new(case: &Case, state: &State) -> Self {
-        let wave = wave_index(state.contact_radius, case.reduced.gap.feature_length());
-        let State { contact_radius, approach, force, .. } = state.in_units(case.units());
+    /// A state of `problem` in the user's units.
+    pub fn new(problem: &Reduced, state: &State) -> Self {
+        let wave = wave_index(state.contact_radius, problem.gap.feature_length());
+        let State { contact_radius, approach, force, .. } = state.in_units(&problem.units);
         Self { contact_radius, approach, force, wave }
     }
 }
 
 impl EventReport {
-    /// A reduced event of `case` under `control` in the user's units.
-    pub fn new(case: &Case, control: Control, event: &Event) -> Self {
-        let units = case.units();
+    /// An event of `problem` under `control` in the user's units.
+    pub fn new(problem: &Reduced, control: Control, event: &Event) -> Self {
+        let units = problem.units;
         let of_control = if control == Control::Force { units.force } else { units.length };
         Self {
             kind: kind_name(event.kind),
             control_value: event.control_value * of_control,
-            before: StateReport::new(case, &event.before),
-            after: event.after.as_ref().map(|after| StateReport::new(case, after)),
+            before: StateReport::new(problem, &event.before),
+            after: event.after.as_ref().map(|after| StateReport::new(problem, after)),
             dissipated: event.dissipated.map(|loss| loss * units.energy),
             dissipated_by_area: event.dissipated_by_area.map(|loss| loss * units.energy),
             reason: reason(control, event).to_owned(),

@@ -46,9 +46,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let (mut opened, effects) = open(*loaded);
-            // Request numbers go on, so that late replies to the old session are recognised; so do the views.
-            opened.next_request = model.next_request + 1;
-            opened.curve_shown = model.next_request;
+            opened.follow(model);
             look::carry_on(model, &mut opened);
             *model = opened;
             drop(effects);

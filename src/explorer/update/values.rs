@@ -17,7 +17,7 @@ use crate::preset::{Preset, Value};
 use std::path::Path;
 use std::sync::Arc;
 
-pub(super) fn want_curve(model: &mut Model) -> Effect {
+pub(in crate::explorer) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
     // The curve does not know what is controlled: under another control it need not be swept again.
@@ -70,11 +70,13 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
                 begin_walk(model, &curve);
                 return Vec::new();
             }
+            let is_tried = std::mem::take(&mut model.is_tried);
             let Some(node) = model.history.current() else { return Vec::new() };
-            if model.is_on_curve(node) || node.is_apart() || model.walking.is_some() {
+            let is_stale = matches!(node.kind, NodeKind::Stale(_));
+            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() || model.walking.is_some() {
                 return Vec::new();
             }
-            let state = node.state.in_units(node.setting.case.units());
+            let state = node.state.in_units(node.setting.units());
             walk(model, Action::Solve { state })
         }
     }
@@ -141,6 +143,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     if same_problem {
         return Vec::new();
     }
+    model.is_tried = false;
     let knobs = model.knobs().len();
     model.parameter = model.parameter.min(knobs.saturating_sub(1));
     let mut effects = stop(model);

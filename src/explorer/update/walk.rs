@@ -24,7 +24,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
         // Given up before: asked for again.
         return if model.is_computing() { Vec::new() } else { vec![want_curve(model)] };
     };
-    let control = curve.setting.case.control;
+    let control = curve.case.control;
     let moves = matches!(action, Action::MoveTo(_) | Action::MoveToLimit(_) | Action::Solve { .. });
     let node = model.history.current();
     if !moves {
@@ -90,7 +90,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         .filter(|node| {
             !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
         })
-        .map(|node| node.state.in_units(node.setting.case.units()));
+        .map(|node| node.state.in_units(node.setting.units()));
     if let (Some(state), false) = (outdated, model.is_computing()) {
         model.queue.clear();
         return walk(model, Action::Solve { state });
@@ -112,7 +112,7 @@ fn append(model: &mut Model, state: Made) {
     let node = Node {
         parent: None,
         kind: state.kind,
-        control: state.setting.case.control,
+        control: state.setting.control,
         setting: state.setting,
         point: state.point,
         state: state.state,
@@ -144,7 +144,7 @@ pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.inward = true;
-    let start = model.curve.as_ref().map(|curve| curve.setting.case.start);
+    let start = model.curve.as_ref().map(|curve| curve.case.start);
     start.map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
 }
 
@@ -165,8 +165,8 @@ pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Eff
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
     let Some(point) = curve.sweep.curve.branch.points.first().cloned() else { return };
     let (Some(stiffness), Some(admissibility)) = (curve.sweep.stiffness, curve.sweep.start) else { return };
-    let state = curve.setting.equilibrium.state(&point);
-    let control = curve.setting.case.control;
+    let state = curve.sweep.curve.equilibrium.state(&point);
+    let control = curve.case.control;
     model.history.push(Node {
         parent: None,
         kind: NodeKind::Start,
@@ -179,7 +179,7 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         ahead: None,
         admissibility,
         digits: curve.sweep.digits,
-        from_exact: from_exact(&curve.setting.case, &state),
+        from_exact: from_exact(&curve.case, &state),
         begins: true,
     });
 }

@@ -44,7 +44,7 @@ pub fn hint(model: &Model) -> String {
     }
     let Some(control) = model.control() else { return String::new() };
     if let NodeKind::Jump(event) = &node.kind {
-        let units = node.setting.case.units();
+        let units = node.setting.units();
         let lost = event.dissipated.map(|lost| {
             format!(
                 ", lost {}",
@@ -98,8 +98,7 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let Some(ahead) = node.ahead else {
         return format!("{name}: x lets the edge run, Space goes on along the curve");
     };
-    let case = &node.setting.case;
-    let after = ahead.after.map(|after| StateReport::new(case, &after));
+    let after = ahead.after.map(|after| StateReport::new(&node.setting.reduced, &after));
     let lands = match (after, after.and_then(|after| after.wave)) {
         (None, _) => "pulls off".to_owned(),
         (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
@@ -113,7 +112,7 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let lost = ahead.dissipated.map(|lost| {
         format!(
             " (loses {})",
-            with_unit(&node.setting.preset.units, Quantity::Energy, lost * case.units().energy, false, loss)
+            with_unit(&node.setting.preset.units, Quantity::Energy, lost * node.setting.units().energy, false, loss)
         )
     });
     // The edge runs over the unstable part: walking the same way leads onto it.

@@ -84,7 +84,7 @@ fn part(part: &Inadmissible) -> String {
 fn here(model: &Model, events: &[EventReport]) -> Option<usize> {
     model.limit_number()?;
     let node = model.walker()?;
-    let s = node.state.in_units(node.setting.case.units()).contact_radius;
+    let s = node.state.in_units(node.setting.units()).contact_radius;
     events.iter().position(|event| (event.before.contact_radius - s).abs() <= 1e-6 * s)
 }
 

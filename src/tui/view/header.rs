@@ -14,7 +14,7 @@ use ratatui::text::{Line, Span};
 fn stiffness_share(model: &Model) -> Option<f64> {
     let node = model.history.current().filter(|node| !node.is_apart() && model.axes == Axes::Reduced)?;
     let Control::Stiffness(k) = model.preset.path.control else { return None };
-    Some(k / node.stiffness.in_units(node.setting.case.units()).contact)
+    Some(k / node.stiffness.in_units(node.setting.units()).contact)
 }
 
 /// Draws the first line.

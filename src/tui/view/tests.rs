@@ -328,7 +328,7 @@ fn a_number_typed_first_is_a_count_and_zero_alone_restarts() {
     screen.keys("\x1b0");
     assert!(screen.text(80, 24).contains("step 0"));
     // Solved again at the same radius: equal but for the rounding of another order of sums.
-    let [start, here] = [Some(&screen.app.model.history.nodes()[0]), screen.app.model.history.current()]
+    let [start, here] = [screen.app.model.history.node(0), screen.app.model.history.current()]
         .map(|node| node.unwrap().state);
     assert_eq!(here.contact_radius.to_bits(), start.contact_radius.to_bits());
     assert!((here.force / start.force - 1.0).abs() < 1e-12, "{here:?} {start:?}");

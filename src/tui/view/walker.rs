@@ -1,6 +1,7 @@
 //! The state of the walker.
 
 use super::{is_selected, pair, side_panel};
+use crate::case::critical_force;
 use crate::contact::{Control, Gap};
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::{Model, Panel};
@@ -39,7 +40,7 @@ fn shown(theme: Theme, node: &Node, quantity: Quantity, x: f64, digits: usize) -
 }
 
 fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
-    let state = node.state.in_units(node.setting.case.units());
+    let state = node.state.in_units(node.setting.units());
     let shown = |quantity, x| shown(theme, node, quantity, x, 5);
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
@@ -51,10 +52,10 @@ fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
 }
 
 fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
-    let case = &node.setting.case;
-    let state = node.state.in_units(case.units());
-    let critical = case.critical_force();
-    let wave = case.reduced.gap.feature_length();
+    let setting = &node.setting;
+    let state = node.state.in_units(setting.units());
+    let critical = critical_force(&setting.preset);
+    let wave = setting.reduced.gap.feature_length();
     let s = node.state.contact_radius;
     let mut force = pair(theme, " P ", &shown(theme, node, Quantity::Force, state.force, 4)).to_vec();
     if let Some(critical) = critical {
@@ -118,13 +119,13 @@ fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
         (false, Some(crest), _) => crest.radius,
         (false, None, pressure) => pressure?.0,
     };
-    let radius = shown(theme, node, Quantity::Length, radius * node.setting.case.units().length, 4);
+    let radius = shown(theme, node, Quantity::Length, radius * node.setting.units().length, 4);
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
 /// `P_δ`, dP/dδ and dA/dδ.
 fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 2] {
-    let stiffness = node.stiffness.in_units(node.setting.case.units());
+    let stiffness = node.stiffness.in_units(node.setting.units());
     // At a limit point of the approach the slopes have no bound.
     let slope = |quantity, x: f64| {
         if x.is_infinite() { "infinite".to_owned() } else { shown(theme, node, quantity, x, 4) }

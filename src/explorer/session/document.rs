@@ -1,0 +1,251 @@
+//! A session as JSON.
+//!
+//! What a list of sessions shows stands first; it is read without the rest being understood.
+
+use super::number::{Real, floats, reals};
+use super::problems::{Collector, Place, Problems};
+use super::snapshot::{Look, Snapshot};
+use super::tree::{self, Saved};
+use crate::preset::{Fingerprint, Source, shipped};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The version of the format. A larger one is refused; what is added without a new version has a default.
+pub const FORMAT: u32 = 1;
+
+/// How a session ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ended {
+    /// It has not, or its program was killed.
+    Running,
+    /// The person left it.
+    Quit,
+    /// The connection dropped, or a signal or a fault ended the program.
+    Dropped,
+}
+
+impl Ended {
+    /// Its word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Running => "running",
+            Self::Quit => "quit",
+            Self::Dropped => "dropped",
+        }
+    }
+}
+
+/// Why a document is no session of this program.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Unreadable {
+    /// Not what was written.
+    #[error("the session is damaged: {0}")]
+    Damaged(String),
+    /// Of a later version of the program.
+    #[error(
+        "the session has format {format}, of a later pulloff (it was written by {program}); this one reads format \
+         {FORMAT}"
+    )]
+    Future {
+        /// Its format.
+        format: u32,
+        /// The version of the program that wrote it.
+        program: String,
+    },
+}
+
+/// What a list shows of a session.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The version of the format.
+    pub format: u32,
+    /// The version of the program that wrote it.
+    pub program_version: String,
+    /// How it ended.
+    pub ended: Ended,
+    /// When it was written, in seconds since 1970.
+    pub saved_at: u64,
+    /// What its preset is called.
+    pub preset_name: String,
+    /// The title of its preset.
+    pub title: String,
+    /// The states walked by hand.
+    pub steps: usize,
+    /// Whether its preset has changes that are in no file.
+    pub unsaved: bool,
+}
+
+/// A session.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Document {
+    // The fields of the summary stand first in the file.
+    format: u32,
+    program_version: String,
+    ended: Ended,
+    saved_at: u64,
+    preset_name: String,
+    title: String,
+    steps: usize,
+    unsaved: bool,
+    /// δ, P and s of the walker in the user's units, for whoever reads the file.
+    walker: Option<[Real; 3]>,
+    source: Origin,
+    fingerprint: Option<Fingerprint>,
+    /// The number of the preset as it is, and as saved.
+    preset: usize,
+    saved: usize,
+    look: Look,
+    pins: Vec<(usize, usize)>,
+    #[serde(default)]
+    journal: Vec<String>,
+    problems: Problems,
+    settled: bool,
+    cursor: Option<usize>,
+    nodes: Vec<Saved>,
+}
+
+/// Where a preset came from.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Origin {
+    Shipped(String),
+    User { name: String, path: Place },
+    File(Place),
+}
+
+impl Origin {
+    fn of(source: &Source) -> Self {
+        match source {
+            Source::Shipped(shipped) => Self::Shipped(shipped.name.to_owned()),
+            Source::User { name, path } => Self::User { name: name.clone(), path: Place::of(path) },
+            Source::File(path) => Self::File(Place::of(path)),
+        }
+    }
+
+    fn back(self) -> Result<Source, Unreadable> {
+        Ok(match self {
+            // Of a preset that no longer comes with the program only the name is missing.
+            Self::Shipped(name) => {
+                let known = shipped::find(&name).or_else(|| shipped::find(shipped::DEFAULT));
+                Source::Shipped(known.ok_or_else(|| Unreadable::Damaged(format!("no preset {name}")))?)
+            }
+            Self::User { name, path } => Source::User { name, path: path.path() },
+            Self::File(path) => Source::File(path.path()),
+        })
+    }
+}
+
+impl Document {
+    /// The document of a snapshot, made `saved_at` seconds after 1970.
+    pub fn new(snapshot: &Snapshot, ended: Ended, saved_at: u64) -> Self {
+        let mut problems = Collector::default();
+        let preset = problems.preset(&snapshot.preset);
+        let saved = problems.preset(&snapshot.saved);
+        let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
+        let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
+        let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
+        Self {
+            format: FORMAT,
+            program_version: env!("CARGO_PKG_VERSION").to_owned(),
+            ended,
+            saved_at,
+            preset_name: snapshot.source.shown(),
+            title: snapshot.preset.title.clone(),
+            steps: snapshot.steps(),
+            unsaved: snapshot.preset != snapshot.saved,
+            walker: walker.map(|state| reals([state.approach, state.force, state.contact_radius])),
+            source: Origin::of(&snapshot.source),
+            fingerprint: snapshot.fingerprint,
+            preset,
+            saved,
+            look: snapshot.look.clone(),
+            pins,
+            journal: snapshot.journal.clone(),
+            problems: problems.finish(),
+            settled: snapshot.settled,
+            cursor: snapshot.history.cursor(),
+            nodes,
+        }
+    }
+
+    /// As JSON, in one line.
+    ///
+    /// # Errors
+    /// None that is known: every number and text has a form.
+    pub fn json(&self) -> serde_json::Result<Vec<u8>> {
+        let mut bytes = serde_json::to_vec(self)?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
+    /// Reads a document.
+    ///
+    /// # Errors
+    /// [`Unreadable`].
+    pub fn read(bytes: &[u8]) -> Result<Self, Unreadable> {
+        check_format(bytes)?;
+        serde_json::from_slice(bytes).map_err(|error| damaged(&error))
+    }
+
+    /// δ, P and s of the walker in the user's units, as written.
+    pub fn walker(&self) -> Option<[f64; 3]> {
+        self.walker.map(floats)
+    }
+
+    /// The snapshot of it; no problem is made ready and no file is read.
+    ///
+    /// # Errors
+    /// [`Unreadable::Damaged`].
+    pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
+        let (presets, settings) = self.problems.back()?;
+        let preset = |number: usize| {
+            let found = presets.get(number).cloned();
+            found.ok_or_else(|| Unreadable::Damaged("a preset is missing".to_owned()))
+        };
+        let history = tree::history(self.nodes, self.cursor, &settings)
+            .ok_or_else(|| Unreadable::Damaged("the states make no walk".to_owned()))?;
+        let pins = self.pins.iter().map(|(number, at)| Ok((*number, preset(*at)?)));
+        Ok(Snapshot {
+            session: 0,
+            preset: preset(self.preset)?,
+            saved: preset(self.saved)?,
+            source: self.source.back()?,
+            fingerprint: self.fingerprint,
+            history,
+            settled: self.settled,
+            pins: pins.collect::<Result<_, Unreadable>>()?,
+            look: self.look,
+            journal: self.journal,
+        })
+    }
+}
+
+fn damaged(error: &serde_json::Error) -> Unreadable {
+    Unreadable::Damaged(error.to_string())
+}
+
+/// What a list shows of a document.
+///
+/// # Errors
+/// [`Unreadable`].
+pub fn summary(bytes: &[u8]) -> Result<Summary, Unreadable> {
+    check_format(bytes)?;
+    serde_json::from_slice(bytes).map_err(|error| damaged(&error))
+}
+
+/// Refuses what a later program wrote, before anything else in it is looked at.
+fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
+    /// What every version has: known before anything else is looked at.
+    #[derive(Deserialize)]
+    struct Format {
+        format: u32,
+        program_version: String,
+    }
+    let Format { format, program_version } = serde_json::from_slice(bytes).map_err(|error| damaged(&error))?;
+    if format > FORMAT {
+        let program = crate::preset::text::sanitize(&program_version, 40);
+        return Err(Unreadable::Future { format, program });
+    }
+    Ok(())
+}

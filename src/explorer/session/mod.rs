@@ -1,0 +1,30 @@
+//! A session as a document: what is kept so that nothing is lost when a connection drops.
+//!
+//! ```text
+//! Model ──► Snapshot ──► document ──► Snapshot ──► Model
+//! ```
+//!
+//! A [`Snapshot`] is what a person made: the preset as it is and as saved, the walk with all its branches, the pins,
+//! and how all of it is looked at. What follows from that (curves, profiles) is not in it and is computed again. It is
+//! made in no time however long the walk, so that whoever ends the program always finds the newest one.
+//!
+//! Everything comes back bit for bit, and a walk goes on as if it had never been interrupted.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`snapshot`] | what is kept of a model, and the model of it |
+//! | [`document`] | the same as JSON |
+//! | `problems` | the presets and settings of a document, each once |
+//! | `tree` | the nodes of the walk |
+//! | `number` | numbers bit for bit |
+//!
+//! Nothing here touches a file: the archive of sessions does.
+
+pub mod document;
+mod number;
+mod problems;
+pub mod snapshot;
+mod tree;
+
+pub use document::{Document, Ended, Summary, Unreadable, summary};
+pub use snapshot::Snapshot;

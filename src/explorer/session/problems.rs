@@ -1,0 +1,172 @@
+//! The presets and settings of a document, each once, however many nodes share them.
+
+use super::document::Unreadable;
+use super::number::{Real, floats, reals};
+use crate::contact::Shape;
+use crate::contact::shapes::Rows;
+use crate::explorer::history::Setting;
+use crate::preset::{Preset, read, write};
+use crate::quasistatic::Scales;
+use crate::units::Unit;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::ffi::OsString;
+use std::os::unix::ffi::{OsStrExt, OsStringExt};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Presets, settings and the rows of profiles, by number.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct Problems {
+    presets: Vec<Text>,
+    settings: Vec<Scaled>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    profiles: Vec<Profile>,
+}
+
+/// A preset as its file.
+#[derive(Debug, PartialEq, Eq, Hash, Clone, Serialize, Deserialize)]
+struct Text {
+    text: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    profile: Option<usize>,
+}
+
+/// A setting: its preset and δ₀, P₀, s₀, which only the swept curve knows.
+#[derive(Debug, Serialize, Deserialize)]
+struct Scaled {
+    preset: usize,
+    scales: [Real; 3],
+}
+
+/// The rows of a profile, as they were: its file may change.
+#[derive(Debug, Serialize, Deserialize)]
+struct Profile {
+    name: String,
+    folder: Option<Place>,
+    radii: Vec<Real>,
+    gaps: Vec<Real>,
+    unit: Option<String>,
+    notes: Vec<String>,
+}
+
+/// A path: its text, or its bytes where it is none.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Place {
+    Text(String),
+    Bytes(Vec<u8>),
+}
+
+impl Place {
+    pub(super) fn of(path: &Path) -> Self {
+        path.to_str().map_or_else(
+            || Self::Bytes(path.as_os_str().as_bytes().to_vec()),
+            |text| Self::Text(text.to_owned()),
+        )
+    }
+
+    pub(super) fn path(self) -> PathBuf {
+        match self {
+            Self::Text(text) => text.into(),
+            Self::Bytes(bytes) => OsString::from_vec(bytes).into(),
+        }
+    }
+}
+
+/// Numbers presets and settings while a document is made.
+#[derive(Default)]
+pub(super) struct Collector {
+    problems: Problems,
+    texts: HashMap<Text, usize>,
+    /// The settings seen, by where they are: nodes share them.
+    settings: HashMap<*const Setting, usize>,
+    rows: Vec<Arc<Rows>>,
+}
+
+impl Collector {
+    /// The number of a preset.
+    pub(super) fn preset(&mut self, preset: &Preset) -> usize {
+        let profile = match &preset.gap {
+            Shape::Profile(measured) => Some(self.profile(measured.rows())),
+            _ => None,
+        };
+        let text = Text { text: write(preset), profile };
+        let presets = &mut self.problems.presets;
+        *self.texts.entry(text).or_insert_with_key(|text| {
+            presets.push(text.clone());
+            presets.len() - 1
+        })
+    }
+
+    /// The number of a setting.
+    pub(super) fn setting(&mut self, setting: &Arc<Setting>) -> usize {
+        if let Some(known) = self.settings.get(&Arc::as_ptr(setting)) {
+            return *known;
+        }
+        let Scales { approach, force, contact_radius } = setting.scales;
+        let preset = self.preset(&setting.preset);
+        self.problems.settings.push(Scaled { preset, scales: reals([approach, force, contact_radius]) });
+        let number = self.problems.settings.len() - 1;
+        self.settings.insert(Arc::as_ptr(setting), number);
+        number
+    }
+
+    fn profile(&mut self, rows: &Arc<Rows>) -> usize {
+        let same = |known: &Arc<Rows>| {
+            Arc::ptr_eq(known, rows) || (known == rows && (&known.folder, &known.notes) == (&rows.folder, &rows.notes))
+        };
+        if let Some(known) = self.rows.iter().position(same) {
+            return known;
+        }
+        self.rows.push(Arc::clone(rows));
+        self.problems.profiles.push(Profile {
+            name: rows.name.clone(),
+            folder: rows.folder.as_deref().map(Place::of),
+            radii: rows.radii.iter().copied().map(Real).collect(),
+            gaps: rows.gaps.iter().copied().map(Real).collect(),
+            unit: rows.unit.as_ref().map(Unit::ascii),
+            notes: rows.notes.clone(),
+        });
+        self.rows.len() - 1
+    }
+
+    pub(super) fn finish(self) -> Problems {
+        self.problems
+    }
+}
+
+impl Profile {
+    fn rows(self) -> Rows {
+        let numbers = |column: Vec<Real>| column.into_iter().map(|real| real.0).collect();
+        Rows {
+            name: self.name,
+            folder: self.folder.map(Place::path),
+            radii: numbers(self.radii),
+            gaps: numbers(self.gaps),
+            unit: self.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
+            notes: self.notes,
+        }
+    }
+}
+
+impl Problems {
+    /// The presets and settings, none of them made ready.
+    pub(super) fn back(self) -> Result<(Vec<Preset>, Vec<Arc<Setting>>), Unreadable> {
+        let profiles: Vec<Arc<Rows>> = self.profiles.into_iter().map(|saved| Arc::new(saved.rows())).collect();
+        let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
+        let preset = |saved: &Text| {
+            let rows = saved.profile.map(|at| profiles.get(at).cloned().ok_or_else(|| missing("profile")));
+            let preset = read::read_holding("a preset in it", &saved.text, rows.transpose()?);
+            preset.map_err(|error| Unreadable::Damaged(error.to_string()))
+        };
+        let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;
+        let setting = |saved: Scaled| {
+            let preset: &Preset = presets.get(saved.preset).ok_or_else(|| missing("preset"))?;
+            let [approach, force, contact_radius] = floats(saved.scales);
+            Ok(Arc::new(Setting::new(preset.clone(), Scales { approach, force, contact_radius })))
+        };
+        let settings = self.settings.into_iter().map(setting).collect::<Result<Vec<_>, Unreadable>>()?;
+        Ok((presets, settings))
+    }
+}

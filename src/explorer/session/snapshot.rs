@@ -1,0 +1,168 @@
+//! What is kept of a model, and the model of it.
+
+use crate::contact::Control;
+use crate::explorer::driver::Effect;
+use crate::explorer::history::History;
+use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Model, Panel};
+use crate::explorer::pins::Pins;
+use crate::explorer::update::want_curve;
+use crate::explorer::view::{Overlays, View, Window};
+use crate::preset::{Fingerprint, Loaded, Preset, Source};
+use serde::{Deserialize, Serialize};
+
+/// What a person made of a session. A clone, and a snapshot of a model, share the walk with it.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Which session of the program it is of.
+    pub session: u64,
+    /// The preset as it is, without a value that is still being typed.
+    pub preset: Preset,
+    /// The preset as loaded or last saved.
+    pub saved: Preset,
+    /// Where it came from.
+    pub source: Source,
+    /// How its file was when last seen.
+    pub fingerprint: Option<Fingerprint>,
+    /// The walk.
+    pub history: History,
+    /// Whether the walker has been tried on the preset as it is.
+    pub settled: bool,
+    /// The pinned curves' numbers and presets.
+    pub pins: Vec<(usize, Preset)>,
+    /// How it is looked at and walked.
+    pub look: Look,
+    /// The lines of a script that led here.
+    pub journal: Vec<String>,
+}
+
+/// How a session is looked at and walked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Look {
+    /// The panel selected.
+    pub panel: Panel,
+    /// The parameter selected.
+    pub parameter: usize,
+    /// The event selected.
+    pub event: usize,
+    /// The first view.
+    pub view: View,
+    /// The parts of the views that are shown, where that is not the whole.
+    pub windows: Vec<(View, Window)>,
+    /// The cross-hair.
+    pub cross: Option<(f64, f64)>,
+    /// What the axes show.
+    pub axes: Axes,
+    /// Where the events come from.
+    pub events: EventSource,
+    /// The theory drawn.
+    pub overlays: Overlays,
+    /// Whether steps shrink the contact.
+    pub inward: bool,
+    /// The longest step by hand.
+    pub length: f64,
+    /// The last stiffness of the device.
+    pub stiffness: Option<f64>,
+    /// Whether its line is drawn, where somebody has said so.
+    pub device: Option<bool>,
+}
+
+impl Look {
+    fn of(model: &Model) -> Self {
+        let windows = View::ALL.into_iter().map(|view| (view, model.window(view)));
+        Self {
+            panel: model.panel,
+            parameter: model.parameter,
+            event: model.event,
+            view: model.view,
+            windows: windows.filter(|(_, window)| !window.is_whole()).collect(),
+            cross: model.cross,
+            axes: model.axes,
+            events: model.events,
+            overlays: model.overlays,
+            inward: model.inward,
+            length: model.length,
+            stiffness: model.stiffness,
+            device: model.device,
+        }
+    }
+
+    /// Gives `model` this look; what cannot be looked at so is left as in a new session.
+    fn lay_over(self, model: &mut Model) {
+        (model.panel, model.view, model.axes) = (self.panel, self.view, self.axes);
+        (model.events, model.overlays, model.inward) = (self.events, self.overlays, self.inward);
+        (model.event, model.device) = (self.event, self.device);
+        model.parameter = self.parameter.min(model.knobs().len().saturating_sub(1));
+        for (view, window) in self.windows.into_iter().filter(|(_, window)| window.is_possible()) {
+            model.windows[view as usize] = window;
+        }
+        let share = 0.0..=1.0;
+        model.cross = self.cross.filter(|(x, y)| share.contains(x) && share.contains(y));
+        model.length = if LENGTHS.contains(&self.length) { self.length } else { FIRST_LENGTH };
+        model.stiffness = self.stiffness.filter(|k| k.is_finite() && *k > 0.0);
+    }
+}
+
+impl Snapshot {
+    /// What there is to keep of `model`.
+    pub fn of(model: &Model) -> Self {
+        let shown = model.pins.all().iter().map(|pin| (pin.number, pin.preset().clone()));
+        Self {
+            session: model.session,
+            preset: model.untried.as_deref().unwrap_or(&model.preset).clone(),
+            saved: model.saved.clone(),
+            source: model.source.clone(),
+            fingerprint: model.fingerprint,
+            history: model.history.clone(),
+            settled: model.is_settled() || model.is_tried,
+            pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
+            look: Look::of(model),
+            journal: Vec::new(),
+        }
+    }
+
+    /// Whether both say the same.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.session == other.session
+            && self.history.revision() == other.history.revision()
+            && (&self.look, self.settled) == (&other.look, other.settled)
+            && (&self.source, self.fingerprint) == (&other.source, other.fingerprint)
+            && (&self.preset, &self.saved, &self.pins) == (&other.preset, &other.saved, &other.pins)
+            && self.journal == other.journal
+    }
+
+    /// Whether there is anything to lose: a state walked, a value changed, a curve pinned. Looking alone is not.
+    pub fn is_worth_keeping(&self) -> bool {
+        self.history.len() > 1 || self.preset != self.saved || !self.pins.is_empty()
+    }
+
+    /// The states walked by hand.
+    pub fn steps(&self) -> usize {
+        self.history.len().saturating_sub(1)
+    }
+
+    /// The session of it: its curve and those of its pins are asked for. `before` is the model that it takes the place
+    /// of, whose late replies are to be recognised.
+    pub fn resume(self, before: Option<&Model>) -> (Model, Vec<Effect>) {
+        let loaded = Loaded {
+            source: self.source,
+            preset: self.saved,
+            text: String::new(),
+            fingerprint: self.fingerprint,
+        };
+        let mut model = Model::new(loaded);
+        model.preset = self.preset;
+        model.history = self.history;
+        model.is_tried = self.settled;
+        self.look.lay_over(&mut model);
+        if let Control::Stiffness(k) = model.preset.path.control {
+            model.stiffness = Some(k);
+        }
+        if let Some(before) = before {
+            model.follow(before);
+        }
+        let mut effects = vec![want_curve(&mut model)];
+        effects.extend(self.pins.iter().map(|(number, preset)| Effect::Pin(*number, Box::new(preset.clone()))));
+        model.pins = Pins::awaiting(self.pins);
+        (model, effects)
+    }
+}

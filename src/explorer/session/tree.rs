@@ -1,0 +1,208 @@
+//! The walk of a session: every node, in the order in which they came.
+//!
+//! A node holds what cannot be had again without its curve: its unknowns, the frame of the curve there, its energy and
+//! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
+
+use super::number::{Real, floats, reals};
+use crate::explorer::history::{Ahead, History, Node, NodeKind, Setting};
+use crate::continuation::tangent::Frame;
+use crate::quasistatic::admissible::Crest;
+use crate::quasistatic::equilibrium::Unknowns;
+use crate::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A node.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Saved {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parent: Option<usize>,
+    /// The child last gone to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    forward: Option<usize>,
+    kind: Kind,
+    setting: usize,
+    step: usize,
+    y: [Real; 3],
+    tangent: [Real; 3],
+    curvature: [Real; 3],
+    positive: bool,
+    length: Real,
+    turning: Real,
+    rounds: usize,
+    energy: Real,
+    stiffness: [Real; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ahead: Option<Lead>,
+    /// r, the gap, and the number of the nearest crest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    crest: Option<(Real, Real, Option<u64>)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    least_pressure: Option<[Real; 2]>,
+    admissible: bool,
+    digits: Real,
+    from_exact: Real,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    begins: bool,
+}
+
+/// How a node came about.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Start,
+    Step,
+    Limit,
+    Jump(Box<Leap>),
+    Moved,
+    Solved,
+    Stale(String),
+}
+
+/// A jump; without a landing a pull-off.
+#[derive(Debug, Serialize, Deserialize)]
+struct Leap {
+    control_value: Real,
+    before: [Real; 4],
+    after: Option<[Real; 4]>,
+    dissipated: Option<Real>,
+    by_area: Option<Real>,
+}
+
+/// Where a jump would lead.
+#[derive(Debug, Serialize, Deserialize)]
+struct Lead {
+    after: Option<[Real; 4]>,
+    dissipated: Option<Real>,
+}
+
+fn state_out(state: &State) -> [Real; 4] {
+    reals([state.contact_radius, state.approach, state.force, state.energy])
+}
+
+fn state_in(numbers: [Real; 4]) -> State {
+    let [contact_radius, approach, force, energy] = floats(numbers);
+    State { contact_radius, approach, force, energy }
+}
+
+impl Kind {
+    fn of(kind: &NodeKind) -> Self {
+        match kind {
+            NodeKind::Start => Self::Start,
+            NodeKind::Step => Self::Step,
+            NodeKind::Limit => Self::Limit,
+            NodeKind::Jump(event) => Self::Jump(Box::new(Leap {
+                control_value: Real(event.control_value),
+                before: state_out(&event.before),
+                after: event.after.as_ref().map(state_out),
+                dissipated: event.dissipated.map(Real),
+                by_area: event.dissipated_by_area.map(Real),
+            })),
+            NodeKind::Moved => Self::Moved,
+            NodeKind::Solved => Self::Solved,
+            NodeKind::Stale(reason) => Self::Stale(reason.clone()),
+        }
+    }
+
+    fn back(self) -> NodeKind {
+        match self {
+            Self::Start => NodeKind::Start,
+            Self::Step => NodeKind::Step,
+            Self::Limit => NodeKind::Limit,
+            Self::Jump(leap) => NodeKind::Jump(Box::new(Event {
+                kind: if leap.after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+                control_value: leap.control_value.0,
+                before: state_in(leap.before),
+                after: leap.after.map(state_in),
+                dissipated: leap.dissipated.map(|x| x.0),
+                dissipated_by_area: leap.by_area.map(|x| x.0),
+            })),
+            Self::Moved => NodeKind::Moved,
+            Self::Solved => NodeKind::Solved,
+            Self::Stale(reason) => NodeKind::Stale(reason),
+        }
+    }
+}
+
+impl Saved {
+    fn of(node: &Node, setting: usize, forward: Option<usize>) -> Self {
+        let Node { point, stiffness, admissibility, .. } = node;
+        Self {
+            parent: node.parent,
+            forward,
+            kind: Kind::of(&node.kind),
+            setting,
+            step: node.step,
+            y: reals(point.y.into()),
+            tangent: reals(point.frame.tangent.into()),
+            curvature: reals(point.frame.curvature.into()),
+            positive: point.frame.positive,
+            length: Real(point.length),
+            turning: Real(point.turning),
+            rounds: point.rounds,
+            energy: Real(node.state.energy),
+            stiffness: reals([stiffness.contact, stiffness.tangent, stiffness.area_slope]),
+            ahead: node.ahead.map(|ahead| Lead {
+                after: ahead.after.as_ref().map(state_out),
+                dissipated: ahead.dissipated.map(Real),
+            }),
+            crest: admissibility.nearest.map(|crest| (Real(crest.radius), Real(crest.gap), crest.wave)),
+            least_pressure: admissibility.least_pressure.map(|(radius, least)| reals([radius, least])),
+            admissible: admissibility.holds,
+            digits: Real(node.digits),
+            from_exact: Real(node.from_exact),
+            begins: node.begins,
+        }
+    }
+
+    fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
+        let setting = Arc::clone(settings.get(self.setting)?);
+        let vector = |numbers| Unknowns::from(floats(numbers));
+        let frame =
+            Frame { tangent: vector(self.tangent), curvature: vector(self.curvature), positive: self.positive };
+        let point = Point {
+            y: vector(self.y),
+            frame,
+            length: self.length.0,
+            rounds: self.rounds,
+            turning: self.turning.0,
+        };
+        let [approach, force, contact_radius] = setting.scales.quantities(&point.y);
+        let [contact, tangent, area_slope] = floats(self.stiffness);
+        let node = Node {
+            parent: self.parent,
+            kind: self.kind.back(),
+            control: setting.control,
+            state: State { contact_radius, approach, force, energy: self.energy.0 },
+            setting,
+            point,
+            step: self.step,
+            stiffness: Stiffness { contact, tangent, area_slope },
+            ahead: self.ahead.map(|lead| Ahead {
+                after: lead.after.map(state_in),
+                dissipated: lead.dissipated.map(|x| x.0),
+            }),
+            admissibility: Admissibility {
+                nearest: self.crest.map(|(radius, gap, wave)| Crest { radius: radius.0, gap: gap.0, wave }),
+                least_pressure: self.least_pressure.map(|[radius, least]| (radius.0, least.0)),
+                holds: self.admissible,
+            },
+            digits: self.digits.0,
+            from_exact: self.from_exact.0,
+            begins: self.begins,
+        };
+        Some((node, self.forward))
+    }
+}
+
+/// The nodes of a tree; `setting` numbers their settings.
+pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) -> usize) -> Vec<Saved> {
+    let nodes = history.nodes().enumerate();
+    nodes.map(|(at, node)| Saved::of(node, setting(&node.setting), history.forward(at))).collect()
+}
+
+/// The tree of nodes; `None` where they make none.
+pub(super) fn history(nodes: Vec<Saved>, cursor: Option<usize>, settings: &[Arc<Setting>]) -> Option<History> {
+    let nodes = nodes.into_iter().map(|node| node.back(settings)).collect::<Option<Vec<_>>>()?;
+    History::of(nodes, cursor)
+}
