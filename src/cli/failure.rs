@@ -1,6 +1,7 @@
 //! What a command can fail with, and the exit status that says so.
 
 use crate::case::CaseError;
+use crate::explorer::archive::ArchiveError;
 use crate::preset::{StoreError, WriteError};
 use crate::quasistatic::StartError;
 use crate::report::rows::RowsError;
@@ -13,6 +14,9 @@ pub enum Failure {
     /// The preset or an assignment is bad, or cannot be read.
     #[error(transparent)]
     Preset(#[from] StoreError),
+    /// A session cannot be read, resumed or deleted.
+    #[error(transparent)]
+    Session(#[from] ArchiveError),
     /// The problem could not be computed.
     #[error(transparent)]
     Case(#[from] CaseError),
@@ -63,6 +67,13 @@ impl Failure {
         ExitCode::from(match self {
             Self::Closed => 0,
             Self::Preset(_)
+            | Self::Session(
+                ArchiveError::NotFound { .. }
+                | ArchiveError::Empty
+                | ArchiveError::Running { .. }
+                | ArchiveError::Unreadable { .. }
+                | ArchiveError::NoFolder,
+            )
             | Self::Usage(_)
             | Self::Case(
                 CaseError::EndOutsideStart { .. }

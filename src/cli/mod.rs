@@ -14,6 +14,7 @@ mod explore;
 mod failure;
 mod output;
 mod presets;
+mod sessions;
 mod trace;
 mod unload;
 mod verify;
@@ -35,6 +36,10 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     problem: Problem,
+    /// Go on with a session that was left or cut off: the newest, or the one of this name
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
+          conflicts_with_all = ["preset", "assignments"])]
+    resume: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -48,6 +53,9 @@ enum Command {
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
+    /// List, show and delete sessions of the explorer
+    #[command(subcommand)]
+    Sessions(sessions::Command),
 }
 
 /// Which problem, as the explorer and every computing command take it.
@@ -94,11 +102,12 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem),
+        None => explore::run(&cli.problem, cli.resume.as_deref()),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Presets(command)) => presets::run(command),
+        Some(Command::Sessions(command)) => sessions::run(command),
     };
     match result {
         Ok(code) => code,

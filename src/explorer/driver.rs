@@ -91,6 +91,8 @@ pub enum Reply {
     },
     /// The curve of a pin, by its number, or `None` where there is none any more.
     Pinned(usize, Option<Arc<CurveData>>),
+    /// Something about the session that a person should know.
+    Notice(String),
     /// A job on files ended.
     File(Box<Done>),
 }

@@ -22,10 +22,12 @@
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`files`] | opening, saving and exporting |
 //! | [`session`] | a session as a document, to be resumed |
+//! | [`archive`] | the sessions kept on disk |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
 
+pub mod archive;
 pub mod command;
 pub mod curve;
 pub mod data;

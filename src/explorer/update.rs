@@ -98,6 +98,10 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             look::profile_came(model, profile);
             Vec::new()
         }
+        Reply::Notice(text) => {
+            tell(model, Level::Error, text);
+            Vec::new()
+        }
         Reply::Pinned(number, curve) => {
             model.pins.came(number, curve);
             Vec::new()

@@ -42,9 +42,8 @@ pub fn events_before<'a>(
 /// Adds the walk to a view of the curve; the walker is the last mark.
 pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;
-    let place = |node: &Node, state: &State| {
-        scale.place(view, quantities(&state.in_units(node.setting.units())))
-    };
+    let place =
+        |node: &Node, state: &State| scale.place(view, quantities(&state.in_units(node.setting.units())));
     let mut steps: Vec<(f64, f64)> = Vec::new();
     let mut finish = |steps: &mut Vec<(f64, f64)>| {
         if steps.len() > 1 {

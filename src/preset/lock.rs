@@ -1,13 +1,15 @@
-//! One saver at a time in a folder.
+//! One saver at a time in a folder, and one program at a time with a file.
 //!
-//! The lock is an advisory one on the folder itself: it leaves no file behind, and the kernel drops it with the
-//! process, so it cannot be stale.
+//! The locks are advisory ones, which the kernel drops with the process: they cannot be stale. That of a folder is on
+//! the folder itself and leaves no file behind. That of a file which is replaced whole needs a file of its own beside
+//! it, which goes with the lock; a killed process leaves it there, empty and unlocked.
 
 use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io;
-use std::path::Path;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// How long a saver waits for another; a save takes milliseconds.
@@ -31,17 +33,73 @@ impl FolderLock {
         let file = File::open(folder)?;
         let deadline = Instant::now() + patience;
         loop {
-            match flock(&file, FlockOperation::NonBlockingLockExclusive) {
-                Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => {
-                    return Ok(Some(Self { _folder: file }));
-                }
-                Err(Errno::WOULDBLOCK | Errno::INTR) if Instant::now() < deadline => {
-                    std::thread::sleep(PAUSE);
-                }
-                Err(Errno::WOULDBLOCK | Errno::INTR) => return Ok(None),
-                Err(other) => return Err(other.into()),
+            if lock(&file)? {
+                return Ok(Some(Self { _folder: file }));
             }
+            if Instant::now() >= deadline {
+                return Ok(None);
+            }
+            std::thread::sleep(PAUSE);
         }
+    }
+}
+
+/// Locks a file or folder; false if another holds it. A file system that knows no locks grants every one.
+fn lock(file: &File) -> io::Result<bool> {
+    match flock(file, FlockOperation::NonBlockingLockExclusive) {
+        Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => Ok(true),
+        Err(Errno::WOULDBLOCK | Errno::INTR) => Ok(false),
+        Err(other) => Err(other.into()),
+    }
+}
+
+/// A lock held by means of a file of its own, which is removed with it.
+#[derive(Debug)]
+pub struct FileLock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl FileLock {
+    /// How long it waits for one that only looks whether the lock is held.
+    const PATIENCE: Duration = Duration::from_millis(50);
+
+    /// Takes the lock of the file `path`, which is made; `None` if another holds it.
+    ///
+    /// # Errors
+    /// The file cannot be made or locked.
+    pub fn acquire(path: &Path) -> io::Result<Option<Self>> {
+        let deadline = Instant::now() + Self::PATIENCE;
+        loop {
+            let flags = rustix::fs::OFlags::NOFOLLOW | rustix::fs::OFlags::NONBLOCK;
+            let mut options = OpenOptions::new();
+            options.write(true).create(true).truncate(false).mode(0o600);
+            let file = options.custom_flags(flags.bits().cast_signed()).open(path)?;
+            if lock(&file)? {
+                let ours = file.metadata()?;
+                // Whoever held it before removes the file: a lock on what has no name any more is none.
+                let named = path.symlink_metadata();
+                if named.is_ok_and(|named| (named.dev(), named.ino()) == (ours.dev(), ours.ino())) {
+                    return Ok(Some(Self { path: path.to_owned(), _file: file }));
+                }
+            } else if Instant::now() >= deadline {
+                return Ok(None);
+            }
+            std::thread::sleep(PAUSE);
+        }
+    }
+
+    /// Whether somebody holds the lock of the file `path`.
+    #[must_use]
+    pub fn is_held(path: &Path) -> bool {
+        File::open(path).is_ok_and(|file| matches!(lock(&file), Ok(false)))
+    }
+}
+
+impl Drop for FileLock {
+    fn drop(&mut self) {
+        // While it is still locked, so that nobody else's is removed.
+        let _ = std::fs::remove_file(&self.path);
     }
 }
 
@@ -58,5 +116,39 @@ mod tests {
         drop(first);
         assert!(lock(0).is_some());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "no lock file is left");
+    }
+
+    #[test]
+    fn a_file_is_held_by_one_and_left_by_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(".a.lock");
+        assert!(!FileLock::is_held(&path));
+        let first = FileLock::acquire(&path).unwrap();
+        assert!(first.is_some() && FileLock::is_held(&path));
+        assert!(FileLock::acquire(&path).unwrap().is_none());
+        drop(first);
+        assert!(!FileLock::is_held(&path) && !path.exists());
+        // What a killed process leaves is no lock.
+        std::fs::write(&path, "").unwrap();
+        assert!(!FileLock::is_held(&path) && FileLock::acquire(&path).unwrap().is_some());
+    }
+
+    #[test]
+    fn a_lock_changes_hands_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, inside) = (folder.path().join(".a.lock"), std::sync::atomic::AtomicUsize::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..50 {
+                        if let Some(_held) = FileLock::acquire(&path).unwrap() {
+                            use std::sync::atomic::Ordering::SeqCst;
+                            assert_eq!(inside.fetch_add(1, SeqCst), 0, "two hold it");
+                            inside.fetch_sub(1, SeqCst);
+                        }
+                    }
+                });
+            }
+        });
     }
 }

@@ -289,7 +289,7 @@ impl Store {
         overwrite: Overwrite,
     ) -> Result<(Source, Fingerprint), StoreError> {
         let path = self.path_of(name)?;
-        make_folder(folder_of(&path))?;
+        make_own_folder(folder_of(&path))?;
         let fingerprint = save_file(&path, preset, overwrite)?;
         Ok((Source::User { name: name.to_owned(), path }, fingerprint))
     }
@@ -309,16 +309,23 @@ impl Store {
         if matches!(overwrite, Overwrite::Never) && path.exists() {
             return Err(WriteError::Exists { path: show_path(&path) }.into());
         }
-        make_folder(folder_of(&path))?;
+        make_own_folder(folder_of(&path))?;
         let preset = copy_beside(folder_of(&path), preset).map_err(StoreError::Data)?;
         let (source, fingerprint) = self.save(name, &preset, overwrite)?;
         Ok((source, fingerprint, preset))
     }
 }
 
-fn make_folder(folder: &Path) -> Result<(), StoreError> {
-    let made = fs::DirBuilder::new().recursive(true).mode(0o700).create(folder);
-    made.map_err(|cause| StoreError::Folder { path: show_path(folder), cause })
+fn make_own_folder(folder: &Path) -> Result<(), StoreError> {
+    make_folder(folder).map_err(|cause| StoreError::Folder { path: show_path(folder), cause })
+}
+
+/// Makes a folder of the person's own, and those above it.
+///
+/// # Errors
+/// What the system says.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }
 
 /// Saves a preset to a file by its path: the whole text anew, read back before it takes the file's place.

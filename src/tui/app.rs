@@ -3,12 +3,13 @@
 mod gap;
 
 use super::keymap;
-use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
+use super::overlay::{Action, Choose, Confirm, Item, Offer, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::contact::Control;
 use crate::explorer::files::Document;
 use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
+use crate::explorer::session::Snapshot;
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
 use crate::preset::schema::Kind;
@@ -44,6 +45,36 @@ impl App {
         (Self { model, overlay: None, count: None, theme }, effects)
     }
 
+    /// Goes on with a session.
+    pub fn resumed(snapshot: Snapshot, theme: Theme) -> (Self, Vec<Effect>) {
+        let (model, effects) = snapshot.resume(None);
+        (Self { model, overlay: None, count: None, theme }, effects)
+    }
+
+    /// Offers a session.
+    pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
+        let question = format!("{what} Enter goes on with it, Esc begins anew.");
+        self.overlay = Some(Over::Offer(Offer { question, snapshot: Box::new(snapshot) }));
+    }
+
+    /// Whether a session is offered and no answer given yet.
+    pub fn is_offering(&self) -> bool {
+        matches!(self.overlay, Some(Over::Offer(_)))
+    }
+
+    fn offer_key(&mut self, offer: Offer, key: KeyEvent) -> Vec<Effect> {
+        match key.code {
+            KeyCode::Enter | KeyCode::Char('y') => {
+                let (model, effects) = offer.snapshot.resume(Some(&self.model));
+                self.model = model;
+                effects
+            }
+            KeyCode::Esc => Vec::new(),
+            // Whoever types on does not want it, and means the key.
+            _ => self.command_key(key),
+        }
+    }
+
     /// A key was pressed.
     pub fn key(&mut self, key: KeyEvent) -> Vec<Effect> {
         if key.modifiers.contains(KeyModifiers::ALT) {
@@ -57,6 +88,7 @@ impl App {
             Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
             Some(Over::Choose(choose)) => self.choose_key(choose, key),
             Some(Over::Confirm(confirm)) => self.confirm_key(confirm, key),
+            Some(Over::Offer(offer)) => self.offer_key(offer, key),
             Some(Over::Help(scroll)) => {
                 self.help_key(scroll, key);
                 Vec::new()
@@ -89,8 +121,8 @@ impl App {
     /// A worker has answered.
     pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
         let effects = answer(&mut self.model, reply);
-        // A line being typed is not torn away: the question waits for its end.
-        if !matches!(self.overlay, Some(Over::Prompt(_))) {
+        // A line being typed, or an offer, is not torn away: the question waits for its end.
+        if !matches!(self.overlay, Some(Over::Prompt(_) | Over::Offer(_))) {
             self.raise_questions();
         }
         effects

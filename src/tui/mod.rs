@@ -26,26 +26,86 @@ pub mod view;
 
 pub use terminal::refuse_reason;
 
+use crate::explorer::archive::{Archive, Held, Keeper, ago};
+use crate::explorer::model::Level;
+use crate::explorer::session::{Ended, Snapshot};
 use crate::explorer::{Reply, Workers};
+use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Store};
 use app::App;
-use std::io;
+use std::io::{self, Write};
 use std::process::ExitCode;
+use std::time::Duration;
 use terminal::Incoming;
 use theme::Theme;
 
-/// Runs the explorer until the person quits.
+/// What the explorer begins with.
+#[derive(Debug)]
+pub enum Start {
+    /// A preset, and what is to be said about sessions, if anything.
+    Preset(Box<Loaded>, Option<String>),
+    /// A preset, with the offer to resume a session that was cut off.
+    Offer(Box<Loaded>, Box<Held>),
+    /// A session.
+    Resume(Box<Held>),
+}
+
+/// How long the last write of a session may take when the person quits, and when something else ends the program.
+const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(800)];
+
+/// What is said of a session: its preset, and how much was walked.
+fn told(held: &Held) -> String {
+    let steps = held.summary.steps;
+    let steps = if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") };
+    format!("{}, {steps}", sanitize(&held.summary.preset_name, 24))
+}
+
+/// The explorer as it begins, and the session that it may resume.
+fn begin(start: Start, keeper: &Keeper) -> (App, Vec<crate::explorer::Effect>, Option<Box<Held>>) {
+    let theme = Theme::of_environment();
+    match start {
+        Start::Preset(loaded, notice) => {
+            let (mut app, effects) = App::new(*loaded, theme);
+            app.model.message = notice.map(|notice| (Level::Info, notice));
+            (app, effects, None)
+        }
+        Start::Offer(loaded, held) => {
+            let (mut app, effects) = App::new(*loaded, theme);
+            let when = ago(held.summary.saved_at);
+            app.offer(&format!("A session was cut off {when} ({}).", told(&held)), held.snapshot.clone());
+            (app, effects, Some(held))
+        }
+        Start::Resume(held) => {
+            let text = format!("resumed {} ({})", held.claim.name(), told(&held));
+            let (mut app, effects) = App::resumed(held.snapshot, theme);
+            app.model.message = Some((Level::Info, text));
+            keeper.adopt(Snapshot::of(&app.model), held.claim, held.summary.ended);
+            (app, effects, None)
+        }
+    }
+}
+
+/// Runs the explorer until the person quits; its session is kept in `archive`.
 ///
 /// # Errors
 /// When the terminal cannot be taken, or the system gives no thread.
-pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
+pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode> {
+    let keeper = Keeper::new(archive);
+    let last = keeper.clone();
+    // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
+    terminal::set_last_words(Box::new(move || drop(last.finish(Ended::Dropped, PATIENCE[1]))));
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
+    let teller = inbox.sender();
+    keeper.start(move |text| {
+        // Refused only when the screen is gone.
+        let _ = teller.send(Reply::Notice(text));
+    })?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
         // Refused only when the screen is gone, and the process with it.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects) = App::new(loaded, Theme::of_environment());
+    let (mut app, effects, mut offered) = begin(start, &keeper);
     workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {
@@ -67,7 +127,14 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
             };
             workers.submit_all(effects);
             dirty = true;
+            if let Some(held) = offered.take_if(|_| !app.is_offering()) {
+                // Answered; a session that nobody wants may be had by another program.
+                if app.model.session > 0 {
+                    keeper.adopt(Snapshot::of(&app.model), held.claim, held.summary.ended);
+                }
+            }
         }
+        keeper.offer(Snapshot::of(&app.model));
         if dirty && display.is_due() {
             let mut views = 0;
             display.draw(|frame| views = view::draw(frame, &app));
@@ -76,5 +143,9 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
         }
     }
     drop(guard);
+    if let Err(reason) = keeper.finish(Ended::Quit, PATIENCE[0]) {
+        // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
+        let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -3,6 +3,7 @@
 use crate::contact::formula::FormulaError;
 use crate::explorer::Command;
 use crate::explorer::files::Document;
+use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use crate::preset::Key;
 use tui_input::Input;
@@ -16,6 +17,8 @@ pub enum Overlay {
     Choose(Choose),
     /// A question to answer with yes or no.
     Confirm(Confirm),
+    /// A session to resume, or not.
+    Offer(Offer),
     /// The help, scrolled by so many lines.
     Help(u16),
 }
@@ -119,6 +122,15 @@ pub enum Action {
     Command(Command),
     /// Asks for a line.
     Prompt(Box<Prompt>),
+}
+
+/// A session that may be resumed. Any key but those that take it goes on without it, and does what it always does.
+#[derive(Debug, Clone)]
+pub struct Offer {
+    /// What is offered, and how to answer.
+    pub question: String,
+    /// The session.
+    pub snapshot: Box<Snapshot>,
 }
 
 /// A question.

@@ -58,6 +58,8 @@ pub struct Pty {
     paused: Arc<AtomicBool>,
     output: Arc<Mutex<Output>>,
     modes_at_start: String,
+    /// The program's home, unless a test gives it another: nothing outlives a test, or comes from one before.
+    _home: tempfile::TempDir,
 }
 
 /// All that the program has written.
@@ -99,7 +101,9 @@ impl Pty {
     }
 
     fn start(mut command: CommandBuilder, env: &[(&str, &str)], cols: u16, rows: u16) -> Self {
+        let home = tempfile::tempdir().expect("a home");
         command.env_clear();
+        command.env("HOME", home.path());
         for (name, value) in ENVIRONMENT.iter().chain(env) {
             command.env(name, value);
         }
@@ -139,6 +143,7 @@ impl Pty {
             paused,
             output,
             modes_at_start,
+            _home: home,
         }
     }
 

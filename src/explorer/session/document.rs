@@ -188,6 +188,11 @@ impl Document {
         serde_json::from_slice(bytes).map_err(|error| damaged(&error))
     }
 
+    /// The number of pinned curves.
+    pub fn pins(&self) -> usize {
+        self.pins.len()
+    }
+
     /// δ, P and s of the walker in the user's units, as written.
     pub fn walker(&self) -> Option<[f64; 3]> {
         self.walker.map(floats)
@@ -242,7 +247,8 @@ fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
         format: u32,
         program_version: String,
     }
-    let Format { format, program_version } = serde_json::from_slice(bytes).map_err(|error| damaged(&error))?;
+    let Format { format, program_version } =
+        serde_json::from_slice(bytes).map_err(|error| damaged(&error))?;
     if format > FORMAT {
         let program = crate::preset::text::sanitize(&program_version, 40);
         return Err(Unreadable::Future { format, program });

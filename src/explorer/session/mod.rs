@@ -18,7 +18,7 @@
 //! | `tree` | the nodes of the walk |
 //! | `number` | numbers bit for bit |
 //!
-//! Nothing here touches a file: the archive of sessions does.
+//! Nothing here touches a file; [`archive`](super::archive) does.
 
 pub mod document;
 mod number;

@@ -114,7 +114,8 @@ impl Collector {
 
     fn profile(&mut self, rows: &Arc<Rows>) -> usize {
         let same = |known: &Arc<Rows>| {
-            Arc::ptr_eq(known, rows) || (known == rows && (&known.folder, &known.notes) == (&rows.folder, &rows.notes))
+            Arc::ptr_eq(known, rows)
+                || (known == rows && (&known.folder, &known.notes) == (&rows.folder, &rows.notes))
         };
         if let Some(known) = self.rows.iter().position(same) {
             return known;
@@ -153,7 +154,8 @@ impl Profile {
 impl Problems {
     /// The presets and settings, none of them made ready.
     pub(super) fn back(self) -> Result<(Vec<Preset>, Vec<Arc<Setting>>), Unreadable> {
-        let profiles: Vec<Arc<Rows>> = self.profiles.into_iter().map(|saved| Arc::new(saved.rows())).collect();
+        let profiles: Vec<Arc<Rows>> =
+            self.profiles.into_iter().map(|saved| Arc::new(saved.rows())).collect();
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
         let preset = |saved: &Text| {
             let rows = saved.profile.map(|at| profiles.get(at).cloned().ok_or_else(|| missing("profile")));

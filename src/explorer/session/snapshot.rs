@@ -161,7 +161,8 @@ impl Snapshot {
             model.follow(before);
         }
         let mut effects = vec![want_curve(&mut model)];
-        effects.extend(self.pins.iter().map(|(number, preset)| Effect::Pin(*number, Box::new(preset.clone()))));
+        effects
+            .extend(self.pins.iter().map(|(number, preset)| Effect::Pin(*number, Box::new(preset.clone()))));
         model.pins = Pins::awaiting(self.pins);
         (model, effects)
     }

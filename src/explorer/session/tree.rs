@@ -4,8 +4,8 @@
 //! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
 
 use super::number::{Real, floats, reals};
-use crate::explorer::history::{Ahead, History, Node, NodeKind, Setting};
 use crate::continuation::tangent::Frame;
+use crate::explorer::history::{Ahead, History, Node, NodeKind, Setting};
 use crate::quasistatic::admissible::Crest;
 use crate::quasistatic::equilibrium::Unknowns;
 use crate::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
@@ -158,8 +158,11 @@ impl Saved {
     fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
         let setting = Arc::clone(settings.get(self.setting)?);
         let vector = |numbers| Unknowns::from(floats(numbers));
-        let frame =
-            Frame { tangent: vector(self.tangent), curvature: vector(self.curvature), positive: self.positive };
+        let frame = Frame {
+            tangent: vector(self.tangent),
+            curvature: vector(self.curvature),
+            positive: self.positive,
+        };
         let point = Point {
             y: vector(self.y),
             frame,
@@ -202,7 +205,11 @@ pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) ->
 }
 
 /// The tree of nodes; `None` where they make none.
-pub(super) fn history(nodes: Vec<Saved>, cursor: Option<usize>, settings: &[Arc<Setting>]) -> Option<History> {
+pub(super) fn history(
+    nodes: Vec<Saved>,
+    cursor: Option<usize>,
+    settings: &[Arc<Setting>],
+) -> Option<History> {
     let nodes = nodes.into_iter().map(|node| node.back(settings)).collect::<Option<Vec<_>>>()?;
     History::of(nodes, cursor)
 }

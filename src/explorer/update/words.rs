@@ -112,7 +112,13 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let lost = ahead.dissipated.map(|lost| {
         format!(
             " (loses {})",
-            with_unit(&node.setting.preset.units, Quantity::Energy, lost * node.setting.units().energy, false, loss)
+            with_unit(
+                &node.setting.preset.units,
+                Quantity::Energy,
+                lost * node.setting.units().energy,
+                false,
+                loss
+            )
         )
     });
     // The edge runs over the unstable part: walking the same way leads onto it.

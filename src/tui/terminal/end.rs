@@ -48,11 +48,12 @@ pub fn set_last_words(words: Box<dyn Fn() + Send + Sync>) {
     *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(words.into());
 }
 
-/// Speaks the last words, gives the terminal back and ends the process with `status`.
+/// Gives the terminal back, speaks the last words and ends the process with `status`.
 pub(super) fn end(status: i32) -> ! {
     claim(status);
-    speak();
+    // First: the last words may take long.
     restore();
+    speak();
     process::exit(status)
 }
 

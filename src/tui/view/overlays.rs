@@ -3,7 +3,7 @@
 use super::{charts, panel};
 use crate::explorer::Window;
 use crate::tui::app::App;
-use crate::tui::overlay::{Choose, Confirm, Overlay, Prompt, Purpose};
+use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Position, Rect};
@@ -22,7 +22,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
     match overlay {
         Overlay::Prompt(prompt) => draw_prompt(frame, area, app.theme, prompt),
         Overlay::Choose(choose) => draw_choose(frame, area, app.theme, choose),
-        Overlay::Confirm(confirm) => draw_confirm(frame, area, app.theme, confirm),
+        Overlay::Confirm(confirm) => draw_question(frame, area, app.theme, "Sure?", &confirm.question),
+        Overlay::Offer(offer) => draw_question(frame, area, app.theme, "Go on?", &offer.question),
         Overlay::Help(_) => {}
     }
 }
@@ -107,12 +108,12 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-fn draw_confirm(frame: &mut Frame<'_>, area: Rect, theme: Theme, confirm: &Confirm) {
+fn draw_question(frame: &mut Frame<'_>, area: Rect, theme: Theme, title: &str, question: &str) {
     let area = middle(area, 70, 5);
-    let block = panel(theme, "Sure?", true);
+    let block = panel(theme, title, true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
-    let text = Paragraph::new(theme.text(&confirm.question)).wrap(Wrap { trim: true });
+    let text = Paragraph::new(theme.text(question)).wrap(Wrap { trim: true });
     frame.render_widget(text, inner);
 }

@@ -1,0 +1,126 @@
+//! `pulloff sessions`: list, show and delete what the explorer keeps of a session.
+
+use super::{Failure, output};
+use crate::explorer::archive::{Archive, ArchiveError, ago};
+use crate::explorer::session::{Document, Summary};
+use crate::preset::text::{sanitize, show_path};
+use crate::report::number::significant;
+use clap::Subcommand;
+use std::fmt::Write as _;
+use std::io::{self, IsTerminal, Write as _};
+use std::process::ExitCode;
+use std::time::UNIX_EPOCH;
+
+/// The subcommands of `pulloff sessions`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the sessions, the newest first
+    List,
+    /// Say what a session holds
+    Show {
+        /// Its name
+        name: String,
+        /// Write the whole session as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Delete a session
+    Delete {
+        /// Its name
+        name: String,
+        /// Do not ask
+        #[arg(long)]
+        yes: bool,
+    },
+    /// Say where the sessions are kept
+    Path,
+}
+
+/// Longest name of a preset, and longest reason, in a list.
+const NAME: usize = 24;
+const REASON: usize = 90;
+
+pub fn run(command: &Command) -> Result<ExitCode, Failure> {
+    let archive = Archive::open();
+    match command {
+        Command::List => output::write(&list(&archive)?, None)?,
+        Command::Show { name, json: true } => {
+            let bytes = archive.bytes(name)?;
+            // Read first: a file that is no session is an error, not text to print.
+            archive.summary(name)?;
+            output::write(&String::from_utf8_lossy(&bytes), None)?;
+        }
+        Command::Show { name, json: false } => output::write(&shown(&archive, name)?, None)?,
+        Command::Delete { name, yes } => {
+            if !yes && !agreed(name)? {
+                return Ok(ExitCode::FAILURE);
+            }
+            archive.delete(name)?;
+        }
+        Command::Path => match archive.folder() {
+            Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,
+            None => return Err(ArchiveError::NoFolder.into()),
+        },
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn list(archive: &Archive) -> Result<String, Failure> {
+    let entries = archive.list()?;
+    let width = entries.iter().map(|entry| entry.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for entry in entries {
+        let written = entry.written.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+        let when = ago(written);
+        let what = match archive.summary(&entry.name) {
+            Ok(summary) => line(&summary),
+            Err(error) => format!("cannot be read: {}", sanitize(&error.to_string(), REASON)),
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{:<width$}  {when:<22}  {what}", entry.name);
+    }
+    Ok(text)
+}
+
+fn line(summary: &Summary) -> String {
+    let unsaved = if summary.unsaved { ", preset not saved" } else { "" };
+    let steps = if summary.steps == 1 { "1 step" } else { "steps" };
+    let steps = if summary.steps == 1 { steps.to_owned() } else { format!("{} {steps}", summary.steps) };
+    let name = sanitize(&summary.preset_name, NAME);
+    format!("{:<7}  {name}, {steps}{unsaved}", summary.ended.name())
+}
+
+fn shown(archive: &Archive, name: &str) -> Result<String, Failure> {
+    let summary = archive.summary(name)?;
+    let document = Document::read(&archive.bytes(name)?);
+    let document = document.map_err(|error| Failure::Usage(format!("{name}: {error}")))?;
+    let mut text = String::new();
+    let mut row = |label: &str, value: &str| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{label:<12}{value}");
+    };
+    row("session", name);
+    row("preset", &sanitize(&summary.preset_name, REASON));
+    row("title", &sanitize(&summary.title, REASON));
+    row("written", &ago(summary.saved_at));
+    row("ended", summary.ended.name());
+    row("steps", &summary.steps.to_string());
+    row("unsaved", if summary.unsaved { "the preset has changes that are in no file" } else { "nothing" });
+    if let Some(walker) = document.walker() {
+        let [delta, force, s] = walker.map(|x| significant(x, 10));
+        row("walker", &format!("delta {delta}, P {force}, s {s}"));
+    }
+    row("pins", &document.pins().to_string());
+    Ok(text)
+}
+
+/// Asks on a terminal; without one nothing is deleted that nobody said yes to.
+fn agreed(name: &str) -> Result<bool, Failure> {
+    if !io::stdin().is_terminal() {
+        return Err(Failure::Usage("nobody to ask: --yes deletes without asking".to_owned()));
+    }
+    let _ = write!(io::stderr(), "Delete the session {}? y deletes it: ", sanitize(name, NAME));
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer).map_err(Failure::Output)?;
+    Ok(matches!(answer.trim(), "y" | "yes"))
+}

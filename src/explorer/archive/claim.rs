@@ -1,0 +1,39 @@
+//! The right to write one session.
+
+use super::{ArchiveError, ENDING, failed, lock_of};
+use crate::preset::lock::FileLock;
+use crate::preset::{Overwrite, write_atomically};
+use std::path::{Path, PathBuf};
+
+/// The right to write one session; dropping it lets another program have it.
+#[derive(Debug)]
+pub struct Claim {
+    name: String,
+    path: PathBuf,
+    _lock: FileLock,
+}
+
+impl Claim {
+    /// The right to write the session `name` in `folder`.
+    pub(super) fn of(folder: &Path, name: &str) -> Result<Self, ArchiveError> {
+        let lock = lock_of(folder, name);
+        let held = FileLock::acquire(&lock).map_err(failed(&lock, "lock the session"))?;
+        let lock = held.ok_or_else(|| ArchiveError::Running { name: name.to_owned() })?;
+        Ok(Self { name: name.to_owned(), path: folder.join(format!("{name}.{ENDING}")), _lock: lock })
+    }
+
+    /// The session's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Writes the session whole or not at all.
+    ///
+    /// # Errors
+    /// It cannot be written; the one before is as it was.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), ArchiveError> {
+        write_atomically(&self.path, bytes, Overwrite::Always)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,202 @@
+//! Writes the newest state of a session every few seconds, and at its end.
+//!
+//! Whoever changes the session leaves a snapshot here, which takes no time; a thread of its own writes it. Whoever ends
+//! the program, from whatever thread, asks for the last write and waits for it no longer than it can.
+
+use super::{Archive, ArchiveError, Claim};
+use crate::explorer::session::{Document, Ended, Snapshot};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// Between two writes there is at least this time,
+const PAUSE: Duration = Duration::from_secs(3);
+/// and so many times what the last one took: a large session on a slow disk is written less often.
+const SHARE: u32 = 20;
+
+/// Keeps the session of a program on disk.
+#[derive(Debug, Clone)]
+pub struct Keeper(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    archive: Archive,
+    desk: Mutex<Desk>,
+    filled: Condvar,
+    /// Held while a session is written, and never together with the desk for longer than a look.
+    writer: Mutex<Writer>,
+}
+
+/// What is to be written.
+#[derive(Debug, Default)]
+struct Desk {
+    newest: Option<Arc<Snapshot>>,
+    /// The last snapshots of sessions that the person has left for another.
+    left: Vec<Arc<Snapshot>>,
+    /// A resumed session as it is in its file, the right to write it, and how it had ended.
+    resumed: Option<(Arc<Snapshot>, Claim, Ended)>,
+    /// Nothing is written any more.
+    is_over: bool,
+}
+
+/// The session that is being written.
+#[derive(Debug, Default)]
+struct Writer {
+    session: u64,
+    claim: Option<Claim>,
+    written: Option<(Arc<Snapshot>, Ended)>,
+    /// How a resumed one, not written since, had ended.
+    before: Option<Ended>,
+}
+
+impl Keeper {
+    /// A keeper that nobody works for: [`Keeper::start`] writes by itself.
+    pub fn new(archive: Archive) -> Self {
+        let (desk, writer) = (Mutex::default(), Mutex::default());
+        Self(Arc::new(Shared { archive, desk, filled: Condvar::new(), writer }))
+    }
+
+    /// Starts the thread that writes; what a person should know is told to `tell`.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start(&self, tell: impl Fn(String) + Send + 'static) -> std::io::Result<()> {
+        let keeper = self.clone();
+        thread::Builder::new().name("session".to_owned()).spawn(move || keeper.work(&tell))?;
+        Ok(())
+    }
+
+    /// The session of `snapshot` is resumed: it is in the file of `claim`, and had ended as `before`.
+    pub fn adopt(&self, snapshot: Snapshot, claim: Claim, before: Ended) {
+        self.desk().resumed = Some((Arc::new(snapshot), claim, before));
+    }
+
+    /// Leaves the newest state of a session to be written.
+    pub fn offer(&self, snapshot: Snapshot) {
+        let mut desk = self.desk();
+        if desk.newest.as_ref().is_some_and(|newest| newest.is_like(&snapshot)) {
+            return;
+        }
+        let last = desk.newest.replace(Arc::new(snapshot));
+        let session = desk.newest.as_ref().map(|newest| newest.session);
+        desk.left.extend(last.filter(|last| Some(last.session) != session));
+        self.0.filled.notify_one();
+    }
+
+    /// Writes the newest state for the last time, from any thread, and gives the session up; waits no longer than
+    /// `patience` for a write that is under way.
+    ///
+    /// # Errors
+    /// Why it was not written. The file is as it was.
+    pub fn finish(&self, ended: Ended, patience: Duration) -> Result<(), String> {
+        let until = Instant::now() + patience;
+        let busy = || "the one before is still being written".to_owned();
+        let (newest, left) = {
+            let mut desk = patiently(&self.0.desk, until).ok_or_else(busy)?;
+            desk.is_over = true;
+            (desk.newest.clone(), std::mem::take(&mut desk.left))
+        };
+        let mut writer = patiently(&self.0.writer, until).ok_or_else(busy)?;
+        for last in left {
+            self.write(&mut writer, &last, Ended::Quit).map_err(|error| error.to_string())?;
+        }
+        let result = newest.map_or(Ok(()), |newest| self.write(&mut writer, &newest, ended));
+        writer.claim = None;
+        result.map_err(|error| error.to_string())
+    }
+
+    fn desk(&self) -> MutexGuard<'_, Desk> {
+        self.0.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes what comes, until the session is over.
+    fn work(&self, tell: &dyn Fn(String)) {
+        let mut told = None;
+        let mut seen: Option<Arc<Snapshot>> = None;
+        loop {
+            let Some((newest, left)) = self.next(seen.as_ref()) else { return };
+            let begun = Instant::now();
+            let result = {
+                let mut writer = self.0.writer.lock().unwrap_or_else(PoisonError::into_inner);
+                // Over since: the last write was another's.
+                if self.desk().is_over {
+                    return;
+                }
+                let mut result = Ok(());
+                for last in left {
+                    result = result.and(self.write(&mut writer, &last, Ended::Quit));
+                }
+                result.and(self.write(&mut writer, &newest, Ended::Running))
+            };
+            seen = Some(newest);
+            let failure = result.err().map(|error| format!("the session is not being saved: {error}"));
+            if failure != told {
+                tell(failure.clone().unwrap_or_else(|| "the session is saved again".to_owned()));
+                told = failure;
+            }
+            thread::sleep(PAUSE.max(begun.elapsed() * SHARE));
+        }
+    }
+
+    /// The newest snapshot and those left behind, once there is another than `seen`; `None` when it is over.
+    fn next(&self, seen: Option<&Arc<Snapshot>>) -> Option<(Arc<Snapshot>, Vec<Arc<Snapshot>>)> {
+        let mut desk = self.desk();
+        loop {
+            if desk.is_over {
+                return None;
+            }
+            let newest =
+                desk.newest.as_ref().filter(|newest| seen.is_none_or(|seen| !Arc::ptr_eq(seen, newest)));
+            if let Some(newest) = newest.cloned() {
+                return Some((newest, std::mem::take(&mut desk.left)));
+            }
+            desk = self.0.filled.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Writes a snapshot, if there is something in it that is not in the file.
+    fn write(&self, writer: &mut Writer, snapshot: &Arc<Snapshot>, ended: Ended) -> Result<(), ArchiveError> {
+        if writer.session != snapshot.session {
+            *writer = Writer { session: snapshot.session, ..Writer::default() };
+        }
+        let resumed = self.desk().resumed.take_if(|(resumed, ..)| resumed.session == snapshot.session);
+        if let Some((resumed, claim, before)) = resumed {
+            (writer.claim, writer.before) = (Some(claim), Some(before));
+            writer.written = Some((resumed, before));
+        }
+        let known = writer.written.as_ref().is_some_and(|(written, how)| {
+            let is_said = *how == ended || (ended == Ended::Running && writer.before == Some(*how));
+            is_said && (Arc::ptr_eq(written, snapshot) || written.is_like(snapshot))
+        });
+        if known || (writer.claim.is_none() && !snapshot.is_worth_keeping()) {
+            return Ok(());
+        }
+        let is_new = writer.claim.is_none();
+        if is_new {
+            writer.claim = Some(self.0.archive.begin(&snapshot.source.shown())?);
+        }
+        let Some(claim) = &writer.claim else { return Ok(()) };
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+        let document = Document::new(snapshot, ended, now).json().map_err(ArchiveError::Document)?;
+        claim.write(&document)?;
+        (writer.written, writer.before) = (Some((Arc::clone(snapshot), ended)), None);
+        if is_new {
+            self.0.archive.make_room(claim.name());
+        }
+        Ok(())
+    }
+}
+
+/// A lock, waited for until a moment: whoever holds it may be stuck.
+fn patiently<T>(mutex: &Mutex<T>, until: Instant) -> Option<MutexGuard<'_, T>> {
+    loop {
+        match mutex.try_lock() {
+            Ok(guard) => return Some(guard),
+            Err(TryLockError::Poisoned(guard)) => return Some(guard.into_inner()),
+            Err(TryLockError::WouldBlock) if Instant::now() < until => {
+                thread::sleep(Duration::from_millis(2))
+            }
+            Err(TryLockError::WouldBlock) => return None,
+        }
+    }
+}

@@ -1,0 +1,378 @@
+//! The sessions kept on disk: one file each, in `pulloff/sessions` below the XDG state folder.
+//!
+//! A session belongs to one program at a time. Its lock is held as long as the program lives, and the kernel drops
+//! it with the process; a second program makes a session of its own. The folder is made by the first session that is
+//! worth keeping and by nothing else, and no file is ever replaced but by the program that holds its lock.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `mod.rs` | the folder: list, load, delete, and room for new ones |
+//! | [`claim`] | the right to write one session |
+//! | [`keeper`] | writes the newest state of a session every few seconds and at its end |
+
+pub mod claim;
+pub mod keeper;
+
+pub use claim::Claim;
+pub use keeper::Keeper;
+
+use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
+use crate::preset::WriteError;
+use crate::preset::file::{FileError, read_bytes};
+use crate::preset::lock::FileLock;
+use crate::preset::name::is_well_formed;
+use crate::preset::suggest::closest;
+use crate::preset::text::{quote, show_path};
+use etcetera::BaseStrategy;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use thiserror::Error;
+
+/// The largest session that is read, in bytes.
+const LARGEST: u64 = 256 << 20;
+/// So many sessions are kept,
+const MOST: usize = 50;
+/// of so many bytes together; older ones make room for newer.
+const MOST_BYTES: u64 = 256 << 20;
+/// What a write has left behind that was killed is removed when it is so old.
+const STALE: Duration = Duration::from_secs(3600);
+/// The ending of a session's file.
+const ENDING: &str = "json";
+/// The ending of one that could not be read, kept aside.
+const ASIDE: &str = "damaged";
+
+/// Why a session is not found, read or written, in one line.
+#[derive(Debug, Error)]
+pub enum ArchiveError {
+    /// Neither a state folder nor a home folder is known.
+    #[error("no folder for sessions: neither XDG_STATE_HOME nor HOME is set")]
+    NoFolder,
+    /// No session has this name.
+    #[error("no session is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
+    NotFound {
+        /// The name, safe to show.
+        name: String,
+        /// The known name most alike.
+        meant: Option<String>,
+    },
+    /// There is no session at all.
+    #[error("there is no session to resume")]
+    Empty,
+    /// Another program writes it.
+    #[error("the session {name} is running in another pulloff")]
+    Running {
+        /// Its name.
+        name: String,
+    },
+    /// Its file is no session of this program.
+    #[error("{path}: {cause}")]
+    Unreadable {
+        /// The file, safe to show.
+        path: String,
+        /// Why.
+        cause: Unreadable,
+    },
+    /// Its file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Its file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// It has no form as a document.
+    #[error("the session cannot be written: {0}")]
+    Document(serde_json::Error),
+    /// The system says no.
+    #[error("{path}: cannot {doing}: {cause}")]
+    Io {
+        /// The file or folder, safe to show.
+        path: String,
+        /// What was being done.
+        doing: &'static str,
+        /// What the system says.
+        cause: io::Error,
+    },
+}
+
+fn failed(path: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> ArchiveError {
+    let path = show_path(path);
+    move |cause| ArchiveError::Io { path, doing, cause }
+}
+
+/// One line of the list of sessions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// When it was last written.
+    pub written: SystemTime,
+    /// The size of its file.
+    pub bytes: u64,
+}
+
+/// A session read, and held until it is written or dropped.
+#[derive(Debug)]
+pub struct Held {
+    /// The right to write it.
+    pub claim: Claim,
+    /// What a list shows of it.
+    pub summary: Summary,
+    /// What is in it.
+    pub snapshot: Snapshot,
+}
+
+/// The folder of sessions.
+#[derive(Debug, Clone)]
+pub struct Archive {
+    folder: Option<PathBuf>,
+}
+
+impl Archive {
+    /// The archive below the XDG state folder.
+    #[must_use]
+    pub fn open() -> Self {
+        let state = etcetera::base_strategy::Xdg::new().ok().and_then(|xdg| xdg.state_dir());
+        Self { folder: state.map(|state| state.join("pulloff/sessions")) }
+    }
+
+    /// The archive in another folder.
+    #[must_use]
+    pub fn at(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()) }
+    }
+
+    /// The folder, which need not exist; `None` if the person has no home.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    fn folder_or(&self) -> Result<&Path, ArchiveError> {
+        self.folder.as_deref().ok_or(ArchiveError::NoFolder)
+    }
+
+    /// The sessions, the newest first.
+    ///
+    /// # Errors
+    /// The folder cannot be listed; one that is not there is empty.
+    pub fn list(&self) -> Result<Vec<Entry>, ArchiveError> {
+        let Some(folder) = &self.folder else { return Ok(Vec::new()) };
+        let files = match fs::read_dir(folder) {
+            Ok(files) => files,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) => return Err(failed(folder, "list the sessions")(error)),
+        };
+        let mut entries: Vec<Entry> = files
+            .filter_map(Result::ok)
+            .filter_map(|file| {
+                let path = PathBuf::from(file.file_name());
+                let name = path.file_stem()?.to_str().filter(|name| is_well_formed(name))?.to_owned();
+                let metadata = file.metadata().ok().filter(fs::Metadata::is_file)?;
+                (path.extension()? == ENDING).then_some(())?;
+                Some(Entry { name, written: metadata.modified().ok()?, bytes: metadata.len() })
+            })
+            .collect();
+        // Of two of one moment the later number is the newer.
+        entries.sort_by(|a, b| (b.written, number(&b.name)).cmp(&(a.written, number(&a.name))));
+        Ok(entries)
+    }
+
+    /// The file of a session.
+    fn path(&self, name: &str) -> Result<PathBuf, ArchiveError> {
+        let path = self.folder_or()?.join(format!("{name}.{ENDING}"));
+        if is_well_formed(name) && path.symlink_metadata().is_ok() {
+            return Ok(path);
+        }
+        let known = self.list()?;
+        let meant = closest(name, known.iter().map(|entry| &*entry.name)).map(str::to_owned);
+        Err(ArchiveError::NotFound { name: quote(name), meant })
+    }
+
+    /// The bytes of a session, as they are.
+    ///
+    /// # Errors
+    /// It is not there or cannot be read.
+    pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ArchiveError> {
+        Ok(read_bytes(&self.path(name)?, LARGEST)?.0)
+    }
+
+    /// What a list shows of a session.
+    ///
+    /// # Errors
+    /// It is not there, cannot be read, or is no session of this program.
+    pub fn summary(&self, name: &str) -> Result<Summary, ArchiveError> {
+        let path = self.path(name)?;
+        let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
+        let mut found = summary(&self.bytes(name)?).map_err(unreadable)?;
+        found.ended = match (found.ended, self.is_running(name)) {
+            (_, true) => Ended::Running,
+            // Its program was killed, and could not say so.
+            (Ended::Running, false) => Ended::Dropped,
+            (ended, false) => ended,
+        };
+        Ok(found)
+    }
+
+    /// Whether a program writes this session.
+    #[must_use]
+    pub fn is_running(&self, name: &str) -> bool {
+        self.folder.as_deref().is_some_and(|folder| FileLock::is_held(&lock_of(folder, name)))
+    }
+
+    /// The newest session that no program writes; with its name.
+    ///
+    /// # Errors
+    /// As [`list`](Self::list).
+    pub fn newest(&self) -> Result<Option<String>, ArchiveError> {
+        Ok(self.list()?.into_iter().map(|entry| entry.name).find(|name| !self.is_running(name)))
+    }
+
+    /// Reads a session and holds it: nobody else can.
+    ///
+    /// # Errors
+    /// It is not there, another program holds it, or it cannot be read; its file is as it was.
+    pub fn load(&self, name: &str) -> Result<Held, ArchiveError> {
+        let path = self.path(name)?;
+        let claim = Claim::of(self.folder_or()?, name)?;
+        let (bytes, _) = read_bytes(&path, LARGEST)?;
+        let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
+        let summary = summary(&bytes).map_err(unreadable)?;
+        let snapshot = Document::read(&bytes).and_then(Document::snapshot).map_err(unreadable)?;
+        Ok(Held { claim, summary, snapshot })
+    }
+
+    /// The newest session, if it was cut off: its program did not end as its person wanted. One that is damaged is
+    /// kept aside under another name.
+    ///
+    /// # Errors
+    /// Words for the person; nothing but this one session is the matter.
+    pub fn cut_off(&self) -> Result<Option<Held>, String> {
+        // A folder that cannot be read will be a notice once there is something to write.
+        let Ok(Some(name)) = self.newest() else { return Ok(None) };
+        let damaged = |cause: &Unreadable| {
+            let (Ok(path), Ok(folder)) = (self.path(&name), self.folder_or()) else { return String::new() };
+            let aside = folder.join(format!("{name}.{ASIDE}"));
+            match fs::rename(&path, &aside) {
+                Ok(()) => format!("{cause}; it is kept as {}", show_path(&aside)),
+                Err(_) => format!("{}: {cause}", show_path(&path)),
+            }
+        };
+        match self.summary(&name) {
+            Ok(summary) if summary.ended == Ended::Dropped => {}
+            Ok(_) => return Ok(None),
+            Err(ArchiveError::Unreadable { cause: cause @ Unreadable::Damaged(_), .. }) => {
+                return Err(damaged(&cause));
+            }
+            Err(error) => return Err(error.to_string()),
+        }
+        match self.load(&name) {
+            Ok(held) => Ok(Some(held)),
+            // Another program was faster.
+            Err(ArchiveError::Running { .. }) => Ok(None),
+            Err(ArchiveError::Unreadable { cause: cause @ Unreadable::Damaged(_), .. }) => {
+                Err(damaged(&cause))
+            }
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// Removes a session.
+    ///
+    /// # Errors
+    /// It is not there, a program writes it, or the system says no.
+    pub fn delete(&self, name: &str) -> Result<(), ArchiveError> {
+        let path = self.path(name)?;
+        let _claim = Claim::of(self.folder_or()?, name)?;
+        fs::remove_file(&path).map_err(failed(&path, "remove it"))
+    }
+
+    /// The right to write a new session, called after `base` and the next number.
+    ///
+    /// # Errors
+    /// The folder cannot be made, or no file in it.
+    pub fn begin(&self, base: &str) -> Result<Claim, ArchiveError> {
+        let folder = self.folder_or()?;
+        crate::preset::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;
+        let base = base_name(base);
+        let taken = fs::read_dir(folder).map_err(failed(folder, "list the sessions"))?;
+        // Damaged ones and those of a moment ago count too: no name is used again while anything is called so.
+        let last = taken.filter_map(Result::ok).filter_map(|file| {
+            let name = PathBuf::from(file.file_name());
+            let (stem, number) = name.file_stem()?.to_str()?.trim_start_matches('.').rsplit_once('-')?;
+            number.parse::<u32>().ok().filter(|_| stem == base)
+        });
+        let mut next = last.max().unwrap_or(0);
+        loop {
+            next = next.saturating_add(1);
+            match Claim::of(folder, &format!("{base}-{next}")) {
+                // Somebody begins at the same moment.
+                Err(ArchiveError::Running { .. }) if next < u32::MAX => {}
+                claim => return claim,
+            }
+        }
+    }
+
+    /// Makes room: removes the oldest sessions beyond what is kept, and what killed programs have left behind.
+    pub fn make_room(&self, keep: &str) {
+        let (Some(folder), Ok(entries)) = (&self.folder, self.list()) else { return };
+        let (mut count, mut bytes) = (0, 0);
+        for entry in entries {
+            (count, bytes) = (count + 1, bytes + entry.bytes);
+            if (count > MOST || bytes > MOST_BYTES) && entry.name != keep {
+                // A running one stays, and one that cannot be removed as well.
+                let _ = self.delete(&entry.name);
+            }
+        }
+        let left = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).filter(|file| {
+            let age = file.metadata().and_then(|metadata| metadata.modified()).map(|at| at.elapsed());
+            let is_old = matches!(age, Ok(Ok(age)) if age > STALE);
+            is_old && file.file_name().to_str().is_some_and(|name| is_left_behind(folder, name))
+        });
+        for file in left {
+            let _ = fs::remove_file(file.path());
+        }
+    }
+}
+
+/// Whether a file is the temporary one of a write, or the lock of no session.
+fn is_left_behind(folder: &Path, name: &str) -> bool {
+    let lock = name.strip_prefix('.').and_then(|name| name.strip_suffix(".lock"));
+    let session = lock.map(|name| folder.join(format!("{name}.{ENDING}")));
+    let is_lock = session.is_some_and(|session| !session.exists()) && !FileLock::is_held(&folder.join(name));
+    is_lock || (name.starts_with(".pulloff-") && name.ends_with(".tmp"))
+}
+
+/// The lock of a session.
+fn lock_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!(".{name}.lock"))
+}
+
+/// The number at the end of a name.
+fn number(name: &str) -> u32 {
+    name.rsplit_once('-').and_then(|(_, number)| number.parse().ok()).unwrap_or(0)
+}
+
+/// What sessions of a preset are called, before their number.
+fn base_name(preset: &str) -> String {
+    let stem =
+        Path::new(preset).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().to_lowercase());
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_');
+    let name: String = stem.chars().filter(|c| plain(*c)).take(50).collect();
+    if is_well_formed(&name) { name } else { "session".to_owned() }
+}
+
+/// How long ago a moment was, in words.
+#[must_use]
+pub fn ago(seconds: u64) -> String {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    match now.saturating_sub(seconds) {
+        0..60 => "less than a minute ago".to_owned(),
+        age @ 60..3600 => format!("{} min ago", age / 60),
+        age @ 3600..172_800 => format!("{} h ago", age / 3600),
+        age => format!("{} days ago", age / 86_400),
+    }
+}
+
+#[cfg(test)]
+mod tests;

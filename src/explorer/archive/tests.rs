@@ -1,0 +1,245 @@
+use super::*;
+use crate::explorer::{Command, Id, Inline, Model, open, update};
+use crate::preset::Store;
+use std::fs::{File, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::sync::mpsc::channel;
+use std::time::Instant;
+
+struct Bench {
+    folder: tempfile::TempDir,
+    driver: Inline,
+    model: Model,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path().join("presets"), &[]);
+        let source = store.resolve("fig-3-jkr").unwrap();
+        let assignments = ["basis.rings=20", "path.end_contact_radius=0.3"];
+        let (mut model, effects) = open(store.load(&source, &assignments).unwrap());
+        let driver = Inline::new(store);
+        driver.settle(&mut model, effects);
+        Self { folder, driver, model }
+    }
+
+    fn does(&mut self, command: impl Into<Command>) -> Snapshot {
+        let effects = update(&mut self.model, command.into());
+        self.driver.settle(&mut self.model, effects);
+        Snapshot::of(&self.model)
+    }
+
+    fn archive(&self) -> Archive {
+        Archive::at(self.folder.path().join("state/sessions"))
+    }
+
+    fn names(&self) -> Vec<String> {
+        let listed = self.archive().list().unwrap();
+        listed.into_iter().map(|entry| entry.name).collect()
+    }
+
+    /// All files of the folder.
+    fn files(&self) -> Vec<String> {
+        let Ok(files) = fs::read_dir(self.archive().folder().unwrap()) else { return Vec::new() };
+        let mut names: Vec<String> =
+            files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+const PATIENCE: Duration = Duration::from_secs(20);
+
+#[test]
+fn nothing_is_written_before_there_is_something_to_lose() {
+    let mut bench = Bench::new();
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(Snapshot::of(&bench.model));
+    keeper.offer(bench.does(Id::NextView));
+    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    assert!(!bench.archive().folder().unwrap().exists());
+}
+
+#[test]
+fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
+    let mut bench = Bench::new();
+    for name in ["fig-3-jkr-1", "fig-3-jkr-2"] {
+        let keeper = Keeper::new(bench.archive());
+        keeper.offer(bench.does(Id::Step));
+        keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+        assert_eq!(bench.names()[0], name);
+    }
+    assert_eq!(bench.files(), ["fig-3-jkr-1.json", "fig-3-jkr-2.json"], "no lock and no other file is left");
+    let held = bench.archive().cut_off().unwrap().unwrap();
+    assert_eq!((held.claim.name(), held.summary.steps), ("fig-3-jkr-2", 2));
+    // It belongs to whoever took it up.
+    assert!(bench.archive().is_running("fig-3-jkr-2"));
+    assert!(matches!(bench.archive().load("fig-3-jkr-2"), Err(ArchiveError::Running { .. })));
+    assert!(matches!(bench.archive().delete("fig-3-jkr-2"), Err(ArchiveError::Running { .. })));
+    assert_eq!(bench.archive().newest().unwrap().as_deref(), Some("fig-3-jkr-1"));
+    // Left at once: that it was left well is all that is written.
+    let (model, _) = held.snapshot.resume(None);
+    let keeper = Keeper::new(bench.archive());
+    keeper.adopt(Snapshot::of(&model), held.claim, held.summary.ended);
+    keeper.offer(Snapshot::of(&model));
+    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    assert_eq!(bench.archive().summary("fig-3-jkr-2").unwrap().ended, Ended::Quit);
+    assert_eq!(bench.names().len(), 2);
+    // The newest was left well: nothing is offered.
+    assert!(bench.archive().cut_off().unwrap().is_none());
+    bench.archive().delete("fig-3-jkr-2").unwrap();
+    assert!(bench.archive().cut_off().unwrap().is_some_and(|held| held.claim.name() == "fig-3-jkr-1"));
+    let message = bench.archive().delete("fig-3-jkr-9").unwrap_err().to_string();
+    assert_eq!(message, "no session is called \"fig-3-jkr-9\"; did you mean fig-3-jkr-1?");
+    assert!(matches!(bench.archive().load("../etc/passwd"), Err(ArchiveError::NotFound { .. })));
+}
+
+#[test]
+fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
+    let mut bench = Bench::new();
+    let keeper = Keeper::new(bench.archive());
+    keeper.start(|text| panic!("{text}")).unwrap();
+    keeper.offer(bench.does(Id::Step));
+    let begun = Instant::now();
+    while bench.names().is_empty() {
+        assert!(begun.elapsed() < PATIENCE, "nothing was written");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(bench.archive().summary("fig-3-jkr-1").unwrap().ended, Ended::Running);
+    // A copy without its lock is what a killed program leaves.
+    let folder = bench.archive().folder().unwrap().to_owned();
+    fs::copy(folder.join("fig-3-jkr-1.json"), folder.join("fig-3-jkr-7.json")).unwrap();
+    assert_eq!(bench.archive().summary("fig-3-jkr-7").unwrap().ended, Ended::Dropped);
+    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+}
+
+#[test]
+fn another_preset_is_another_session_and_the_one_before_is_whole() {
+    let mut bench = Bench::new();
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(bench.does(Id::Step));
+    keeper.offer(bench.does(Id::Step));
+    keeper.offer(bench.does(Command::Open("fig-1-hertz".to_owned())));
+    keeper.offer(bench.does(Id::Step));
+    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+    let told = |name: &str| {
+        let summary = bench.archive().summary(name).unwrap();
+        (summary.steps, summary.ended)
+    };
+    assert_eq!((told("fig-3-jkr-1"), told("fig-1-hertz-1")), ((2, Ended::Quit), (1, Ended::Dropped)));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_a_notice() {
+    let mut bench = Bench::new();
+    // Whoever may write everywhere needs something that is no folder.
+    fs::write(bench.folder.path().join("state"), "").unwrap();
+    let keeper = Keeper::new(bench.archive());
+    let (sender, notices) = channel();
+    keeper.start(move |text| sender.send(text).unwrap()).unwrap();
+    keeper.offer(bench.does(Id::Step));
+    let notice = notices.recv_timeout(PATIENCE).unwrap();
+    assert!(
+        notice.starts_with("the session is not being saved: ") && notice.contains("sessions"),
+        "{notice}"
+    );
+    assert!(keeper.finish(Ended::Quit, PATIENCE).is_err());
+}
+
+#[test]
+fn a_write_that_fails_leaves_the_one_before() {
+    let mut bench = Bench::new();
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(bench.does(Id::Step));
+    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let before = fs::read(folder.join("fig-3-jkr-1.json")).unwrap();
+    let held = bench.archive().load("fig-3-jkr-1").unwrap();
+    fs::set_permissions(&folder, Permissions::from_mode(0o500)).unwrap();
+    let is_root = File::create(folder.join("probe")).is_ok();
+    let written = held.claim.write(b"torn");
+    fs::set_permissions(&folder, Permissions::from_mode(0o700)).unwrap();
+    if !is_root {
+        assert!(written.is_err());
+        assert_eq!(fs::read(folder.join("fig-3-jkr-1.json")).unwrap(), before);
+    }
+}
+
+#[test]
+fn a_damaged_session_is_kept_aside_and_said_once() {
+    let mut bench = Bench::new();
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(bench.does(Id::Step));
+    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let whole = fs::read(folder.join("fig-3-jkr-1.json")).unwrap();
+    let half = &whole[..whole.len() / 2];
+    fs::write(folder.join("fig-3-jkr-1.json"), half).unwrap();
+    let error = bench.archive().load("fig-3-jkr-1").unwrap_err().to_string();
+    assert!(error.contains("fig-3-jkr-1.json: the session is damaged: "), "{error}");
+    let notice = bench.archive().cut_off().unwrap_err();
+    assert!(notice.contains("it is kept as") && notice.contains("fig-3-jkr-1.damaged"), "{notice}");
+    assert!(bench.archive().cut_off().unwrap().is_none());
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(bench.does(Id::Step));
+    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    assert_eq!(bench.files(), ["fig-3-jkr-1.damaged", "fig-3-jkr-2.json"]);
+    assert_eq!(fs::read(folder.join("fig-3-jkr-1.damaged")).unwrap(), half);
+    // One of a later program is left where it is.
+    let text = String::from_utf8(whole).unwrap().replacen("\"format\":1", "\"format\":7", 1);
+    fs::write(folder.join("fig-3-jkr-8.json"), &text).unwrap();
+    assert!(bench.archive().cut_off().unwrap_err().contains("of a later pulloff"));
+    assert_eq!(fs::read_to_string(folder.join("fig-3-jkr-8.json")).unwrap(), text);
+}
+
+#[test]
+fn old_sessions_make_room() {
+    let mut bench = Bench::new();
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let snapshot = bench.does(Id::Step);
+    let document = Document::new(&snapshot, Ended::Quit, 0).json().unwrap();
+    for number in 1..=MOST as u32 + 5 {
+        let claim = bench.archive().begin("a").unwrap();
+        claim.write(&document).unwrap();
+        let then = SystemTime::now() - Duration::from_secs(100_000 - u64::from(number));
+        File::options()
+            .write(true)
+            .open(folder.join(format!("a-{number}.json")))
+            .unwrap()
+            .set_modified(then)
+            .unwrap();
+    }
+    for left in [".pulloff-x.tmp", ".b-1.lock", "notes.txt"] {
+        let file = File::create(folder.join(left)).unwrap();
+        file.set_modified(SystemTime::now() - 2 * STALE).unwrap();
+    }
+    // One that runs stays, however old.
+    let running = bench.archive().load("a-1").unwrap();
+    let keeper = Keeper::new(bench.archive());
+    keeper.offer(snapshot);
+    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    drop(running);
+    let names = bench.names();
+    assert_eq!(names.len(), MOST + 1);
+    assert!(
+        names[0] == "fig-3-jkr-1" && names.last().unwrap() == "a-1" && !names.contains(&"a-6".to_owned())
+    );
+    assert!(names.contains(&"a-7".to_owned()));
+    let others: Vec<String> = bench.files().into_iter().filter(|file| !file.ends_with(".json")).collect();
+    assert_eq!(others, ["notes.txt"]);
+}
+
+#[test]
+fn a_name_follows_from_that_of_the_preset() {
+    for (preset, name) in [
+        ("fig-9", "fig-9"),
+        ("/home/x/My Rough Sphere.toml", "myroughsphere"),
+        ("../\u{1b}[2J", "2j"),
+        ("___", "session"),
+        ("", "session"),
+    ] {
+        assert_eq!(base_name(preset), name, "{preset}");
+    }
+    assert!(is_well_formed(&format!("{}-{}", base_name(&"a".repeat(200)), u32::MAX)));
+}
