@@ -1,12 +1,19 @@
 //! Sessions: what is read back is what was, bit for bit, and a walk goes on as if nothing had happened.
 
+#[path = "support/pty.rs"]
+mod pty;
 #[path = "support/session.rs"]
 mod session;
 
+use pty::Pty;
+use pulloff::explorer::archive::Archive;
+use pulloff::explorer::branches::branches;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
-use pulloff::explorer::{Command, Id, Inline, Model, Node, Overlay, View, answer, update};
+use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
 use pulloff::preset::{Store, write};
+use rustix::process::Signal;
 use session::Session;
+use std::path::Path;
 
 fn document(model: &Model) -> Vec<u8> {
     Document::new(&Snapshot::of(model), Ended::Running, 7).json().expect("a document")
@@ -211,4 +218,293 @@ fn a_summary_says_what_the_session_is() {
     let summary = summary(&document(&session.model)).unwrap();
     assert_eq!((&*summary.preset_name, summary.steps, summary.unsaved), ("wavy-sphere", 5, true));
     assert_eq!((summary.saved_at, summary.ended), (7, Ended::Running));
+}
+
+#[test]
+fn branches_stay_and_can_be_gone_to() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(3));
+    assert_eq!(branches(&session.model.history).len(), 1);
+    session.does(Id::Branches);
+    assert!(session.status().contains("the walk has one branch"), "{}", session.status());
+    let first = session.model.history.cursor().unwrap();
+    session.does(Id::Undo).set("gap.amplitude", "0.002").does(Command::Steps(2));
+    // A knob turned on the way is no branch.
+    session.does(Id::More).does(Id::More).does(Id::More);
+    let found = branches(&session.model.history);
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].is_here && found[1].end == first && !found[1].is_here);
+    let starts: Vec<usize> = found[1].nodes.iter().map(|node| node.step).collect();
+    assert_eq!(starts, [2, 3], "from where it parts to its end");
+    let state = session.model.history.node(first).unwrap().state;
+    let numbering = session.model.history.numbering();
+    session.does(Command::GoTo { node: first, numbering });
+    assert_eq!(session.model.walker().unwrap().state, state);
+    assert_eq!(session.model.preset.get("gap.amplitude").unwrap().to_string(), "0.0025");
+    // Redo leads back to it from the start.
+    while session.model.history.parent().is_some() {
+        session.does(Id::Undo);
+    }
+    session.does(Id::Redo).does(Id::Redo).does(Id::Redo);
+    assert_eq!(session.model.history.cursor(), Some(first));
+    let before = session.model.history.cursor();
+    session.does(Command::GoTo { node: 1, numbering: numbering + 1 });
+    assert!(session.status().contains("ask for its branches again"));
+    assert_eq!(session.model.history.cursor(), before);
+}
+
+#[test]
+fn a_million_steps_stay_bounded_and_a_tree() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Step).does(Id::NextLimit).does(Id::Jump);
+    let nodes: Vec<Node> = session.model.history.nodes().cloned().collect();
+    let of =
+        |wanted: &dyn Fn(&NodeKind) -> bool| nodes.iter().find(|node| wanted(&node.kind)).unwrap().clone();
+    let step = of(&|kind| *kind == NodeKind::Step);
+    let jump = of(&|kind| matches!(kind, NodeKind::Jump(_)));
+    let start = of(&|kind| *kind == NodeKind::Start);
+    let mut history = History::default();
+    history.push(start);
+    let (mut most, mut jumps, mut ends) = (0, 0, 0);
+    for at in 1..1_000_000_usize {
+        let node = if at % 5000 == 0 { &jump } else { &step };
+        jumps += usize::from(at % 5000 == 0);
+        history.push(Node { step: at, ..node.clone() });
+        if at % 9000 == 0 {
+            // A branch: this state is its end.
+            assert!(history.undo() && history.undo());
+            ends += 1;
+        }
+        most = most.max(history.len());
+    }
+    assert!(most <= 10_001, "{most}");
+    assert!(history.numbering() > 100);
+    let mut children = vec![0; history.len()];
+    for (at, node) in history.nodes().enumerate() {
+        assert_eq!(node.parent.is_none(), at == 0);
+        if let Some(parent) = node.parent {
+            children[parent] += 1;
+            assert!(parent < at && history.node(parent).unwrap().step < node.step);
+        }
+    }
+    for (at, children) in children.iter().enumerate() {
+        let forward = history.forward(at).map(|child| history.node(child).unwrap().parent);
+        assert_eq!(forward, (*children > 0).then_some(Some(at)), "node {at}");
+    }
+    let jumped: Vec<&Node> = history.nodes().filter(|node| matches!(node.kind, NodeKind::Jump(_))).collect();
+    assert_eq!(jumped.len(), jumps);
+    assert!(jumped.iter().all(|node| node.step % 5000 == 0));
+    assert!(children.iter().filter(|count| **count == 0).count() > ends, "an end is lost");
+    // The newest are all there, and the way back from them leads to the start.
+    assert_eq!(history.current().unwrap().step, 999_999);
+    for _ in 0..3900 {
+        let after = history.current().unwrap().step;
+        assert!(history.undo());
+        // Three where a branch parts.
+        let before = history.current().unwrap().step;
+        assert!(before + 1 == after || (before + 3 == after && (after - 1) % 9000 == 0), "{before} {after}");
+    }
+    while history.undo() {}
+    assert_eq!((history.cursor(), history.current().unwrap().kind.clone()), (Some(0), NodeKind::Start));
+    // What is left is a session like any other.
+    session.model.history = history;
+    let back = read(&document(&session.model)).unwrap();
+    assert_eq!(back.history.len(), session.model.history.len());
+}
+
+fn program() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_pulloff"))
+}
+
+/// A home with its sessions.
+struct Home(tempfile::TempDir);
+
+impl Home {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn archive(&self) -> Archive {
+        Archive::at(self.0.path().join(".local/state/pulloff/sessions"))
+    }
+
+    /// Exit status, output and errors.
+    fn run(&self, arguments: &[&str]) -> (i32, String, String) {
+        let mut command = std::process::Command::new(program());
+        command.env_clear().env("HOME", self.0.path()).args(arguments).stdin(std::process::Stdio::null());
+        let ended = command.output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (ended.status.code().unwrap(), text(ended.stdout), text(ended.stderr))
+    }
+
+    fn explore(&self, arguments: &[&str]) -> Pty {
+        Pty::spawn(program(), arguments, &[("HOME", self.0.path().to_str().unwrap())], 100, 30)
+    }
+}
+
+#[test]
+fn sessions_are_listed_shown_and_deleted() {
+    let home = Home::new();
+    assert_eq!(home.run(&["sessions", "list"]), (0, String::new(), String::new()));
+    assert!(!home.0.path().join(".local").exists(), "a list writes nothing");
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(4)).set("gap.amplitude", "0.0024");
+    for ended in [Ended::Quit, Ended::Running] {
+        let document = Document::new(&Snapshot::of(&session.model), ended, 7).json().unwrap();
+        home.archive().begin("wavy-sphere").unwrap().write(&document).unwrap();
+    }
+    let (status, list, _) = home.run(&["sessions", "list"]);
+    let lines: Vec<Vec<&str>> = list.lines().map(|line| line.split("  ").collect()).collect();
+    assert_eq!((status, lines.len()), (0, 2), "{list}");
+    assert!(list.lines().next().unwrap().starts_with("wavy-sphere-2  less than a minute ago"), "{list}");
+    // The one that says it runs has no program.
+    assert!(lines[0].contains(&"dropped") && list.lines().nth(1).unwrap().contains("quit"), "{list}");
+    assert!(list.contains("wavy-sphere, 5 steps, preset not saved"), "{list}");
+
+    let (_, shown, _) = home.run(&["sessions", "show", "wavy-sphere-1"]);
+    for text in ["preset      wavy-sphere", "ended       quit", "steps       5", "walker      delta 0."] {
+        assert!(shown.contains(text), "no {text} in {shown}");
+    }
+    let (_, json, _) = home.run(&["sessions", "show", "wavy-sphere-1", "--json"]);
+    let back = read(json.as_bytes()).unwrap();
+    assert_eq!(back.preset, session.model.preset);
+
+    let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1"]);
+    assert_eq!((status, &*said), (2, "pulloff: nobody to ask: --yes deletes without asking\n"));
+    let held = home.archive().load("wavy-sphere-1").unwrap();
+    let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]);
+    assert!(status == 2 && said.contains("is running in another pulloff"), "{said}");
+    drop(held);
+    assert_eq!(home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]).0, 0);
+    let (status, _, said) = home.run(&["sessions", "show", "wavy-sphere-1"]);
+    assert!(status == 2 && said.contains("did you mean wavy-sphere-2?"), "{said}");
+    // What is wrong with the name is said before what is wrong with the terminal.
+    let (status, _, said) = home.run(&["--resume", "nothing"]);
+    assert!(status == 2 && said.contains("no session is called \"nothing\""), "{said}");
+    assert_eq!(home.run(&["fig-9", "--resume"]).0, 2);
+    assert_eq!(home.run(&["sessions", "delete", "wavy-sphere-2", "--yes"]).0, 0);
+    let (status, _, said) = home.run(&["--resume"]);
+    assert_eq!((status, &*said), (2, "pulloff: there is no session to resume\n"));
+}
+
+/// The lines of the screen that tell where the walker is.
+fn walker(pty: &Pty) -> Vec<String> {
+    let screen = pty.screen();
+    let lines = screen.lines().map(|line| line.chars().take(40).collect::<String>());
+    lines
+        .filter(|line| {
+            ["Walker, step", " δ ", " P ", " s ", " stable "].iter().any(|text| line.contains(text))
+        })
+        .collect()
+}
+
+const UP: &str = "stable under displacement control";
+
+#[test]
+fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
+    for signal in [None, Some(Signal::HUP), Some(Signal::TERM), Some(Signal::KILL)] {
+        let home = Home::new();
+        let mut pty = home.explore(&[]);
+        pty.wait_for(|screen| screen.contains(UP) && !screen.contains("cut off"), "the curve, and no offer");
+        pty.keys("4 n");
+        pty.wait_for(|screen| screen.contains("Limit point 1/15"), "the limit point");
+        let before = walker(&pty);
+        assert!(before.iter().any(|line| line.contains("Walker, step")), "{before:?}");
+        match signal {
+            None => pty.close_terminal(),
+            Some(Signal::KILL) => {
+                // Nobody can save then: what the last write had is there.
+                pty.wait_until(|_| home.archive().summary("wavy-sphere-1").is_ok(), "a write");
+                let walked = |pty: &Pty| pty.screen().contains("Limit point 1/15");
+                pty.wait_until(
+                    |pty| {
+                        walked(pty)
+                            && home.archive().summary("wavy-sphere-1").is_ok_and(|told| told.steps > 5)
+                    },
+                    "a write of the limit point",
+                );
+                pty.signal(Signal::KILL);
+            }
+            Some(signal) => pty.signal(signal),
+        }
+        pty.exit_code();
+
+        let mut pty = home.explore(&[]);
+        pty.wait_for(|screen| screen.contains("A session was cut off less than a minute ago"), "the offer");
+        assert!(pty.screen().contains("(wavy-sphere, "), "{}", pty.screen());
+        pty.keys("\r");
+        pty.wait_for(|screen| screen.contains("Limit point 1/15"), "the limit point again");
+        pty.wait_until(|pty| walker(pty) == before, "the same numbers");
+        // It goes on where it was, and everything before is there.
+        pty.keys("x");
+        pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.217e-4"), "the landing");
+        pty.keys("uu");
+        pty.wait_for(
+            |screen| screen.contains("Stable under displacement"),
+            "the state before the limit point",
+        );
+        pty.keys("q");
+        assert_eq!(pty.exit_code(), 0);
+        pty.assert_restored();
+        assert_eq!(home.archive().summary("wavy-sphere-1").unwrap().ended, Ended::Quit);
+        assert_eq!(home.archive().list().unwrap().len(), 1, "the same session, not another");
+
+        // Left well: not offered, but there by name.
+        let mut pty = home.explore(&[]);
+        pty.wait_for(|screen| screen.contains(UP), "the curve");
+        assert!(!pty.screen().contains("cut off"), "{}", pty.screen());
+        pty.keys("q");
+        pty.exit_code();
+        let mut pty = home.explore(&["--resume", "wavy-sphere-1"]);
+        pty.wait_for(|screen| screen.contains("resumed wavy-sphere-1"), "the session");
+        pty.keys("q");
+        assert_eq!(pty.exit_code(), 0);
+    }
+}
+
+#[test]
+fn an_offer_is_not_in_the_way_of_whoever_types_on() {
+    let home = Home::new();
+    let mut pty = home.explore(&[]);
+    pty.wait_for(|screen| screen.contains(UP), "the curve");
+    pty.keys("4 ");
+    pty.wait_for(|screen| screen.contains("Walker, step 4"), "four steps");
+    pty.signal(Signal::TERM);
+    assert_eq!(pty.exit_code(), 143);
+    // A preset asked for is shown; the session is only mentioned.
+    let mut pty = home.explore(&["wavy-sphere"]);
+    pty.wait_for(|screen| screen.contains("--resume wavy-sphere-1 goes on"), "the hint");
+    assert!(!pty.screen().contains("Go on?"), "{}", pty.screen());
+    pty.keys("q");
+    pty.exit_code();
+    let mut pty = home.explore(&[]);
+    pty.wait_for(|screen| screen.contains("Go on?") && screen.contains(UP), "the offer");
+    pty.keys("2 ");
+    pty.wait_for(
+        |screen| screen.contains("Walker, step 2") && !screen.contains("Go on?"),
+        "two steps of its own",
+    );
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+    let names: Vec<String> = home.archive().list().unwrap().into_iter().map(|entry| entry.name).collect();
+    assert_eq!(names, ["wavy-sphere-2", "wavy-sphere-1"]);
+    // Two programs write a session each.
+    let mut first = home.explore(&["--resume", "wavy-sphere-1"]);
+    first.wait_for(|screen| screen.contains("Walker, step 4"), "the session");
+    let (status, _, said) = home.run(&["--resume", "wavy-sphere-1"]);
+    assert!(status == 2 && said.contains("is running in another pulloff"), "{said}");
+    first.keys("q");
+    first.exit_code();
+}
+
+#[test]
+fn a_program_that_changed_nothing_writes_nothing() {
+    let home = Home::new();
+    let mut pty = home.explore(&[]);
+    pty.wait_for(|screen| screen.contains(UP), "the curve");
+    pty.keys("t\t\t");
+    pty.wait_for(|screen| screen.contains("(t: radius-approach)"), "another view");
+    pty.signal(Signal::HUP);
+    pty.exit_code();
+    assert!(!home.0.path().join(".local").exists());
 }

@@ -31,6 +31,8 @@ pub enum Id {
     Undo,
     /// Forward again.
     Redo,
+    /// The branches of the walk, to go to.
+    Branches,
     /// Back to the start state.
     Restart,
     /// Another control.
@@ -150,6 +152,13 @@ pub enum Command {
     },
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
+    /// Stand on this node of the walk, by its number in this numbering.
+    GoTo {
+        /// The number of the node.
+        node: usize,
+        /// [`History::numbering`](super::History::numbering) when it was asked for.
+        numbering: u64,
+    },
     /// Take away the pinned curve of this number, or all.
     Unpin(Option<usize>),
     /// Open this preset, by name or path.
@@ -193,6 +202,7 @@ impl Command {
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
+            Self::GoTo { .. } => Id::Branches,
             Self::Unpin(_) => Id::Pins,
             Self::Open(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
@@ -220,6 +230,10 @@ fn can_undo(model: &Model) -> bool {
 
 fn can_redo(model: &Model) -> bool {
     model.history.redo_target().is_some()
+}
+
+fn has_branches(model: &Model) -> bool {
+    super::branches::are_several(&model.history)
 }
 
 fn has_curve(model: &Model) -> bool {
@@ -303,6 +317,17 @@ pub static ROWS: &[Row] = &[
     row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
     row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
     row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
+    taking(
+        "branch",
+        row(
+            Id::Branches,
+            "branches",
+            WALK,
+            "branches",
+            "the branches of the walk: what each ended with, and back to it",
+            has_branches,
+        ),
+    ),
     row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
     row(
         Id::Control,

@@ -1,5 +1,6 @@
 //! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
 
+use super::thin;
 use crate::contact::{Control, Reduced, Units};
 use crate::preset::Preset;
 use crate::quasistatic::{Admissibility, Event, Point, Scales, Stability, State, Stiffness};
@@ -133,6 +134,10 @@ pub struct History {
     chunks: Vec<Arc<Vec<Entry>>>,
     cursor: Option<usize>,
     revision: u64,
+    /// How often nodes were forgotten and the others numbered anew.
+    numbering: u64,
+    /// Nodes are looked through for what may be forgotten when there are so many.
+    thin_at: usize,
 }
 
 impl History {
@@ -206,6 +211,11 @@ impl History {
         self.revision
     }
 
+    /// Another number whenever the nodes are numbered anew, since older ones were forgotten.
+    pub fn numbering(&self) -> u64 {
+        self.numbering
+    }
+
     fn entry(&self, number: usize) -> Option<&Entry> {
         self.chunks.get(number / CHUNK)?.get(number % CHUNK)
     }
@@ -244,6 +254,42 @@ impl History {
         }
         self.add(Entry { node, forward: None });
         self.stand(at);
+        if self.len() > self.thin_at.max(thin::MOST) {
+            self.thin();
+        }
+    }
+
+    /// Forgets plain states far back, and numbers the others anew.
+    fn thin(&mut self) {
+        let nodes: Vec<&Node> = self.nodes().collect();
+        let stays = thin::staying(&nodes, self.cursor);
+        let mut tree = Self { revision: self.revision + 1, numbering: self.numbering + 1, ..Self::default() };
+        // Where each node went: itself, or the one before it that stays.
+        let mut place: Vec<usize> = Vec::with_capacity(nodes.len());
+        for (at, node) in nodes.iter().enumerate() {
+            let parent = node.parent.map(|parent| place[parent]);
+            if stays[at] {
+                place.push(tree.len());
+                tree.add(Entry { node: Node { parent, ..(*node).clone() }, forward: None });
+            } else {
+                // The first node has no parent, and stays.
+                place.push(parent.unwrap_or(0));
+            }
+        }
+        for at in 0..nodes.len() {
+            // Through those forgotten, which have one child each, to the next that stays.
+            let mut child = self.forward(at).filter(|_| stays[at]);
+            while let Some(gone) = child.filter(|child| !stays[*child]) {
+                child = self.forward(gone);
+            }
+            if let Some(child) = child {
+                tree.set_forward(place[at], place[child]);
+            }
+        }
+        tree.cursor = self.cursor.map(|cursor| place[cursor]);
+        // Where little could be forgotten it is not tried at every step.
+        tree.thin_at = tree.len() + tree.len() / 4;
+        *self = tree;
     }
 
     fn stand(&mut self, at: usize) {

@@ -15,6 +15,8 @@
 //! | [`theory`] | the theory drawn over a curve, computed with it |
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
+//! | [`branches`] | its branches: what each ended with |
+//! | `thin` | which states of a long walk may be forgotten |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`device`] | the line of the loading device through the walker |
@@ -28,6 +30,7 @@
 //! Nothing here knows terminals, keys or colours.
 
 pub mod archive;
+pub mod branches;
 pub mod command;
 pub mod curve;
 pub mod data;
@@ -42,6 +45,7 @@ pub mod pins;
 pub mod profile;
 pub mod session;
 pub mod theory;
+mod thin;
 pub mod update;
 pub mod view;
 pub mod walk;

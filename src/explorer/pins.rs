@@ -124,7 +124,8 @@ fn differences(pinned: &Preset, now: &Preset) -> Vec<(Cow<'static, str>, Value)>
         .collect()
 }
 
-fn name(pinned: &Preset, now: &Preset) -> String {
+/// The values of `pinned` that `now` has not, as labels and values; the first few of them.
+pub fn name(pinned: &Preset, now: &Preset) -> String {
     let differences = differences(pinned, now);
     if differences.is_empty() {
         // An end that is given up differs only in what the other has.

@@ -31,7 +31,7 @@ use values::{
     adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
     want_check,
 };
-use walk::{restart, scale_length, stop, travel, walk, walked};
+use walk::{go_to, restart, scale_length, stop, travel, walk, walked};
 use words::unavailable;
 
 /// Begins a session on a preset: its curve is asked for.
@@ -71,6 +71,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             look::overlay(model, overlay);
             Vec::new()
         }
+        Command::GoTo { node, numbering } => go_to(model, node, numbering),
         Command::Unpin(number) => {
             look::unpin(model, number);
             Vec::new()
@@ -165,7 +166,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Help => {}
+        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Branches | Id::Help => {}
     }
     Vec::new()
 }

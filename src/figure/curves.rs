@@ -4,7 +4,7 @@ use super::Subject;
 use super::bounds::Bounds;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
-use super::walk::{events_before, walk};
+use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use crate::report::number::{fixed, significant};
@@ -17,6 +17,8 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
     theory(subject, scale, &mut figure);
+    // Below the curve: what lies on it is known.
+    branches(subject, scale, &mut figure);
     let pinned = pins(subject, &mut figure);
     figure.lines.extend(pieces(&subject.curve.points, &points));
     inadmissible(subject, scale, &mut figure);

@@ -31,6 +31,7 @@ pub use parts::{Area, Axis, Figure, Line, Mark, Role, Sign};
 pub use reading::{Nearest, nearest};
 pub use scale::Scale;
 
+use crate::explorer::branches::{Branch, branches};
 use crate::explorer::device;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::Pin;
@@ -45,6 +46,8 @@ pub struct Subject<'a> {
     pub curve: &'a CurveData,
     /// The states that led to the walker, which is the last.
     pub walk: Vec<&'a Node>,
+    /// The other branches of the walk.
+    pub branches: Vec<Branch<'a>>,
     /// The inside of the walker's state, where it is known.
     pub inside: Option<&'a Inside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
@@ -65,6 +68,7 @@ impl<'a> Subject<'a> {
         Some(Self {
             curve: model.curve.as_deref()?,
             walk: model.history.path().into_iter().map(|(_, node)| node).collect(),
+            branches: branches(&model.history).into_iter().filter(|branch| !branch.is_here).collect(),
             inside: model.shown_profile(),
             device: device::line(model),
             pins: model.pins.all(),

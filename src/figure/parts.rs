@@ -17,6 +17,8 @@ pub enum Role {
     Envelope,
     /// A pinned curve, by its number.
     Pin(usize),
+    /// The states of another branch of the walk.
+    Branch,
     /// The exact solution.
     Exact,
     /// Equilibrium, unstable under the control.

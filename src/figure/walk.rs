@@ -39,6 +39,32 @@ pub fn events_before<'a>(
     })
 }
 
+/// Adds the other branches of the walk to a view of the curve, whatever their problems: to compare them.
+pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
+    let place = |node: &Node, state: &State| {
+        scale.place(figure.view, quantities(&state.in_units(node.setting.units())))
+    };
+    let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
+    for branch in &subject.branches {
+        let mut steps: Vec<(f64, f64)> = Vec::new();
+        for node in &branch.nodes {
+            match &node.kind {
+                NodeKind::Stale(_) => {}
+                // Without a landing the line would end nowhere.
+                NodeKind::Jump(event) if event.after.is_none() => {}
+                NodeKind::Jump(_) | NodeKind::Step | NodeKind::Limit => steps.push(place(node, &node.state)),
+                _ => {
+                    lines.push(std::mem::take(&mut steps));
+                    steps.push(place(node, &node.state));
+                }
+            }
+        }
+        lines.push(steps);
+    }
+    let lines = lines.into_iter().filter(|steps| steps.len() > 1);
+    figure.lines.extend(lines.map(|steps| Line::new(Role::Branch, "other branch", steps)));
+}
+
 /// Adds the walk to a view of the curve; the walker is the last mark.
 pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;

@@ -1,15 +1,16 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
 
 mod gap;
+mod session;
 
 use super::keymap;
-use super::overlay::{Action, Choose, Confirm, Item, Offer, Overlay as Over, Prompt, Purpose};
+use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::contact::Control;
+use crate::explorer::branches::are_several;
 use crate::explorer::files::Document;
 use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
-use crate::explorer::session::Snapshot;
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
 use crate::preset::schema::Kind;
@@ -43,36 +44,6 @@ impl App {
     pub fn new(loaded: Loaded, theme: Theme) -> (Self, Vec<Effect>) {
         let (model, effects) = open(loaded);
         (Self { model, overlay: None, count: None, theme }, effects)
-    }
-
-    /// Goes on with a session.
-    pub fn resumed(snapshot: Snapshot, theme: Theme) -> (Self, Vec<Effect>) {
-        let (model, effects) = snapshot.resume(None);
-        (Self { model, overlay: None, count: None, theme }, effects)
-    }
-
-    /// Offers a session.
-    pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
-        let question = format!("{what} Enter goes on with it, Esc begins anew.");
-        self.overlay = Some(Over::Offer(Offer { question, snapshot: Box::new(snapshot) }));
-    }
-
-    /// Whether a session is offered and no answer given yet.
-    pub fn is_offering(&self) -> bool {
-        matches!(self.overlay, Some(Over::Offer(_)))
-    }
-
-    fn offer_key(&mut self, offer: Offer, key: KeyEvent) -> Vec<Effect> {
-        match key.code {
-            KeyCode::Enter | KeyCode::Char('y') => {
-                let (model, effects) = offer.snapshot.resume(Some(&self.model));
-                self.model = model;
-                effects
-            }
-            KeyCode::Esc => Vec::new(),
-            // Whoever types on does not want it, and means the key.
-            _ => self.command_key(key),
-        }
     }
 
     /// A key was pressed.
@@ -213,6 +184,7 @@ impl App {
             Id::Export => self.ask_export(),
             Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
             Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
+            Id::Branches if are_several(&self.model.history) => self.ask_branch(),
             Id::ZoomIn | Id::ZoomOut => {
                 let about = self.walker_place();
                 self.run(Command::Zoom { closer: id == Id::ZoomIn, about })

@@ -54,6 +54,7 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Double => &[Char(']')],
         Id::Undo => &[Char('u')],
         Id::Redo => &[Ctrl('r')],
+        Id::Branches => &[Char('B')],
         Id::Restart => &[Char('0')],
         Id::Control => &[Char('c')],
         Id::Less => &[Char('<'), Char(',')],

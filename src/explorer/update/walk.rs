@@ -63,8 +63,12 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     if model.walking != Some(id) {
         return Vec::new();
     }
+    let numbering = model.history.numbering();
     for state in made {
         append(model, state);
+    }
+    if numbering == 0 && model.history.numbering() > 0 {
+        tell(model, Level::Info, "a long walk: of plain steps far back only every second one is kept");
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
@@ -153,13 +157,22 @@ pub(super) fn scale_length(model: &mut Model, by: f64) {
 }
 
 /// Undo and redo: the parameters of the node come back with it.
-pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Effect> {
+pub(super) fn travel(model: &mut Model, go: impl FnOnce(&mut History) -> bool) -> Vec<Effect> {
     let mut effects = stop(model);
     model.walking = None;
     if go(&mut model.history) {
         effects.extend(adopt_parameters(model));
     }
     effects
+}
+
+/// To the end of a branch, its parameters with it.
+pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
+    if model.history.numbering() != numbering || model.history.node(node).is_none() {
+        tell(model, Level::Error, "the walk has changed meanwhile: ask for its branches again");
+        return Vec::new();
+    }
+    travel(model, |history| history.go(node))
 }
 
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {

@@ -14,6 +14,7 @@ pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
     match id {
         Id::Undo => "this is the start: there is nothing to undo",
         Id::Redo => "there is nothing to redo",
+        Id::Branches => "the walk has one branch: u goes back, and another step begins a second",
         Id::Jump if apart => "the bodies are apart: u goes back, 0 restarts",
         Id::Jump => "the state is stable: the edge stays; n runs to the next limit point",
         Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {

@@ -49,7 +49,7 @@ fn rank(role: Role) -> u8 {
         | Role::Undeformed
         | Role::Barrier
         | Role::Device => 1,
-        Role::Smooth => 3,
+        Role::Smooth | Role::Branch => 3,
         _ => 4,
     }
 }

@@ -1,0 +1,70 @@
+//! Which states of a long walk may be forgotten.
+//!
+//! A walk of a million steps must not fill the memory. What tells the story stays: starts, limit points, jumps, changed
+//! problems, the states next to them, the places where branches part and their ends, and the newest states. Of the
+//! plain steps between, every second one goes, the oldest first: so the further back, the sparser.
+
+use super::history::{Node, NodeKind};
+
+/// The most states kept without a reason.
+pub const MOST: usize = 10_000;
+/// So many are left where there are more.
+const LEFT: usize = 7_500;
+/// The newest are never forgotten.
+const NEWEST: usize = 4_000;
+
+/// Which of `nodes` stay, the walker standing on `cursor`.
+pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
+    let count = nodes.len();
+    let old = count.saturating_sub(NEWEST);
+    let mut stays = vec![true; count];
+    let mut surplus = count.saturating_sub(LEFT);
+    let children = children(nodes);
+    let is_plain = |at: usize| {
+        // Its one child is a step like itself: neither an end, nor a fork, nor the state before something.
+        let single = matches!(children[at][..], [child] if nodes[child].kind == NodeKind::Step);
+        nodes[at].kind == NodeKind::Step && single && cursor != Some(at) && nodes[at].parent.is_some()
+    };
+    loop {
+        let plain: Vec<usize> = (0..old).filter(|at| stays[*at] && is_plain(*at)).collect();
+        if surplus == 0 || plain.is_empty() {
+            break;
+        }
+        // Of a single one that is left too, the first goes.
+        for at in plain.into_iter().step_by(2).take(surplus) {
+            stays[at] = false;
+            surplus -= 1;
+        }
+    }
+    let repeated: Vec<usize> = (0..old)
+        .filter(|at| cursor != Some(*at) && children[*at].is_empty() && is_repeated(nodes, &children, *at))
+        .take(surplus)
+        .collect();
+    for at in repeated {
+        stays[at] = false;
+    }
+    stays
+}
+
+/// The children of every node.
+pub(super) fn children(nodes: &[&Node]) -> Vec<Vec<usize>> {
+    let mut children = vec![Vec::new(); nodes.len()];
+    for (at, node) in nodes.iter().enumerate() {
+        if let Some(of) = node.parent.and_then(|parent| children.get_mut(parent)) {
+            of.push(at);
+        }
+    }
+    children
+}
+
+/// Whether an end says nothing that a later sibling does not say: a knob that was turned further, or the same state
+/// made again after undo.
+pub(super) fn is_repeated(nodes: &[&Node], children: &[Vec<usize>], at: usize) -> bool {
+    let is_change = |kind: &NodeKind| matches!(kind, NodeKind::Solved | NodeKind::Stale(_));
+    let Some(siblings) = nodes[at].parent.map(|parent| &children[parent]) else { return false };
+    siblings.iter().rev().take_while(|sibling| **sibling > at).any(|sibling| {
+        let (ours, theirs) = (nodes[at], nodes[*sibling]);
+        let same = ours.kind == theirs.kind && (ours.state, ours.control) == (theirs.state, theirs.control);
+        same || is_change(&ours.kind) && is_change(&theirs.kind)
+    })
+}
