@@ -124,9 +124,9 @@ fn presets_of_every_kind_come_back() {
 fn the_rows_of_a_profile_are_those_of_the_session_whatever_became_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rough.csv");
-    let rows: String =
-        (0..200).map(|i| f64::from(i) / 100.0).map(|r| format!("{r} {}\n", r * r / 2.0)).collect();
-    std::fs::write(&path, format!("# r[um] h[um]\n{rows}")).unwrap();
+    let radii = (0..200).map(|i| f64::from(i) / 100.0);
+    let rows: Vec<String> = radii.map(|r| format!("{r} {}", r * r / 2.0)).collect();
+    std::fs::write(&path, format!("# r[um] h[um]\n{}\n", rows.join("\n"))).unwrap();
     let mut session = Session::new("wavy-sphere");
     session.set("gap.shape", "profile").set("gap.file", path.to_str().unwrap()).does(Command::Steps(2));
     let bytes = document(&session.model);
@@ -277,7 +277,7 @@ fn a_million_steps_stay_bounded_and_a_tree() {
         }
         most = most.max(history.len());
     }
-    assert!(most <= 10_001, "{most}");
+    assert!(most <= 5_001, "{most}");
     assert!(history.numbering() > 100);
     let mut children = vec![0; history.len()];
     for (at, node) in history.nodes().enumerate() {
@@ -297,7 +297,7 @@ fn a_million_steps_stay_bounded_and_a_tree() {
     assert!(children.iter().filter(|count| **count == 0).count() > ends, "an end is lost");
     // The newest are all there, and the way back from them leads to the start.
     assert_eq!(history.current().unwrap().step, 999_999);
-    for _ in 0..3900 {
+    for _ in 0..1900 {
         let after = history.current().unwrap().step;
         assert!(history.undo());
         // Three where a branch parts.
@@ -321,7 +321,7 @@ struct Home(tempfile::TempDir);
 
 impl Home {
     fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
+        Self(tempfile::tempdir().expect("a home"))
     }
 
     fn archive(&self) -> Archive {
@@ -332,13 +332,13 @@ impl Home {
     fn run(&self, arguments: &[&str]) -> (i32, String, String) {
         let mut command = std::process::Command::new(program());
         command.env_clear().env("HOME", self.0.path()).args(arguments).stdin(std::process::Stdio::null());
-        let ended = command.output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (ended.status.code().unwrap(), text(ended.stdout), text(ended.stderr))
+        let ended = command.output().expect("a home");
+        let text = |bytes| String::from_utf8(bytes).expect("a home");
+        (ended.status.code().expect("a home"), text(ended.stdout), text(ended.stderr))
     }
 
     fn explore(&self, arguments: &[&str]) -> Pty {
-        Pty::spawn(program(), arguments, &[("HOME", self.0.path().to_str().unwrap())], 100, 30)
+        Pty::spawn(program(), arguments, &[("HOME", self.0.path().to_str().expect("a home"))], 100, 30)
     }
 }
 

@@ -206,6 +206,12 @@ impl History {
         self.chunks.is_empty()
     }
 
+    /// A tree of the same revision without its nodes: to see later whether anything has changed, not to hold them.
+    #[must_use]
+    pub fn mark(&self) -> Self {
+        Self { revision: self.revision, ..Self::default() }
+    }
+
     /// Another number whenever anything in it changes.
     pub fn revision(&self) -> u64 {
         self.revision

@@ -7,11 +7,11 @@
 use super::history::{Node, NodeKind};
 
 /// The most states kept without a reason.
-pub const MOST: usize = 10_000;
+pub const MOST: usize = 5_000;
 /// So many are left where there are more.
-const LEFT: usize = 7_500;
+const LEFT: usize = 3_750;
 /// The newest are never forgotten.
-const NEWEST: usize = 4_000;
+const NEWEST: usize = 2_000;
 
 /// Which of `nodes` stay, the walker standing on `cursor`.
 pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {

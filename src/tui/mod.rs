@@ -79,7 +79,7 @@ fn begin(start: Start, keeper: &Keeper) -> (App, Vec<crate::explorer::Effect>, O
             let text = format!("resumed {} ({})", held.claim.name(), told(&held));
             let (mut app, effects) = App::resumed(held.snapshot, theme);
             app.model.message = Some((Level::Info, text));
-            keeper.adopt(Snapshot::of(&app.model), held.claim, held.summary.ended);
+            keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             (app, effects, None)
         }
     }
@@ -130,7 +130,7 @@ pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode>
             if let Some(held) = offered.take_if(|_| !app.is_offering()) {
                 // Answered; a session that nobody wants may be had by another program.
                 if app.model.session > 0 {
-                    keeper.adopt(Snapshot::of(&app.model), held.claim, held.summary.ended);
+                    keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
                 }
             }
         }

@@ -31,10 +31,12 @@ struct Shared {
 #[derive(Debug, Default)]
 struct Desk {
     newest: Option<Arc<Snapshot>>,
+    /// How many there have been.
+    count: u64,
     /// The last snapshots of sessions that the person has left for another.
     left: Vec<Arc<Snapshot>>,
     /// A resumed session as it is in its file, the right to write it, and how it had ended.
-    resumed: Option<(Arc<Snapshot>, Claim, Ended)>,
+    resumed: Option<(Snapshot, Claim, Ended)>,
     /// Nothing is written any more.
     is_over: bool,
 }
@@ -44,7 +46,8 @@ struct Desk {
 struct Writer {
     session: u64,
     claim: Option<Claim>,
-    written: Option<(Arc<Snapshot>, Ended)>,
+    /// What is in the file, without the walk, and how it is said to have ended.
+    written: Option<(Snapshot, Ended)>,
     /// How a resumed one, not written since, had ended.
     before: Option<Ended>,
 }
@@ -67,8 +70,8 @@ impl Keeper {
     }
 
     /// The session of `snapshot` is resumed: it is in the file of `claim`, and had ended as `before`.
-    pub fn adopt(&self, snapshot: Snapshot, claim: Claim, before: Ended) {
-        self.desk().resumed = Some((Arc::new(snapshot), claim, before));
+    pub fn adopt(&self, snapshot: &Snapshot, claim: Claim, before: Ended) {
+        self.desk().resumed = Some((snapshot.mark(), claim, before));
     }
 
     /// Leaves the newest state of a session to be written.
@@ -77,6 +80,7 @@ impl Keeper {
         if desk.newest.as_ref().is_some_and(|newest| newest.is_like(&snapshot)) {
             return;
         }
+        desk.count += 1;
         let last = desk.newest.replace(Arc::new(snapshot));
         let session = desk.newest.as_ref().map(|newest| newest.session);
         desk.left.extend(last.filter(|last| Some(last.session) != session));
@@ -112,9 +116,9 @@ impl Keeper {
     /// Writes what comes, until the session is over.
     fn work(&self, tell: &dyn Fn(String)) {
         let mut told = None;
-        let mut seen: Option<Arc<Snapshot>> = None;
+        let mut seen = 0;
         loop {
-            let Some((newest, left)) = self.next(seen.as_ref()) else { return };
+            let Some((newest, left)) = self.next(&mut seen) else { return };
             let begun = Instant::now();
             let result = {
                 let mut writer = self.0.writer.lock().unwrap_or_else(PoisonError::into_inner);
@@ -128,7 +132,7 @@ impl Keeper {
                 }
                 result.and(self.write(&mut writer, &newest, Ended::Running))
             };
-            seen = Some(newest);
+            drop(newest);
             let failure = result.err().map(|error| format!("the session is not being saved: {error}"));
             if failure != told {
                 tell(failure.clone().unwrap_or_else(|| "the session is saved again".to_owned()));
@@ -138,16 +142,15 @@ impl Keeper {
         }
     }
 
-    /// The newest snapshot and those left behind, once there is another than `seen`; `None` when it is over.
-    fn next(&self, seen: Option<&Arc<Snapshot>>) -> Option<(Arc<Snapshot>, Vec<Arc<Snapshot>>)> {
+    /// The newest snapshot and those left behind, once there are more than `seen`; `None` when it is over.
+    fn next(&self, seen: &mut u64) -> Option<(Arc<Snapshot>, Vec<Arc<Snapshot>>)> {
         let mut desk = self.desk();
         loop {
             if desk.is_over {
                 return None;
             }
-            let newest =
-                desk.newest.as_ref().filter(|newest| seen.is_none_or(|seen| !Arc::ptr_eq(seen, newest)));
-            if let Some(newest) = newest.cloned() {
+            if let Some(newest) = desk.newest.clone().filter(|_| desk.count > *seen) {
+                *seen = desk.count;
                 return Some((newest, std::mem::take(&mut desk.left)));
             }
             desk = self.0.filled.wait(desk).unwrap_or_else(PoisonError::into_inner);
@@ -155,7 +158,7 @@ impl Keeper {
     }
 
     /// Writes a snapshot, if there is something in it that is not in the file.
-    fn write(&self, writer: &mut Writer, snapshot: &Arc<Snapshot>, ended: Ended) -> Result<(), ArchiveError> {
+    fn write(&self, writer: &mut Writer, snapshot: &Snapshot, ended: Ended) -> Result<(), ArchiveError> {
         if writer.session != snapshot.session {
             *writer = Writer { session: snapshot.session, ..Writer::default() };
         }
@@ -165,8 +168,11 @@ impl Keeper {
             writer.written = Some((resumed, before));
         }
         let known = writer.written.as_ref().is_some_and(|(written, how)| {
-            let is_said = *how == ended || (ended == Ended::Running && writer.before == Some(*how));
-            is_said && (Arc::ptr_eq(written, snapshot) || written.is_like(snapshot))
+            // A file that says it runs, without a program, is of one that was cut off.
+            let is_said = *how == ended
+                || (*how == Ended::Running && ended == Ended::Dropped)
+                || (ended == Ended::Running && writer.before == Some(*how));
+            is_said && written.is_like(snapshot)
         });
         if known || (writer.claim.is_none() && !snapshot.is_worth_keeping()) {
             return Ok(());
@@ -179,7 +185,7 @@ impl Keeper {
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         let document = Document::new(snapshot, ended, now).json().map_err(ArchiveError::Document)?;
         claim.write(&document)?;
-        (writer.written, writer.before) = (Some((Arc::clone(snapshot), ended)), None);
+        (writer.written, writer.before) = (Some((snapshot.mark(), ended)), None);
         if is_new {
             self.0.archive.make_room(claim.name());
         }
@@ -194,7 +200,7 @@ fn patiently<T>(mutex: &Mutex<T>, until: Instant) -> Option<MutexGuard<'_, T>> {
             Ok(guard) => return Some(guard),
             Err(TryLockError::Poisoned(guard)) => return Some(guard.into_inner()),
             Err(TryLockError::WouldBlock) if Instant::now() < until => {
-                thread::sleep(Duration::from_millis(2))
+                thread::sleep(Duration::from_millis(2));
             }
             Err(TryLockError::WouldBlock) => return None,
         }

@@ -24,6 +24,7 @@ use crate::preset::name::is_well_formed;
 use crate::preset::suggest::closest;
 use crate::preset::text::{quote, show_path};
 use etcetera::BaseStrategy;
+use std::cmp::Reverse;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -174,7 +175,7 @@ impl Archive {
             })
             .collect();
         // Of two of one moment the later number is the newer.
-        entries.sort_by(|a, b| (b.written, number(&b.name)).cmp(&(a.written, number(&a.name))));
+        entries.sort_by_key(|entry| Reverse((entry.written, number(&entry.name))));
         Ok(entries)
     }
 
@@ -340,7 +341,9 @@ fn is_left_behind(folder: &Path, name: &str) -> bool {
     let lock = name.strip_prefix('.').and_then(|name| name.strip_suffix(".lock"));
     let session = lock.map(|name| folder.join(format!("{name}.{ENDING}")));
     let is_lock = session.is_some_and(|session| !session.exists()) && !FileLock::is_held(&folder.join(name));
-    is_lock || (name.starts_with(".pulloff-") && name.ends_with(".tmp"))
+    is_lock
+        || (name.starts_with(".pulloff-")
+            && Path::new(name).extension().is_some_and(|ending| ending == "tmp"))
 }
 
 /// The lock of a session.

@@ -81,7 +81,7 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
     // Left at once: that it was left well is all that is written.
     let (model, _) = held.snapshot.resume(None);
     let keeper = Keeper::new(bench.archive());
-    keeper.adopt(Snapshot::of(&model), held.claim, held.summary.ended);
+    keeper.adopt(&Snapshot::of(&model), held.claim, held.summary.ended);
     keeper.offer(Snapshot::of(&model));
     keeper.finish(Ended::Quit, PATIENCE).unwrap();
     assert_eq!(bench.archive().summary("fig-3-jkr-2").unwrap().ended, Ended::Quit);
@@ -199,7 +199,7 @@ fn old_sessions_make_room() {
     let folder = bench.archive().folder().unwrap().to_owned();
     let snapshot = bench.does(Id::Step);
     let document = Document::new(&snapshot, Ended::Quit, 0).json().unwrap();
-    for number in 1..=MOST as u32 + 5 {
+    for number in 1..=u32::try_from(MOST).unwrap() + 5 {
         let claim = bench.archive().begin("a").unwrap();
         claim.write(&document).unwrap();
         let then = SystemTime::now() - Duration::from_secs(100_000 - u64::from(number));
@@ -226,7 +226,11 @@ fn old_sessions_make_room() {
         names[0] == "fig-3-jkr-1" && names.last().unwrap() == "a-1" && !names.contains(&"a-6".to_owned())
     );
     assert!(names.contains(&"a-7".to_owned()));
-    let others: Vec<String> = bench.files().into_iter().filter(|file| !file.ends_with(".json")).collect();
+    let others: Vec<String> = bench
+        .files()
+        .into_iter()
+        .filter(|file| Path::new(file).extension().is_none_or(|ending| ending != ENDING))
+        .collect();
     assert_eq!(others, ["notes.txt"]);
 }
 

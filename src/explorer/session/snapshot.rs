@@ -120,6 +120,12 @@ impl Snapshot {
         }
     }
 
+    /// What [`is_like`](Self::is_like) needs of it, without the walk.
+    #[must_use]
+    pub fn mark(&self) -> Self {
+        Self { history: self.history.mark(), ..self.clone() }
+    }
+
     /// Whether both say the same.
     pub fn is_like(&self, other: &Self) -> bool {
         self.session == other.session

@@ -53,14 +53,15 @@ impl App {
             let state = node.state.in_units(node.setting.units());
             let units = &node.setting.preset.units;
             let value = |quantity, x| with_unit(units, quantity, x, self.theme.ascii, |x| significant(x, 4));
-            let place = match node.is_apart() {
-                true => "the bodies are apart".to_owned(),
-                false => format!(
+            let place = if node.is_apart() {
+                "the bodies are apart".to_owned()
+            } else {
+                format!(
                     "δ {} P {} s {}",
                     value(Quantity::Length, state.approach),
                     value(Quantity::Force, state.force),
                     value(Quantity::Length, state.contact_radius)
-                ),
+                )
             };
             let differs = pins::name(&node.setting.preset, &self.model.preset);
             let mark = if branch.is_here { "here" } else { "" };

@@ -52,9 +52,8 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let mut spans = vec![Span::raw(" ")];
     let mut used = 1;
     let ids: Vec<Id> = match &app.overlay {
-        Some(Overlay::Prompt(_)) => vec![Id::Edit, Id::Cancel],
+        Some(Overlay::Prompt(_) | Overlay::Offer(_)) => vec![Id::Edit, Id::Cancel],
         Some(Overlay::Choose(_) | Overlay::Help(_)) => vec![Id::Up, Id::Down, Id::Edit, Id::Cancel],
-        Some(Overlay::Offer(_)) => vec![Id::Edit, Id::Cancel],
         Some(Overlay::Confirm(_)) => {
             spans.extend([Span::styled("y", theme.key()), Span::raw(" yes  ")]);
             vec![Id::Cancel]
