@@ -10,6 +10,7 @@ use pulloff::explorer::archive::Archive;
 use pulloff::explorer::branches::branches;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
 use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
+use pulloff::figure::{Role, Subject};
 use pulloff::preset::{Store, write};
 use rustix::process::Signal;
 use session::Session;
@@ -251,6 +252,46 @@ fn branches_stay_and_can_be_gone_to() {
     session.does(Command::GoTo { node: 1, numbering: numbering + 1 });
     assert!(session.status().contains("ask for its branches again"));
     assert_eq!(session.model.history.cursor(), before);
+}
+
+#[test]
+fn the_other_branches_are_drawn_where_the_curve_is() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(3)).does(Id::Undo).does(Id::Undo).set("gap.amplitude", "0.002");
+    session.does(Command::Steps(2));
+    let branch = |view| {
+        let subject = Subject::of(&session.model).unwrap();
+        let scale = subject.scale();
+        let lines: Vec<_> =
+            subject.figure(view).lines.into_iter().filter(|line| line.role == Role::Branch).collect();
+        (lines, scale)
+    };
+    for view in [View::ForceApproach, View::RadiusForce] {
+        let (lines, scale) = branch(view);
+        // From the state in which it parts through those after it, though they solve another problem.
+        let states = (1..=3).map(|number| {
+            let node = session.model.history.node(number).unwrap();
+            let state = node.state.in_units(node.setting.units());
+            scale.place(view, [state.approach, state.force, state.contact_radius])
+        });
+        assert_eq!(lines.iter().map(|line| &line.points).collect::<Vec<_>>(), [&states.collect::<Vec<_>>()]);
+    }
+    assert!(branch(View::Unloading).0.is_empty());
+}
+
+#[test]
+fn a_held_knob_stays_bounded_too() {
+    let mut session = Session::new("fig-3-jkr");
+    session.does(Id::Step).set("material.work_of_adhesion", "0.02");
+    let node = session.model.history.current().unwrap().clone();
+    assert_eq!(node.kind, NodeKind::Solved);
+    let history = &mut session.model.history;
+    for _ in 0..30_000 {
+        history.push_beside(node.clone());
+        assert!(history.len() <= 5001);
+    }
+    assert!(history.undo() && history.current().unwrap().kind == NodeKind::Step);
+    assert!(history.redo() && history.cursor() == Some(history.len() - 1));
 }
 
 #[test]

@@ -92,7 +92,8 @@ fn cross_hair(subject: &Subject<'_>, view: View, cross: Option<(f64, f64)>, char
 /// The stroke and the colour of a line.
 pub fn look(role: Role) -> (Stroke, Color) {
     match role {
-        Role::Zero | Role::Undeformed | Role::Smooth | Role::Branch => (Stroke::Sparse, ink::SMOOTH),
+        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, ink::SMOOTH),
+        Role::Branch => (Stroke::Lettered("b"), ink::SMOOTH),
         Role::Envelope => (Stroke::LongDashed, ink::EXACT),
         Role::Exact => (Stroke::Dashed, ink::EXACT),
         Role::Pin(number) => {
