@@ -133,7 +133,8 @@ impl Keeper {
                 result.and(self.write(&mut writer, &newest, Ended::Running))
             };
             drop(newest);
-            let failure = result.err().map(|error| format!("the session is not being saved: {error}"));
+            let failure =
+                result.err().map(|error| format!("the session is not being saved: {}", error.brief()));
             if failure != told {
                 tell(failure.clone().unwrap_or_else(|| "the session is saved again".to_owned()));
                 told = failure;

@@ -96,6 +96,18 @@ pub enum ArchiveError {
     },
 }
 
+impl ArchiveError {
+    /// Why, without the path: for a line that is cut where the screen ends.
+    fn brief(&self) -> String {
+        match self {
+            Self::Write(WriteError::Io { doing, cause, .. }) | Self::Io { doing, cause, .. } => {
+                format!("cannot {doing}: {cause}")
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
 fn failed(path: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> ArchiveError {
     let path = show_path(path);
     move |cause| ArchiveError::Io { path, doing, cause }

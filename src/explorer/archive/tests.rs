@@ -141,7 +141,7 @@ fn a_folder_that_cannot_be_written_is_a_notice() {
     keeper.offer(bench.does(Id::Step));
     let notice = notices.recv_timeout(PATIENCE).unwrap();
     assert!(
-        notice.starts_with("the session is not being saved: ") && notice.contains("sessions"),
+        notice.starts_with("the session is not being saved: ") && notice.contains("cannot make the folder"),
         "{notice}"
     );
     assert!(keeper.finish(Ended::Quit, PATIENCE).is_err());
