@@ -43,6 +43,9 @@ pub enum Failure {
     /// Inadmissible states where none are allowed; the result was written.
     #[error("{0}")]
     Inadmissible(String),
+    /// A line of a script failed; those before it were done.
+    #[error("{0}")]
+    Script(String),
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),

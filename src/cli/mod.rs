@@ -14,6 +14,7 @@ mod explore;
 mod failure;
 mod output;
 mod presets;
+mod run;
 mod trace;
 mod unload;
 mod verify;
@@ -45,6 +46,8 @@ enum Command {
     Unload(unload::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
+    /// Run a script of the explorer's commands
+    Run(run::Arguments),
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
@@ -98,6 +101,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
+        Some(Command::Run(arguments)) => run::run(arguments),
         Some(Command::Presets(command)) => presets::run(command),
     };
     match result {

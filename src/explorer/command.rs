@@ -27,6 +27,8 @@ pub enum Id {
     Halve,
     /// Double the step length.
     Double,
+    /// The step length as a number.
+    StepLength,
     /// Back to the node before.
     Undo,
     /// Forward again.
@@ -43,8 +45,12 @@ pub enum Id {
     MuchLess,
     /// Much more.
     MuchMore,
+    /// Other values for some keys, as one change.
+    Assign,
     /// Type the value of the selected parameter, or go to the selected event.
     Edit,
+    /// The walker to an event by its number.
+    SelectEvent,
     /// The parameter, event or line above.
     Up,
     /// The one below.
@@ -87,7 +93,7 @@ pub enum Id {
     Save,
     /// Save it under another name.
     SaveAs,
-    /// Write the curve, the walk or the events to a file.
+    /// Write the curve, the walk, the events or a script to a file.
     Export,
     /// The help screen.
     Help,
@@ -116,6 +122,12 @@ pub struct Row {
     pub enabled: fn(&Model) -> bool,
 }
 
+/// A key and the text of its value.
+pub type Assignment = (Key, String);
+
+/// Most steps that one command takes.
+pub const MOST_STEPS: usize = 9999;
+
 /// A command with its argument.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -123,6 +135,14 @@ pub enum Command {
     Plain(Id),
     /// So many steps.
     Steps(usize),
+    /// A run that ends after so many states, if it meets nothing before.
+    RunOf(usize),
+    /// The longest step by hand, in the scaled unknowns.
+    StepLength(f64),
+    /// The walker to the event of this number, from 1, among those shown.
+    SelectEvent(usize),
+    /// Other values for some keys, as one change; as on a command line a bare number is SI in an SI preset.
+    Assign(Vec<Assignment>),
     /// Another value for a key, as typed.
     Set {
         /// The dotted key.
@@ -154,6 +174,13 @@ pub enum Command {
     Unpin(Option<usize>),
     /// Open this preset, by name or path.
     Open(String),
+    /// Open this preset with other values for some keys.
+    OpenWith {
+        /// Its name or path.
+        name: String,
+        /// The values, as on a command line.
+        assignments: Vec<Assignment>,
+    },
     /// Save under this name.
     SaveAs {
         /// The name.
@@ -188,13 +215,17 @@ impl Command {
         match self {
             Self::Plain(id) => *id,
             Self::Steps(_) => Id::Step,
+            Self::RunOf(_) => Id::Run,
+            Self::StepLength(_) => Id::StepLength,
+            Self::SelectEvent(_) => Id::SelectEvent,
+            Self::Assign(_) => Id::Assign,
             Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
             Self::Unpin(_) => Id::Pins,
-            Self::Open(_) => Id::Open,
+            Self::Open(_) | Self::OpenWith { .. } => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
             Self::Export { .. } => Id::Export,
@@ -297,20 +328,45 @@ pub static ROWS: &[Row] = &[
         "let the edge run at constant control to the next stable state",
         can_jump,
     ),
-    row(Id::Run, "run", WALK, "run", "run and pause", walking),
+    taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", walking)),
     row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", walking),
     row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
     row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
+    taking(
+        "length",
+        row(
+            Id::StepLength,
+            "step-length",
+            WALK,
+            "step length",
+            "the longest step, as a share of every quantity's range",
+            always,
+        ),
+    ),
     row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
     row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
     row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
-    row(
-        Id::Control,
+    taking(
         "control",
-        WALK,
-        "control",
-        "control the displacement, the force, or a spring's far end",
-        always,
+        row(
+            Id::Control,
+            "control",
+            WALK,
+            "control",
+            "control the displacement, the force, or a spring's far end",
+            always,
+        ),
+    ),
+    taking(
+        "number",
+        row(
+            Id::SelectEvent,
+            "select-event",
+            WALK,
+            "event",
+            "the walker to the event of this number in the list",
+            walking,
+        ),
     ),
     row(Id::Less, "less", VALUES, "less", "the selected value, a little less", knob),
     row(Id::More, "more", VALUES, "more", "the selected value, a little more", knob),
@@ -326,6 +382,10 @@ pub static ROWS: &[Row] = &[
             "type the selected value, or choose it; in Events: go to the selected event",
             always,
         ),
+    ),
+    taking(
+        "KEY=VALUE ...",
+        row(Id::Assign, "set", VALUES, "set", "other values for some keys, as one change", always),
     ),
     row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", always),
     row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", always),
@@ -392,7 +452,7 @@ pub static ROWS: &[Row] = &[
             "export",
             FILES,
             "export",
-            "write the curve, the walk or the events as CSV or JSON",
+            "write curve, walk or events as CSV or JSON, or the session as a script",
             always,
         ),
     ),

@@ -93,6 +93,13 @@ impl Node {
     }
 }
 
+/// A place to come back to: a node, and the child last gone to from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mark {
+    cursor: Option<usize>,
+    forward: Option<usize>,
+}
+
 /// The tree.
 #[derive(Debug, Clone, Default)]
 pub struct History {
@@ -148,6 +155,22 @@ impl History {
         self.nodes.push(node);
         self.forward.push(None);
         self.cursor = Some(at);
+    }
+
+    /// Where the walker stands.
+    pub fn mark(&self) -> Mark {
+        Mark { cursor: self.cursor, forward: self.redo_target() }
+    }
+
+    /// Stands where it stood, as if nothing had been walked since; the nodes made since are kept.
+    pub fn return_to(&mut self, mark: Mark) {
+        self.cursor = mark.cursor;
+        if let Some(at) = mark.cursor {
+            self.forward[at] = mark.forward;
+            if let Some(parent) = self.parent() {
+                self.forward[parent] = Some(at);
+            }
+        }
     }
 
     /// Stands on the node before; false when there is none.

@@ -21,6 +21,8 @@
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`files`] | opening, saving and exporting |
+//! | [`journal`] | what was done, as the lines of a script |
+//! | [`script`] | commands as text, and scripts driven through a model |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
@@ -32,11 +34,13 @@ pub mod device;
 pub mod driver;
 pub mod files;
 pub mod history;
+pub mod journal;
 pub mod look;
 pub mod model;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
+pub mod script;
 pub mod theory;
 pub mod update;
 pub mod view;
@@ -46,6 +50,7 @@ pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, Sweep};
 pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
+pub use journal::Journal;
 pub use model::{Axes, EventSource, Level, Model, Panel};
 pub use update::{answer, open, update};
 pub use view::{Overlay, Overlays, View, Window};

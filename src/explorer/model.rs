@@ -2,7 +2,8 @@
 
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::history::{History, Node, NodeKind};
+use super::history::{History, Mark, Node, NodeKind};
+use super::journal::Journal;
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::view::{Overlays, View, Window};
@@ -76,8 +77,8 @@ pub struct Model {
     pub preset: Preset,
     /// The preset as loaded or last saved: what differs is unsaved.
     pub saved: Preset,
-    /// The preset before the value that is being typed, where such values are tried.
-    pub untried: Option<Box<Preset>>,
+    /// What was before the value that is being typed, where such values are tried.
+    pub untried: Option<Box<Untried>>,
     /// Where it came from or went to.
     pub source: Source,
     /// How its file was when last seen.
@@ -98,6 +99,8 @@ pub struct Model {
     pub device: Option<bool>,
     /// The walk.
     pub history: History,
+    /// What was done, to do it again.
+    pub journal: Journal,
     /// Whether steps shrink the contact.
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
@@ -146,6 +149,17 @@ pub struct Model {
     pub quit: bool,
 }
 
+/// What there was before values were tried.
+#[derive(Debug, Clone)]
+pub struct Untried {
+    /// The preset.
+    pub preset: Preset,
+    /// Where the walker stood.
+    pub mark: Mark,
+    /// What had been done.
+    pub journal: Journal,
+}
+
 /// The first step length: a fiftieth of the range of every quantity.
 pub const FIRST_LENGTH: f64 = 0.02;
 /// The step lengths a person can choose.
@@ -179,6 +193,7 @@ impl Model {
             stiffness: None,
             device: None,
             history: History::default(),
+            journal: Journal::default(),
             inward: true,
             length: FIRST_LENGTH,
             walking: None,

@@ -15,22 +15,21 @@ mod words;
 
 pub use words::hint;
 
-use super::History;
 use super::command::{Command, Id, row_of};
 use super::driver::{Effect, Reply};
 use super::files::Job;
 use super::look;
-use super::model::{Axes, EventSource, Level, Model, Panel};
+use super::model::{Axes, EventSource, LENGTHS, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
 use crate::preset::{Loaded, Overwrite};
 use files::{browse, export, file, file_done, save, save_back};
 use values::{
-    adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
-    want_check, want_curve,
+    assign, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry, want_check,
+    want_curve,
 };
-use walk::{restart, scale_length, stop, travel, walk, walked};
+use walk::{restart, scale_length, stop, travel, travel_to, walk, walked};
 use words::unavailable;
 
 /// Begins a session on a preset: its curve is asked for.
@@ -58,6 +57,13 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
+        Command::RunOf(count) => walk(model, Action::Run(count)),
+        Command::StepLength(length) => {
+            model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end());
+            Vec::new()
+        }
+        Command::SelectEvent(number) => select_event(model, number),
+        Command::Assign(assignments) => assign(model, assignments),
         Command::Set { key, text } => set(model, &key, &text),
         Command::Try { key, text } => try_out(model, &key, &text),
         Command::TakeBack => untry(model),
@@ -74,7 +80,8 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             look::unpin(model, number);
             Vec::new()
         }
-        Command::Open(name) => vec![file(Job::Open(name))],
+        Command::Open(name) => vec![file(Job::Open { name, assignments: Vec::new() })],
+        Command::OpenWith { name, assignments } => vec![file(Job::Open { name, assignments })],
         Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
             vec![file(Job::SaveAs { name, preset, replace, with_data })]
@@ -119,8 +126,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Halve => scale_length(model, 0.5),
         Id::Double => scale_length(model, 2.0),
         Id::Undo if model.is_ahead() => return take_back(model),
-        Id::Undo => return travel(model, History::undo),
-        Id::Redo => return travel(model, History::redo),
+        Id::Undo => return travel(model, Id::Undo),
+        Id::Redo => return travel(model, Id::Redo),
         Id::Control => return change_control(model),
         Id::Less => return turn(model, false, Amount::Fine),
         Id::More => return turn(model, true, Amount::Fine),
@@ -157,6 +164,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
         Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Help => {}
+        Id::Assign | Id::StepLength | Id::SelectEvent => {}
     }
     Vec::new()
 }
@@ -191,18 +199,30 @@ fn move_selection(model: &mut Model, down: bool) {
     }
 }
 
-/// Enter on an event: the walker goes to its limit point.
-fn select(model: &mut Model) -> Vec<Effect> {
-    if model.panel != Panel::Events {
+/// The event of a number, where the list has it.
+fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
+    let count = model.shown_events().len();
+    if !(1..=count).contains(&number) {
+        tell(model, Level::Error, format!("there is no event {number}: the list has {count}"));
         return Vec::new();
     }
+    model.event = number - 1;
+    go_to_event(model)
+}
+
+/// Enter on an event.
+fn select(model: &mut Model) -> Vec<Effect> {
+    if model.panel == Panel::Events { go_to_event(model) } else { Vec::new() }
+}
+
+/// The walker goes to the limit point of the selected event.
+fn go_to_event(model: &mut Model) -> Vec<Effect> {
     if model.events == EventSource::Walked {
         let events = model.walked_events();
         let Some((node, _)) = events.get(model.event) else { return Vec::new() };
         let Some(parent) = model.history.nodes().get(*node).and_then(|n| n.parent) else { return Vec::new() };
         // The state before the jump, as it was walked.
-        while model.history.cursor() != Some(parent) && model.history.undo() {}
-        return adopt_parameters(model);
+        return travel_to(model, parent);
     }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
@@ -216,5 +236,6 @@ fn select(model: &mut Model) -> Vec<Effect> {
     let radius = |i: &usize| curve.sweep.curve.equilibrium.contact_radius(&curve.limits[*i].point);
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
     model.inward = true;
-    nearest.map_or_else(Vec::new, |number| walk(model, Action::MoveToLimit(number)))
+    let event = model.event;
+    nearest.map_or_else(Vec::new, |limit| walk(model, Action::MoveToEvent { event, limit }))
 }

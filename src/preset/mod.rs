@@ -13,6 +13,7 @@
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
+//! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |
 //! | [`shipped`] | the presets that come with the program |
 //! | [`name`] | which names a person's preset may have |
@@ -31,6 +32,7 @@
 pub mod atomic;
 pub mod beside;
 pub mod build;
+pub mod changes;
 pub mod family;
 pub mod file;
 pub mod groups;

@@ -225,13 +225,15 @@ impl App {
             }
         };
         let items = Document::ALL.map(|what| {
-            let file = format!("{}-{}.csv", sanitize(&base, 60), what.name());
+            let file = format!("{}-{}.{}", sanitize(&base, 60), what.name(), what.endings()[0]);
             let title = format!("Export the {} to", what.name());
-            let prompt = Prompt::new(title, "a file ending in .csv or .json", file, Purpose::File(what));
+            let note = format!("a file ending in .{}", what.endings().join(" or ."));
+            let prompt = Prompt::new(title, &note, file, Purpose::File(what));
             let text = match what {
                 Document::Curve => "curve   every point of the equilibrium curve",
                 Document::Walk => "walk    the states walked by hand",
                 Document::Events => "events  the instabilities listed",
+                Document::Script => "script  what was done, for pulloff run",
             };
             Item { text: text.to_owned(), action: Action::Prompt(Box::new(prompt)) }
         });

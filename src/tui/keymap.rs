@@ -52,6 +52,8 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Reverse => &[Char('b')],
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
+        // Typed, since each takes a value.
+        Id::Assign | Id::StepLength | Id::SelectEvent => &[],
         Id::Undo => &[Char('u')],
         Id::Redo => &[Ctrl('r')],
         Id::Restart => &[Char('0')],
@@ -126,7 +128,7 @@ mod tests {
     fn every_command_has_a_key_of_its_own_and_none_is_flow_control() {
         let mut seen = HashSet::new();
         for row in ROWS {
-            assert!(!keys(row.id).is_empty(), "{}", row.name);
+            assert!(row.argument.is_some() || !keys(row.id).is_empty(), "{}", row.name);
             for key in keys(row.id) {
                 assert!(seen.insert(key.label()), "{} twice", key.label());
                 assert!(!matches!(key, Key::Ctrl('s' | 'q' | 'z')));

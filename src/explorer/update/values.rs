@@ -1,14 +1,16 @@
 //! Values changed, and the curve that follows from them.
 
-use super::files::read;
+use super::files::{file, read};
 use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::explorer::command::Assignment;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
+use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
-use crate::explorer::model::{Level, Model};
+use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::walk::Action;
 use crate::preset::schema::Kind;
@@ -181,7 +183,7 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
 
 /// Another value for a key, in place of those tried for it.
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let mut preset = model.untried.as_deref().unwrap_or(&model.preset).clone();
+    let mut preset = before_tried(model).clone();
     let Some(row) = preset.row(key) else { return Vec::new() };
     let result = match preset.typed(&row, text) {
         // A file is read by those who may wait for it.
@@ -202,15 +204,49 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
 
 /// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
 pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let before = model.untried.clone().unwrap_or_else(|| Box::new(model.preset.clone()));
+    let before = model.untried.clone().unwrap_or_else(|| {
+        let (preset, mark, journal) = (model.preset.clone(), model.history.mark(), model.journal.clone());
+        Box::new(Untried { preset, mark, journal })
+    });
     let effects = set(model, key, text);
     model.untried = Some(before);
     effects
 }
 
-/// The values before those tried.
+/// The values and the walker's state before those tried.
 pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
-    model.untried.take().map_or_else(Vec::new, |before| change(model, *before))
+    let Some(before) = model.untried.take() else { return Vec::new() };
+    let mut effects = stop(model);
+    model.walking = None;
+    model.history.return_to(before.mark);
+    model.journal = before.journal;
+    model.journal.abandoned();
+    effects.extend(change(model, before.preset));
+    effects
+}
+
+/// The preset before the values tried.
+fn before_tried(model: &Model) -> &Preset {
+    model.untried.as_deref().map_or(&model.preset, |before| &before.preset)
+}
+
+/// Other values for some keys, as one change; those of a file wait for who may read it.
+pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Effect> {
+    let mut preset = before_tried(model).clone();
+    let is_file = |key: &str| preset.row(key).is_some_and(|row| row.kind == Kind::File);
+    if assignments.iter().any(|(key, _)| is_file(key)) {
+        return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
+    }
+    match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
+        Ok(()) => {
+            model.untried = None;
+            change(model, preset)
+        }
+        Err(invalid) => {
+            tell(model, Level::Error, invalid.to_string());
+            Vec::new()
+        }
+    }
 }
 
 /// The rows of a profile were read: they are the gap now.
