@@ -167,3 +167,53 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     fs::copy(&mine, home.at("work2/p.toml")).unwrap();
     home.fails("open ../work2/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
 }
+
+/// Standard output of a run that succeeds.
+fn output(home: &Home, arguments: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+    command.env_clear().env("HOME", home.0.path()).env("XDG_CONFIG_HOME", home.at("config"));
+    let output = command.args(arguments).stdin(Stdio::null()).output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];
+
+#[test]
+fn the_completions_of_every_shell_know_every_subcommand() {
+    let home = Home::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = output(&home, &["completions", shell]);
+        for name in SUBCOMMANDS.into_iter().chain(["overwrite", "anywhere", "config"]) {
+            assert!(text.contains(name), "{shell}: no {name}");
+        }
+    }
+    let path = home.at("pulloff.bash");
+    fs::write(&path, output(&home, &["completions", "bash"])).unwrap();
+    // Where there is a bash, it finds no fault in it.
+    if let Ok(checked) = Command::new("bash").arg("-n").arg(&path).output() {
+        assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    }
+}
+
+#[test]
+fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
+    let home = Home::new();
+    let page = output(&home, &["man"]);
+    assert!(page.contains(".TH pulloff 1"), "{page}");
+    for name in SUBCOMMANDS {
+        let heading = format!(".SH \"PULLOFF {}\"", name.to_uppercase());
+        assert!(page.contains(&heading), "no {heading} in\n{page}");
+    }
+    for text in
+        ["overwrite", "\\fBnext\\-limit\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
+    {
+        assert!(page.contains(text), "no {text} in\n{page}");
+    }
+    if cfg!(feature = "tui") {
+        assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
+        fs::create_dir_all(home.at("config/pulloff")).unwrap();
+        fs::write(home.at("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
+        assert!(output(&home, &["man"]).contains("[number of steps] (F4)"));
+    }
+}

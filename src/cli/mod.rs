@@ -10,8 +10,10 @@
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
 
+mod completions;
 mod explore;
 mod failure;
+mod man;
 mod output;
 mod presets;
 mod run;
@@ -26,6 +28,7 @@ use crate::report::OverlapReport;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
@@ -36,6 +39,9 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     problem: Problem,
+    /// Take the settings of the explorer from this file; pulloff/config.toml in the configuration folder when left out
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -51,6 +57,10 @@ enum Command {
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
+    /// Write the completions of a shell to standard output
+    Completions(completions::Arguments),
+    /// Write the manual page to standard output
+    Man,
 }
 
 /// Which problem, as the explorer and every computing command take it.
@@ -97,11 +107,13 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem),
+        None => explore::run(&cli.problem, cli.config.as_deref()),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Run(arguments)) => run::run(arguments),
+        Some(Command::Completions(arguments)) => completions::run(arguments),
+        Some(Command::Man) => man::run(),
         Some(Command::Presets(command)) => presets::run(command),
     };
     match result {

@@ -95,6 +95,8 @@ pub enum Id {
     SaveAs,
     /// Write the curve, the walk, the events or a script to a file.
     Export,
+    /// Type a command.
+    CommandLine,
     /// The help screen.
     Help,
     /// Take back, close, pause.
@@ -456,7 +458,15 @@ pub static ROWS: &[Row] = &[
             always,
         ),
     ),
-    row(Id::Help, "help", PROGRAM, "help", "this help", always),
+    row(
+        Id::CommandLine,
+        "command-line",
+        PROGRAM,
+        "command",
+        "type a command by its name; Tab completes, up and down bring lines back",
+        always,
+    ),
+    row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", always),
     row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run or a curve", always),
     row(Id::Quit, "quit", PROGRAM, "quit", "quit; asks only if the preset has unsaved changes", always),
 ];

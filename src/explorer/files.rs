@@ -87,6 +87,8 @@ impl Content {
 pub enum Job {
     /// List all presets.
     List,
+    /// The names of all presets.
+    Names,
     /// Open a preset.
     Open {
         /// Its name or path.
@@ -151,6 +153,8 @@ pub enum Job {
 pub enum Done {
     /// The presets.
     Listed(Box<Listing>),
+    /// The names of the presets.
+    Named(Vec<String>),
     /// The profiles of a folder.
     Browsed(Box<Folder>),
     /// A preset got other values.
@@ -184,6 +188,7 @@ pub enum Done {
 pub fn run(store: &Store, job: Job) -> Done {
     match job {
         Job::List => Done::Listed(Box::new(store.list())),
+        Job::Names => Done::Named(store.known()),
         Job::Assign { mut preset, assignments } => {
             match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
                 Ok(()) => Done::Assigned(preset),

@@ -139,6 +139,8 @@ pub struct Model {
     pub message: Option<(Level, String)>,
     /// The list of presets, once asked for.
     pub listing: Option<Listing>,
+    /// The names of the presets, once asked for.
+    pub preset_names: Vec<String>,
     /// The profiles of a folder, once asked for.
     pub folder: Option<Folder>,
     /// What a job on files wants to be asked before it goes on.
@@ -213,6 +215,7 @@ impl Model {
             profile_wanted: None,
             message: None,
             listing: None,
+            preset_names: Vec::new(),
             folder: None,
             question: None,
             next_request: 1,

@@ -157,6 +157,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         }
         Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
+        Id::CommandLine => return vec![file(Job::Names)],
         Id::Save => return save_back(model),
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),

@@ -194,14 +194,18 @@ impl Store {
             // A pipe or a dangling link by that name is there, and loading it says what is wrong.
             Ok(path) if path.symlink_metadata().is_ok() => Ok(Source::User { name: name.into_owned(), path }),
             _ => {
-                let (own, _) = self.names();
-                let known = SHIPPED.iter().map(|shipped| shipped.name).chain(own.iter().map(String::as_str));
-                Err(StoreError::NotFound {
-                    name: quote(&name),
-                    meant: closest(&name, known).map(str::to_owned),
-                })
+                let known = self.known();
+                let meant = closest(&name, known.iter().map(String::as_str)).map(str::to_owned);
+                Err(StoreError::NotFound { name: quote(&name), meant })
             }
         }
+    }
+
+    /// The names of all presets, the shipped ones first; whether their files are good is not looked at.
+    #[must_use]
+    pub fn known(&self) -> Vec<String> {
+        let (own, _) = self.names();
+        SHIPPED.iter().map(|shipped| shipped.name.to_owned()).chain(own).collect()
     }
 
     /// Loads a preset and lays `KEY=VALUE` assignments over it.

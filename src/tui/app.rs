@@ -1,9 +1,11 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
 
 mod gap;
+mod help;
+mod line;
 
-use super::keymap;
-use super::overlay::{Action, Choose, Confirm, Item, Overlay as Over, Prompt, Purpose};
+use super::keymap::Keymap;
+use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::contact::Control;
 use crate::explorer::files::Document;
@@ -35,13 +37,27 @@ pub struct App {
     pub count: Option<usize>,
     /// Its looks.
     pub theme: Theme,
+    /// The keys of the commands.
+    pub keymap: Keymap,
+    /// The commands typed so far.
+    pub typed: line::Typed,
 }
 
 impl App {
     /// Opens a preset.
     pub fn new(loaded: Loaded, theme: Theme) -> (Self, Vec<Effect>) {
         let (model, effects) = open(loaded);
-        (Self { model, overlay: None, count: None, theme }, effects)
+        (
+            Self {
+                model,
+                overlay: None,
+                count: None,
+                theme,
+                keymap: Keymap::default(),
+                typed: line::Typed::default(),
+            },
+            effects,
+        )
     }
 
     /// A key was pressed.
@@ -57,8 +73,8 @@ impl App {
             Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
             Some(Over::Choose(choose)) => self.choose_key(choose, key),
             Some(Over::Confirm(confirm)) => self.confirm_key(confirm, key),
-            Some(Over::Help(scroll)) => {
-                self.help_key(scroll, key);
+            Some(Over::Help(help)) => {
+                self.help_key(help, key);
                 Vec::new()
             }
         }
@@ -160,17 +176,23 @@ impl App {
             return Vec::new();
         }
         let count = self.count.take();
-        let Some(id) = keymap::command(key) else {
-            self.model.message =
-                Some((Level::Info, "that key does nothing here; ? shows all keys".to_owned()));
+        let Some(id) = self.keymap.command(key) else {
+            let text = format!("that key does nothing here; {} shows all keys", self.keymap.first(Id::Help));
+            self.model.message = Some((Level::Info, text));
             return Vec::new();
         };
+        self.act(id, count)
+    }
+
+    /// Does a command, or asks for what it takes.
+    fn act(&mut self, id: Id, count: Option<usize>) -> Vec<Effect> {
         match id {
             Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
             Id::Help => {
-                self.overlay = Some(Over::Help(0));
+                self.overlay = Some(Over::Help(Help::default()));
                 Vec::new()
             }
+            Id::CommandLine => self.ask_line(),
             Id::Quit if self.model.is_unsaved() => {
                 let question = "The preset has unsaved changes. y quits without saving, Esc stays, S saves.";
                 self.ask(question.to_owned(), Id::Quit.into());
@@ -316,8 +338,17 @@ impl App {
         Vec::new()
     }
 
+    /// Whether a key closes a prompt: one of those that quit, and is no text.
+    fn closes(&self, key: KeyEvent) -> bool {
+        let is_text = matches!(key.code, KeyCode::Char(_)) && !key.modifiers.contains(KeyModifiers::CONTROL);
+        self.keymap.command(key) == Some(Id::Quit) && !is_text
+    }
+
     fn prompt_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
         let mut effects = Vec::new();
+        if prompt.purpose == Purpose::Line {
+            return self.line_key(prompt, key);
+        }
         match key.code {
             KeyCode::Esc => return self.close(&prompt),
             KeyCode::Enter => {
@@ -327,7 +358,8 @@ impl App {
                     self.overlay = Some(Over::Prompt(prompt));
                     return Vec::new();
                 }
-                let effects = self.run(prompt.purpose.clone().command(text));
+                let Some(command) = prompt.purpose.clone().command(text) else { return effects };
+                let effects = self.run(command);
                 // A value that was refused stays to be mended.
                 if let Some((Level::Error, reason)) =
                     self.model.message.take_if(|(level, _)| *level == Level::Error)
@@ -337,9 +369,7 @@ impl App {
                 }
                 return effects;
             }
-            _ if keymap::command(key) == Some(Id::Quit) && key.code != KeyCode::Char('q') => {
-                return self.close(&prompt);
-            }
+            _ if self.closes(key) => return self.close(&prompt),
             _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
             code => {
                 let plain = key.modifiers.difference(KeyModifiers::SHIFT).is_empty();
@@ -359,7 +389,7 @@ impl App {
 
     fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
         let last = choose.items.len().saturating_sub(1);
-        match keymap::command(key) {
+        match self.keymap.in_list(key) {
             Some(Id::Up) => choose.selected = choose.selected.saturating_sub(1),
             Some(Id::Down) => choose.selected = (choose.selected + 1).min(last),
             Some(Id::Cancel | Id::Quit) => return Vec::new(),
@@ -388,7 +418,7 @@ impl App {
 
     /// Opening another preset gives up unsaved changes: asked first.
     fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
-        if self.model.is_unsaved() && matches!(command, Command::Open(_)) {
+        if self.model.is_unsaved() && matches!(command, Command::Open(_) | Command::OpenWith { .. }) {
             let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";
             self.ask(question.to_owned(), command);
             return Vec::new();
@@ -406,17 +436,5 @@ impl App {
                 Vec::new()
             }
         }
-    }
-
-    fn help_key(&mut self, scroll: u16, key: KeyEvent) {
-        let scroll = match (keymap::command(key), key.code) {
-            (Some(Id::Up), _) => scroll.saturating_sub(1),
-            (Some(Id::Down), _) => scroll.saturating_add(1),
-            (_, KeyCode::PageUp) => scroll.saturating_sub(10),
-            (Some(Id::Step), _) | (_, KeyCode::PageDown) => scroll.saturating_add(10),
-            (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
-            _ => scroll,
-        };
-        self.overlay = Some(Over::Help(scroll.min(super::view::help::lines())));
     }
 }

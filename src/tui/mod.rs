@@ -26,19 +26,30 @@ pub mod view;
 
 pub use terminal::refuse_reason;
 
+use crate::explorer::model::Level;
 use crate::explorer::{Reply, Workers};
 use crate::preset::{Loaded, Store};
 use app::App;
+use keymap::Keymap;
 use std::io;
 use std::process::ExitCode;
 use terminal::Incoming;
 use theme::Theme;
 
+/// What a person has set, ready to be used.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// The keys of the commands.
+    pub keymap: Keymap,
+    /// What is to be told when the screen comes up.
+    pub notice: Option<String>,
+}
+
 /// Runs the explorer until the person quits.
 ///
 /// # Errors
 /// When the terminal cannot be taken, or the system gives no thread.
-pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
+pub fn run(store: Store, loaded: Loaded, settings: Settings) -> io::Result<ExitCode> {
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
@@ -46,6 +57,8 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
         let _ = sender.send(reply);
     })?;
     let (mut app, effects) = App::new(loaded, Theme::of_environment());
+    app.keymap = settings.keymap;
+    app.model.message = settings.notice.map(|text| (Level::Error, text));
     workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {

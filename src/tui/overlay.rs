@@ -16,8 +16,8 @@ pub enum Overlay {
     Choose(Choose),
     /// A question to answer with yes or no.
     Confirm(Confirm),
-    /// The help, scrolled by so many lines.
-    Help(u16),
+    /// The help.
+    Help(Help),
 }
 
 /// A line to type.
@@ -55,6 +55,21 @@ pub enum Purpose {
     File(Document),
     /// The path of a preset to open.
     Path,
+    /// A command of the script grammar.
+    Line,
+}
+
+/// The help, and what is looked for in it.
+#[derive(Debug, Clone, Default)]
+pub struct Help {
+    /// The first line shown.
+    pub line: usize,
+    /// What is being typed to look for.
+    pub typing: Option<Input>,
+    /// What was looked for last.
+    pub pattern: String,
+    /// Where it was found: the line, the number of that place from 1, and how many there are.
+    pub found: Option<(usize, usize, usize)>,
 }
 
 impl Prompt {
@@ -79,14 +94,15 @@ impl Prompt {
 }
 
 impl Purpose {
-    /// The command for a typed line.
-    pub fn command(self, text: String) -> Command {
-        match self {
+    /// The command for a typed line; a line of its own grammar is read elsewhere.
+    pub fn command(self, text: String) -> Option<Command> {
+        Some(match self {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
             Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
             Self::Path => Command::Open(text),
-        }
+            Self::Line => return None,
+        })
     }
 }
 

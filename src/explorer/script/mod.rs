@@ -26,15 +26,18 @@
 //! | `words` | a line → words with their columns, and the quoting |
 //! | `parse` | words → a command |
 //! | `print` | a command → its line |
+//! | `complete` | what a line begun could go on with |
 //! | [`play`] | a script driven through a model, without a terminal |
 //! | `borders` | where a script may write |
 
 mod borders;
+mod complete;
 mod parse;
 pub mod play;
 mod print;
 mod words;
 
+pub use complete::{Completion, complete};
 pub use parse::{for_script, parse};
 pub use play::{Failed, Permission, play};
 pub use print::line;

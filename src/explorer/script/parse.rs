@@ -16,7 +16,7 @@ use crate::preset::{PARAMETERS, parameter};
 /// The word before a command that may fail.
 const TRY: &str = "try";
 /// What a synonym of `next-limit` runs to.
-const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
+pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
 
 /// The command of a line; `None` where there is none.
 ///
@@ -83,6 +83,7 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Axes
             | Id::Device
             | Id::Overlays
+            | Id::CommandLine
             | Id::Help
             | Id::Cancel
     )

@@ -56,6 +56,7 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
         Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Named(names) => model.preset_names = names,
         Done::Browsed(folder) => model.folder = Some(*folder),
         Done::Assigned(preset) => {
             model.untried = None;

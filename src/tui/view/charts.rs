@@ -3,7 +3,7 @@
 use super::is_selected;
 use super::legend::legend;
 use crate::contact::Control;
-use crate::explorer::{Panel, View, Window};
+use crate::explorer::{Id, Panel, View, Window};
 use crate::figure::{Bounds, Figure, Mark as Placed, Role, Sign, Subject, nearest};
 use crate::report::number::short;
 use crate::tui::app::App;
@@ -24,7 +24,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
         let figure = subject.figure(view);
         let mut chart = chart(&figure, &app.model.window(view), app.theme);
         if first {
-            let hint = format!("  (t: {})", view.further(1).name());
+            let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
             let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
             if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
                 chart.title.push_str(&hint);

@@ -3,7 +3,8 @@
 use super::panel;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;
-use crate::tui::keymap;
+use crate::tui::keymap::Keymap;
+use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
@@ -25,7 +26,7 @@ const READING: &[&str] = &[
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
-fn text(theme: Theme) -> Vec<Line<'static>> {
+fn text(theme: Theme, keymap: &Keymap) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     let mut section = "";
     for row in ROWS {
@@ -35,7 +36,7 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
             lines.push(Line::styled(section, theme.strong()));
         }
         lines.push(Line::from(vec![
-            Span::styled(format!("  {:<18}", keymap::label(row.id)), theme.key()),
+            Span::styled(format!("  {:<18}", keymap.label(row.id)), theme.key()),
             Span::raw(row.help),
         ]));
     }
@@ -50,26 +51,42 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
     lines
 }
 
-/// How far the help can be scrolled.
-pub fn lines() -> u16 {
-    /// As many rows as a line may take on the narrowest screen.
-    const WRAPPED: usize = 3;
-    u16::try_from(WRAPPED * text(Theme { ascii: true }).len()).unwrap_or(u16::MAX)
+/// The lines as they are searched.
+pub fn plain(theme: Theme, keymap: &Keymap) -> Vec<String> {
+    text(theme, keymap).iter().map(Line::to_string).collect()
 }
 
-/// Draws the help over the screen, scrolled by so many lines.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
+fn title(help: &Help) -> String {
+    match (&help.typing, help.found) {
+        (Some(input), _) => format!("Help  /{}_", input.value()),
+        (None, Some((_, at, of))) => format!("Help  /{}: {at} of {of}, n and N go on", help.pattern),
+        (None, None) if help.pattern.is_empty() => {
+            "Help: up and down scroll, / searches, Esc closes".to_owned()
+        }
+        (None, None) => format!("Help  /{}: not found", help.pattern),
+    }
+}
+
+/// Draws the help over the screen, from its first line shown on.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
-    let lines = text(theme);
+    let mut lines = text(theme, &app.keymap);
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
-    let block = panel(theme, "Help: up and down scroll, Esc closes", true);
+    let block = panel(theme, &title(help), true);
     let inner = block.inner(area);
-    // Wrapped lines take more rows than there are lines: narrow screens may scroll that much further.
-    let rows: usize =
-        lines.iter().map(|line| line.width().div_ceil(usize::from(inner.width.max(1))).max(1)).sum();
-    let last = u16::try_from(rows).unwrap_or(u16::MAX).saturating_sub(inner.height);
+    if let Some(found) = help.found.and_then(|(line, ..)| lines.get_mut(line)) {
+        *found = Line::styled(found.to_string(), theme.selection());
+    }
+    // A wrapped line takes several rows: no further than where the last rows fill the screen.
+    let rows = |line: &Line<'_>| line.width().div_ceil(usize::from(inner.width.max(1))).max(1);
+    let mut room = usize::from(inner.height);
+    let mut last = lines.len();
+    while last > 0 && room >= rows(&lines[last - 1]) {
+        last -= 1;
+        room -= rows(&lines[last]);
+    }
+    let shown = lines.split_off(help.line.min(last));
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
-    let text = Paragraph::new(lines).wrap(Wrap { trim: false });
-    frame.render_widget(text.scroll((scroll.min(last), 0)), inner);
+    frame.render_widget(Paragraph::new(shown).wrap(Wrap { trim: false }), inner);
 }

@@ -50,7 +50,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     status::draw(frame, regions.status, regions.footer, app);
     match &app.overlay {
         None => {}
-        Some(Overlay::Help(scroll)) => help::draw(frame, area, app, *scroll),
+        Some(Overlay::Help(shown)) => help::draw(frame, area, app, shown),
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
     regions.charts.len()

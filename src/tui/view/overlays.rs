@@ -41,7 +41,7 @@ fn lower(area: Rect, width: u16, height: u16) -> Rect {
 }
 
 fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
-    let place = if matches!(prompt.purpose, Purpose::Formula(_)) { lower } else { middle };
+    let place = if matches!(prompt.purpose, Purpose::Formula(_) | Purpose::Line) { lower } else { middle };
     let area = place(area, 76, if prompt.error.is_some() { 7 } else { 5 });
     let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);

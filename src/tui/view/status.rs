@@ -5,7 +5,6 @@ use crate::explorer::Id;
 use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
 use crate::tui::app::App;
-use crate::tui::keymap;
 use crate::tui::overlay::Overlay;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -33,6 +32,7 @@ const FOOTER: &[Id] = &[
     Id::Run,
     Id::Reverse,
     Id::Restart,
+    Id::CommandLine,
 ];
 
 /// Draws the status line and the footer.
@@ -65,7 +65,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
         if app.overlay.is_none() && !(row.enabled)(&app.model) {
             continue;
         }
-        let key = keymap::keys(id).first().map_or_else(String::new, |key| key.label());
+        let key = app.keymap.first(id);
         let word = match (id, &app.overlay) {
             (Id::Edit, Some(_)) => "accept",
             _ => row.short,

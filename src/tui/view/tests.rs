@@ -10,6 +10,8 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
+mod line;
+
 /// The explorer with its effects done inline.
 struct Screen {
     app: App,
