@@ -1,5 +1,7 @@
 //! The journal of a session is a script that walks it again: the same states to the last digit, whatever the timing was.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
 #[path = "support/session.rs"]
 mod session;
 
@@ -61,7 +63,7 @@ impl Late {
             match effect {
                 // The newest curve wins.
                 Effect::Curve(_) => {
-                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Check(_)))
+                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Check(_)));
                 }
                 Effect::Check(_) => self.pending.retain(|old| !matches!(old, Effect::Check(_))),
                 Effect::StopWalk(_) => self.cut(rng),

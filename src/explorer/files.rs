@@ -8,7 +8,7 @@ use super::journal::Start;
 use super::script;
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
-use crate::preset::changes::changes;
+use crate::preset::changes::{changes, differences};
 use crate::preset::measured;
 use crate::preset::text::quote;
 use crate::preset::{
@@ -408,13 +408,13 @@ fn script_text(store: &Store, start: &Start, lines: &[String]) -> Result<String,
     let source = store.resolve(&name).map_err(|error| error.to_string())?;
     let now = store.load(&source, none).map_err(|error| error.to_string())?.preset;
     let lost = || format!("the walk did not begin with {}, and its values cannot be assigned", quote(&name));
-    let assignments = changes(&now, &start.preset).ok_or_else(lost)?;
-    let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
     // Laid over the file as a whole, as a replay does.
-    let back = store.load(&source, &laid).map_err(|error| error.to_string())?.preset;
-    if back != start.preset {
-        return Err(lost());
-    }
+    let leads_there = |assignments: &Vec<Assignment>| {
+        let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
+        store.load(&source, &laid).is_ok_and(|back| back.preset == start.preset)
+    };
+    let ways = [Some(differences(&now, &start.preset)), changes(&now, &start.preset)];
+    let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(lost)?;
     let open = script::line(&Command::OpenWith { name: name.clone(), assignments }).ok_or_else(lost)?;
     let head = "# A session of pulloff: `pulloff run` walks it again.";
     Ok(std::iter::once(head).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(

@@ -236,3 +236,31 @@ impl Journal {
         self.lines.push(line);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explorer::nudge::{Amount, nudge};
+    use crate::preset::{SHIPPED, read};
+
+    #[test]
+    fn every_turn_of_every_knob_is_one_assignment_with_the_exact_value() {
+        let mut turned = 0;
+        for shipped in SHIPPED {
+            let preset = read(shipped.name, shipped.text).unwrap();
+            for row in preset.knobs() {
+                let Ok(to) = nudge(&preset, &row, true, Amount::Coarse, 1.0) else { continue };
+                if to == preset {
+                    continue;
+                }
+                let all = changes(&preset, &to).unwrap_or_default();
+                assert_eq!(all.len(), 1, "{} {}: {all:?}", shipped.name, row.key);
+                let mut back = preset.clone();
+                back.assign(&all[0].0, &all[0].1).unwrap();
+                assert_eq!(back, to, "{} {}", shipped.name, row.key);
+                turned += 1;
+            }
+        }
+        assert!(turned > SHIPPED.len() * 4, "{turned}");
+    }
+}

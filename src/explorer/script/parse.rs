@@ -144,6 +144,9 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         }
         return rest.done(Id::NextLimit.into());
     }
+    if name.text == TRY {
+        return Err(Fault::new(name.column, "try stands in a script, once, before a command"));
+    }
     let Some(row) = ROWS.iter().find(|row| row.name == name.text) else {
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([RUN_TO.0, TRY]).collect();
         return Err(unknown(name, "command", &names));

@@ -44,7 +44,7 @@ pub fn play(
     told: &mut dyn FnMut(&Line, &Model),
 ) -> Result<(), Failed> {
     // A script that opens a preset of its own needs no curve of the one before.
-    if !lines.first().is_some_and(|line| opens(&line.command)) {
+    if !lines.first().is_some_and(|line| opens(&line.command) && !line.may_fail) {
         driver.settle(model, effects);
         if let Some(reason) = refusal(model) {
             return Err(Failed { number: 0, command: "the preset".to_owned(), reason });

@@ -63,7 +63,7 @@ fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
 fn tab_completes_and_up_and_down_bring_lines_back() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":ha\t\r:set gap.am\t0.003\r:set gap.shape=exp");
-    assert_eq!(screen.app.model.preset.gap.wave().unwrap().0, 0.003);
+    assert_eq!(screen.app.model.preset.gap.wave(), Some((0.003, 0.05)));
     let line = |screen: &Screen| prompt(screen).0;
     screen.press(KeyCode::Up);
     assert_eq!(line(&screen), "set gap.amplitude=0.003");
