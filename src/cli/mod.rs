@@ -12,7 +12,9 @@
 
 mod explore;
 mod failure;
+mod figures;
 mod output;
+mod plot;
 mod presets;
 mod trace;
 mod unload;
@@ -43,6 +45,10 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Draw a view as a figure for print
+    Plot(plot::Arguments),
+    /// Compute the figures of the paper again: pictures, numbers and captions
+    Figures(figures::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
     /// List and show presets
@@ -97,6 +103,8 @@ pub fn run() -> ExitCode {
         None => explore::run(&cli.problem),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Plot(arguments)) => plot::run(arguments),
+        Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Presets(command)) => presets::run(command),
     };
