@@ -115,7 +115,7 @@ pub fn changes(preset: &Preset, row: &Parameter, x: f64) -> Result<Vec<(Key, Val
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::model::tests::wavy;
+    use crate::preset::examples::wavy;
     use crate::preset::{read, read_with, shipped, write};
 
     fn number(preset: &Preset, key: &str) -> f64 {

@@ -31,6 +31,8 @@
 pub mod atomic;
 pub mod beside;
 pub mod build;
+#[cfg(test)]
+mod examples;
 pub mod family;
 pub mod file;
 pub mod groups;

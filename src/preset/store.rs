@@ -351,8 +351,8 @@ pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::preset::examples::wavy;
     use crate::preset::model::BasisSpec;
-    use crate::preset::model::tests::wavy;
     use crate::ritz::Grading;
     use rustix::fs::{CWD, FileType, Mode, mknodat};
     use std::os::unix::fs::{PermissionsExt, symlink};
