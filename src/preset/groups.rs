@@ -8,33 +8,16 @@
 
 use super::invalid::Invalid;
 use super::model::Preset;
-use super::schema::{Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
+use super::schema::{self, Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
 use super::value::Value;
 use crate::contact::Groups;
-use crate::units::Quantity;
-use std::borrow::Cow::Borrowed;
 use std::f64::consts::TAU;
 
 const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] };
 
 /// The row of a group.
-const fn group(
-    key: &'static str,
-    label: &'static str,
-    meaning: &'static str,
-    kind: Kind,
-    applies: Applies,
-) -> Parameter {
-    Parameter {
-        key: Borrowed(key),
-        label: Borrowed(label),
-        meaning: Borrowed(meaning),
-        dimension: Borrowed(""),
-        quantity: Quantity::Number,
-        kind,
-        fallback: Fallback::Described("computed"),
-        applies,
-    }
+const fn group(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
+    schema::row(key, label, meaning, kind).or(Fallback::Described("computed"))
 }
 
 /// The groups that can be set.
@@ -44,22 +27,16 @@ pub static GROUPS: [Parameter; 3] = [
         "A/lambda",
         "amplitude over wavelength; changes the amplitude",
         Kind::NonNegative,
-        WAVY,
-    ),
+    )
+    .only(WAVY),
     group(
         "groups.wavelength_over_radius",
         "lambda/R",
         "wavelength over radius of curvature; changes wavelength and amplitude",
         Kind::Positive,
-        WAVY,
-    ),
-    group(
-        "groups.adhesion",
-        "gamma'",
-        "2 pi gamma/(E* R); changes the work of adhesion",
-        Kind::NonNegative,
-        Applies::Always,
-    ),
+    )
+    .only(WAVY),
+    group("groups.adhesion", "gamma'", "2 pi gamma/(E* R); changes the work of adhesion", Kind::NonNegative),
 ];
 
 /// The row of a group's key.
