@@ -13,6 +13,8 @@ use crate::quasistatic::{Curve, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
 use crate::theory::jkr::Jkr;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::sync::Arc;
 
 /// Points of an arc-length trace before it stops.
@@ -35,6 +37,8 @@ pub struct Case {
     pub end: f64,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
+    /// How numbers are shown to the user.
+    pub shown: UnitSystem,
 }
 
 /// Why a preset could not be computed.
@@ -44,21 +48,34 @@ pub enum CaseError {
     #[error(transparent)]
     Basis(#[from] BasisError),
     /// The start state does not exist.
-    #[error(transparent)]
-    Start(#[from] StartError),
+    #[error("{}", error.words(shown))]
+    Start {
+        /// Why, in the user's units.
+        error: StartError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
     /// The end lies outside the start.
     #[error(
-        "path.end_contact_radius = {end:e} must be smaller than the contact radius at the start, which is {start:e}"
+        "path.end_contact_radius = {} must be smaller than the contact radius at the start, which is {}",
+        said(shown, Quantity::Length, *.end), said(shown, Quantity::Length, *.start)
     )]
     EndOutsideStart {
         /// The end, in the user's units.
         end: f64,
         /// The start, in the user's units.
         start: f64,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
     },
     /// The unloading could not start.
-    #[error(transparent)]
-    Unload(#[from] UnloadError),
+    #[error("{}", error.words(shown))]
+    Unload {
+        /// Why, in the user's units.
+        error: UnloadError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
     /// It was no longer wanted.
     #[error("cancelled")]
     Cancelled,
@@ -87,14 +104,16 @@ impl Case {
             Start::Approach(delta) => Start::Approach(delta / units.length),
             Start::Force(p) => Start::Force(p / units.force),
         };
-        let (basis, start) = start(&reduced, preset.basis, wanted, progress)?;
+        let shown = preset.units.clone();
+        let (basis, start) = start(&reduced, preset.basis, wanted, progress, &shown)?;
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
-            return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
+            let (end, start) = (end * units.length, start * units.length);
+            return Err(CaseError::EndOutsideStart { end, start, shown: Box::new(shown) });
         }
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
-        Ok(Self { problem, reduced, basis, control, start, end, tabor })
+        Ok(Self { problem, reduced, basis, control, start, end, tabor, shown })
     }
 
     /// The factors to the user's units.
@@ -168,7 +187,9 @@ impl Case {
     ) -> Result<Unloading, CaseError> {
         unload_while(curve, control, go_on).map_err(|e| match e {
             UnloadError::Cancelled => CaseError::Cancelled,
-            other @ UnloadError::UnstableStart { .. } => CaseError::Unload(other.in_units(self.units())),
+            other @ UnloadError::UnstableStart { .. } => {
+                CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
+            }
         })
     }
 
@@ -188,7 +209,7 @@ impl Case {
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings = self.problem.shape.notes();
+        let mut warnings = self.problem.shape.notes(&self.shown);
         warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
         if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
             warnings.push(format!(
@@ -207,7 +228,8 @@ impl Case {
     }
 
     fn no_start(&self) -> CaseError {
-        StartError::NoEquilibrium(self.start).in_units(self.units()).into()
+        let error = StartError::NoEquilibrium(self.start).in_units(self.units());
+        CaseError::Start { error, shown: Box::new(self.shown.clone()) }
     }
 }
 
@@ -220,9 +242,13 @@ fn start(
     spec: BasisSpec,
     wanted: Start,
     progress: Progress<'_>,
+    shown: &UnitSystem,
 ) -> Result<(Arc<dyn Basis>, f64), CaseError> {
     let radius = |basis: &Arc<dyn Basis>| {
-        contact_radius(reduced, basis, wanted).map_err(|e| e.in_units(&reduced.units))
+        contact_radius(reduced, basis, wanted).map_err(|e| CaseError::Start {
+            error: e.in_units(&reduced.units),
+            shown: Box::new(shown.clone()),
+        })
     };
     let basis: Arc<dyn Basis> = match spec {
         BasisSpec::Rings { rings, grading } => {

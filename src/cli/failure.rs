@@ -77,7 +77,9 @@ impl Failure {
             | Self::Case(
                 CaseError::EndOutsideStart { .. }
                 | CaseError::Basis(_)
-                | CaseError::Start(StartError::OutOfReach { .. } | StartError::NotReached { .. }),
+                | CaseError::Start {
+                    error: StartError::OutOfReach { .. } | StartError::NotReached { .. }, ..
+                },
             ) => 2,
             Self::Inadmissible(_) => 3,
             _ => 1,

@@ -135,6 +135,8 @@ pub struct Parameter {
     pub applies: Applies,
 }
 
+/// The key of the coefficient of a power law, whose dimension follows from the exponent.
+pub const COEFFICIENT: &str = "gap.coefficient";
 /// The keys whose word decides which other keys apply.
 pub const CHOOSERS: [&str; 3] = ["gap.shape", "basis.kind", "units"];
 /// The words of the key `units`.

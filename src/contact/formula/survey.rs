@@ -6,6 +6,8 @@
 
 use super::bound::Bound;
 use super::fold::{Pole, Wave};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::ops::Range;
 use thiserror::Error;
 
@@ -27,14 +29,22 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Where a formula is no gap.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error(
-    "the formula is not finite at r = {radius} (up to r = {largest} it must be, with its slope and curvature)"
-)]
+#[error("{}", self.words(&UnitSystem::Reduced))]
 pub struct NotFinite {
     /// The smallest radius found where h, h' or h'' is not finite: 0 if h(0) is not.
     pub radius: f64,
     /// The largest radius asked for.
     pub largest: f64,
+}
+
+impl NotFinite {
+    /// What is wrong, with the radii as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
+        format!(
+            "the formula is not finite at r = {radius} (up to r = {largest} it must be, with its slope and curvature)"
+        )
+    }
 }
 
 /// The grid on (0, `largest`], ascending.

@@ -22,6 +22,8 @@
 
 use super::spline::{Fit, Rows};
 use crate::contact::{Gap, Jet};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::TAU;
 
 /// The fewest rows of a profile.
@@ -90,10 +92,7 @@ pub enum InvalidProfile {
         radius: f64,
     },
     /// The radii do not ascend.
-    #[error(
-        "row {row} of the profile has the radius {radius:e}, which is not above the one before, {before:e}, by \
-         {CLOSEST:e} of the largest"
-    )]
+    #[error("{}", not_ascending(&UnitSystem::Reduced, *.row, [*.radius, *.before]))]
     NotAscending {
         /// The row.
         row: usize,
@@ -103,10 +102,7 @@ pub enum InvalidProfile {
         before: f64,
     },
     /// The cutoff is out of range.
-    #[error(
-        "the cutoff {cutoff:e} is out of range: it must be positive and at most {most:e}, {MOST_SPACINGS} mean \
-         distances of the rows"
-    )]
+    #[error("{}", far_cutoff(&UnitSystem::Reduced, [*.cutoff, *.most]))]
     Cutoff {
         /// The cutoff.
         cutoff: f64,
@@ -114,8 +110,46 @@ pub enum InvalidProfile {
         most: f64,
     },
     /// The equations of the spline cannot be solved.
-    #[error("no smooth curve was found for the profile: its radii are too uneven for the cutoff {0:e}")]
+    #[error("{}", unsolved(&UnitSystem::Reduced, *.0))]
     Unsolved(f64),
+}
+
+/// A length in a message.
+fn length(units: &UnitSystem, x: f64) -> String {
+    said(units, Quantity::Length, x)
+}
+
+fn not_ascending(units: &UnitSystem, row: usize, radii: [f64; 2]) -> String {
+    let [radius, before] = radii.map(|r| length(units, r));
+    format!(
+        "row {row} of the profile has the radius {radius}, which is not above the one before, {before}, by {CLOSEST:e} of \
+         the largest"
+    )
+}
+
+fn far_cutoff(units: &UnitSystem, lengths: [f64; 2]) -> String {
+    let [cutoff, most] = lengths.map(|x| length(units, x));
+    format!(
+        "the cutoff {cutoff} is out of range: it must be positive and at most {most}, {MOST_SPACINGS} mean distances of \
+         the rows"
+    )
+}
+
+fn unsolved(units: &UnitSystem, cutoff: f64) -> String {
+    let cutoff = length(units, cutoff);
+    format!("no smooth curve was found for the profile: its radii are too uneven for the cutoff {cutoff}")
+}
+
+impl InvalidProfile {
+    /// What is wrong, with lengths as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        match *self {
+            Self::NotAscending { row, radius, before } => not_ascending(units, row, [radius, before]),
+            Self::Cutoff { cutoff, most } => far_cutoff(units, [cutoff, most]),
+            Self::Unsolved(cutoff) => unsolved(units, cutoff),
+            other => other.to_string(),
+        }
+    }
 }
 
 impl Profile {

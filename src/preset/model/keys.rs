@@ -69,10 +69,10 @@ impl Preset {
         let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
         let (before, rest) = PARAMETERS.split_at(after);
         let own = shape::rows(&self.gap).into_iter().map(Row::Owned);
-        before.iter().map(Row::Borrowed).chain(own).chain(rest.iter().map(Row::Borrowed))
+        before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest.iter().map(Row::Borrowed))
     }
 
-    /// The row of a key: with the range that this preset gives it, where it does.
+    /// The row of a key: with the range and the quantity that this preset gives it, where it does.
     #[must_use]
     pub fn row(&self, key: &str) -> Option<Row> {
         self.rows()

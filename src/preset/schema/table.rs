@@ -1,6 +1,9 @@
 //! The rows of the table of parameters.
 
-use super::{AUTO, Applies, CHOOSERS, DISPLAY, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS, SYSTEMS};
+use super::{
+    AUTO, Applies, CHOOSERS, COEFFICIENT, DISPLAY, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
+    SYSTEMS,
+};
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
 
@@ -132,7 +135,7 @@ pub static PARAMETERS: &[Parameter] = &[
     row("gap.slope", "slope", "slope of the cone, the cotangent of its half apex angle", Kind::Positive)
         .of_shape(&["cone"]),
     measured(
-        "gap.coefficient",
+        COEFFICIENT,
         "c",
         "coefficient c of the gap c r^n",
         Kind::Positive,

@@ -49,7 +49,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         text
     });
     let mut lines: Vec<Line> = texts
-        .chain(parts.iter().map(part))
+        .chain(parts.iter().map(|found| part(found, &model.preset.units)))
         .enumerate()
         .skip(first)
         .take(rows)
@@ -74,10 +74,10 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 }
 
 /// An inadmissible part of the curve: no event, so it has no number.
-fn part(part: &Inadmissible) -> String {
+fn part(part: &Inadmissible, units: &UnitSystem) -> String {
     let OverlapReport { crest_wave, .. } = part.report;
     let wave = crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
-    format!(" ! inadmissible {}{wave}", part.report.text())
+    format!(" ! inadmissible {}{wave}", part.report.text(units))
 }
 
 /// The event of the limit point on which the walker stands.
