@@ -8,6 +8,7 @@ use super::profile::{Ask, Inside};
 use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
+use crate::preset::groups::GROUPS;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
 use std::collections::VecDeque;
@@ -223,13 +224,15 @@ impl Model {
         self.curve_shown < self.curve_wanted
     }
 
-    /// The parameters with a knob, in the table's order, and their values; no value follows from others.
+    /// The parameters with a knob, in the table's order, and their values, of which none follows from others; behind
+    /// them the dimensionless groups that can be set.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
-        // The title last: the numbers are what is turned.
+        // The title behind the numbers, which are what is turned.
         let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
+            .chain(GROUPS.iter().map(Row::Borrowed))
             .map(|row| (row.clone(), self.preset.get(&row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()

@@ -24,7 +24,8 @@ use super::model::{Axes, EventSource, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
-use crate::preset::{Loaded, Overwrite};
+use crate::preset::text::greek;
+use crate::preset::{Loaded, Overwrite, groups};
 use files::{browse, export, file, file_done, save, save_back};
 use values::{
     adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
@@ -182,13 +183,25 @@ fn move_selection(model: &mut Model, down: bool) {
         if down { (at + 1).min(last) } else { at.saturating_sub(1).min(last) }
     };
     match model.panel {
-        Panel::Problem => model.parameter = moved(model.parameter, model.knobs().len()),
+        Panel::Problem => {
+            model.parameter = moved(model.parameter, model.knobs().len());
+            if let Some(text) = group_effect(model) {
+                tell(model, Level::Info, text);
+            }
+        }
         Panel::Events => {
             let lines = model.shown_events().len() + model.shown_inadmissible().len();
             model.event = moved(model.event, lines);
         }
         Panel::Walker | Panel::Charts => {}
     }
+}
+
+/// What the selected group changes, if it is one.
+fn group_effect(model: &Model) -> Option<String> {
+    let (row, _) = model.selected_knob()?;
+    let [changed, held] = groups::effect(&row.key)?;
+    Some(greek(&format!("{} follows from others: to turn it changes {changed}, {held} held", row.label)))
 }
 
 /// Enter on an event: the walker goes to its limit point.

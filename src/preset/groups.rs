@@ -59,6 +59,17 @@ pub fn get(preset: &Preset, key: &str) -> Option<Value> {
     .map(Value::from)
 }
 
+/// What a group changes when it is set and what it holds, as the labels of rows; `None` for another key.
+#[must_use]
+pub fn effect(key: &str) -> Option<[&'static str; 2]> {
+    Some(match key {
+        "groups.amplitude_over_wavelength" => ["A", "lambda"],
+        "groups.wavelength_over_radius" => ["lambda and A", "R and A/lambda"],
+        "groups.adhesion" => ["gamma", "E* and R"],
+        _ => return None,
+    })
+}
+
 /// What a group changes when it becomes `x`, in this order.
 ///
 /// # Errors
@@ -119,6 +130,10 @@ mod tests {
             assert_eq!(preset.gap.radius_of_curvature(), old.gap.radius_of_curvature());
             assert_eq!(preset.material.effective_modulus.to_bits(), old.material.effective_modulus.to_bits());
             assert!(!write(&preset).contains("groups"));
+            // The words name the rows that changed.
+            let [changed, _] = effect(key).unwrap();
+            let moved = preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key));
+            assert_eq!(moved.filter(|row| !changed.contains(&*row.label)).count(), 0, "{key}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! Colours and glyphs. No meaning is carried by colour alone.
 
 use super::terminal::utf8_locale;
+use crate::preset::text::greek;
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::{Marker, border};
 
@@ -48,10 +49,7 @@ impl Theme {
 
     /// A label of the parameter table with its Greek letters, where the terminal can show them.
     pub fn symbols(self, label: &str) -> String {
-        if self.ascii {
-            return label.to_owned();
-        }
-        label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
+        if self.ascii { self.text(label) } else { greek(label) }
     }
 
     /// The frame of a panel.

@@ -2,8 +2,8 @@
 
 use super::{is_selected, pair, side_panel};
 use crate::contact::{Control, Groups};
-use crate::explorer::Panel;
-use crate::preset::{Parameter, Value};
+use crate::explorer::{Model, Panel};
+use crate::preset::{Parameter, Row, Value, groups};
 use crate::report::number::{short, with_unit};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -12,6 +12,9 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
+
+/// Parameters that are seen above the groups, unless one of these is selected.
+const ABOVE: usize = 5;
 
 /// Draws the parameters and the groups.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
@@ -24,39 +27,33 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         width: area.width.saturating_sub(1),
         height: area.height.saturating_sub(1),
     };
-    let groups =
-        group_lines(theme, &Groups::of(&model.preset.problem(), model.preset.range_of_action()), inner.width);
-    let knobs = model.knobs();
-    // The groups stand below as far as there is room for five parameters above them.
-    let shown_groups = groups.len().min(usize::from(inner.height).saturating_sub(knobs.len().min(5)));
-    let rows = usize::from(inner.height).saturating_sub(shown_groups);
+    let all = model.knobs();
+    // The groups that can be set stand behind the parameters, among those that cannot.
+    let (knobs, groups) = all.split_at(all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count());
+    let chosen = model.selected_knob().filter(|_| selected).map(|(row, _)| row.key.clone());
+    let in_groups = model.parameter >= knobs.len() && selected;
+    let groups = group_lines(theme, model, groups, chosen.as_deref(), inner.width);
+    let height = usize::from(inner.height);
+    // Both are seen in part where they have no room; what is selected, whole.
+    let above = if in_groups { 2 } else { ABOVE };
+    let shown_groups = groups.len().min(height.saturating_sub(knobs.len().min(above)));
+    let rows = height - shown_groups;
     let title = if rows < knobs.len() {
-        format!("Problem {}/{}", model.parameter + 1, knobs.len())
+        format!("Problem {}/{}", model.parameter + 1, all.len())
     } else {
         "Problem".to_owned()
     };
     frame.render_widget(side_panel(theme, &title, selected), area);
     // The list scrolls so that the selected line is seen.
     let first = (model.parameter + 1).saturating_sub(rows).min(knobs.len().saturating_sub(rows));
-    let mut lines: Vec<Line> = knobs
-        .iter()
-        .enumerate()
-        .skip(first)
-        .take(rows)
+    let units = &model.preset.units;
+    let shown = knobs.iter().enumerate().skip(first).take(rows);
+    let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
-            knob_line(
-                theme,
-                &model.preset.units,
-                row,
-                value.as_ref(),
-                i == model.parameter && selected,
-                inner.width,
-            )
+            knob_line(theme, units, row, value.as_ref(), i == model.parameter && selected, inner.width)
         })
         .collect();
-    while lines.len() < rows {
-        lines.push(Line::default());
-    }
+    lines.resize(rows, Line::default());
     lines.extend(groups.into_iter().take(shown_groups));
     frame.render_widget(Paragraph::new(lines), inner);
 }
@@ -86,23 +83,41 @@ fn knob_line(
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }
 
-fn group_lines(theme: Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> {
-    let mut items: Vec<(&str, f64)> = Vec::new();
-    let mut add = |name, value: Option<f64>| items.extend(value.map(|value| (name, value)));
-    add("A/λ ", groups.amplitude_over_wavelength);
-    add("λ/R ", groups.wavelength_over_radius);
-    add("λ²/AR ", groups.connectivity);
-    add("γ' ", groups.adhesion);
-    add("α ", groups.johnson);
-    add("μ ", groups.tabor);
+/// The groups, as many on a line as fit; the one with the key `chosen` is selected.
+fn group_lines(
+    theme: Theme,
+    model: &Model,
+    settable: &[(Row, Option<Value>)],
+    chosen: Option<&str>,
+    width: u16,
+) -> Vec<Line<'static>> {
+    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
+    let mut items: Vec<(String, f64, bool)> = settable
+        .iter()
+        .filter_map(|(row, value)| match value {
+            Some(Value::Number(x)) => {
+                Some((theme.symbols(&row.label), *x, chosen == Some(&row.key)))
+            }
+            _ => None,
+        })
+        .collect();
+    for (name, value) in [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)] {
+        items.extend(value.map(|value| (theme.text(name), value, false)));
+    }
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
-    for (name, value) in items {
-        let spans: Vec<Span<'static>> = pair(theme, name, &format!("{}  ", short(value, 4))).to_vec();
+    for (name, value, is_chosen) in items {
+        let spans = if is_chosen {
+            vec![Span::styled(format!(">{name} {} < >", short(value, 4)), theme.selection()), Span::raw(" ")]
+        } else {
+            let [name, value] = pair(theme, &format!(" {name} "), &format!("{} ", short(value, 4)));
+            vec![name, value]
+        };
         let length: usize = spans.iter().map(Span::width).sum();
-        if used.saturating_add(length) > usize::from(width) + 2 {
-            lines.push(Line::from(" "));
-            used = 1;
+        // The blank behind the last one may be cut.
+        if used.saturating_add(length) > usize::from(width) + 1 {
+            lines.push(Line::default());
+            used = 0;
         }
         used += length;
         if let Some(line) = lines.last_mut() {
