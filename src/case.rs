@@ -4,9 +4,10 @@
 //! they all see the same numbers.
 
 use crate::contact::groups::LARGE_TABOR;
-use crate::contact::{Control, Groups, Problem, Reduced, Start, Units};
+use crate::contact::{Control, Gap, Groups, Problem, Reduced, Start, Units};
 use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::admissible::falls;
+use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Unloading};
@@ -165,6 +166,11 @@ impl Case {
             return Err(CaseError::Cancelled);
         }
         curve.ok_or_else(|| self.no_start())
+    }
+
+    /// The points of [`Case::sweep`], where there is an equilibrium at each.
+    pub fn sweep_points(&self) -> usize {
+        radii(self.start, self.end, self.reduced.gap.feature_length(), SWEEP_STEPS_PER_WAVE).len()
     }
 
     /// The quasi-static unloading along `curve`, which is extended where a landing needs it.

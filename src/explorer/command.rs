@@ -29,6 +29,8 @@ pub enum Id {
     Double,
     /// Back to the node before.
     Undo,
+    /// Back to where the last command began.
+    UndoCommand,
     /// Forward again.
     Redo,
     /// Back to the start state.
@@ -302,6 +304,14 @@ pub static ROWS: &[Row] = &[
     row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
     row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
     row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
+    row(
+        Id::UndoCommand,
+        "undo-command",
+        WALK,
+        "undo all",
+        "back to where the last command began: a run, a count of steps",
+        can_undo,
+    ),
     row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
     row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
     row(

@@ -74,6 +74,8 @@ pub struct Node {
     pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
+    /// The number of the walk request that made it: what one command made has one number.
+    pub request: u64,
 }
 
 impl Node {
@@ -156,6 +158,16 @@ impl History {
         self.forward[parent] = self.cursor;
         self.cursor = Some(parent);
         true
+    }
+
+    /// Stands where the request began that made the current node; false when there is none before.
+    pub fn undo_request(&mut self) -> bool {
+        let request = self.current().map(|node| node.request);
+        let mut moved = false;
+        while self.current().map(|node| node.request) == request && self.undo() {
+            moved = true;
+        }
+        moved
     }
 
     /// Stands on the child last gone to; false when there is none.

@@ -5,6 +5,7 @@ use super::data::Folder;
 use super::history::{History, Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
+use super::progress::Progress;
 use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
@@ -61,6 +62,17 @@ pub enum Question {
     ReplaceFile(super::files::Document, String),
 }
 
+/// A walk request that is running.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Walking {
+    /// Its number.
+    pub id: u64,
+    /// The states it has made.
+    pub made: usize,
+    /// Those it was asked for; a run goes on until something happens.
+    pub wanted: Option<usize>,
+}
+
 /// How much a message matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
@@ -91,6 +103,8 @@ pub struct Model {
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
+    /// How far the curve is that is being computed, once that takes long.
+    pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<u64>,
     /// The last stiffness of the device, in the user's units.
@@ -104,7 +118,7 @@ pub struct Model {
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
     /// The walk request that is running.
-    pub walking: Option<u64>,
+    pub walking: Option<Walking>,
     /// What is to be walked after it.
     pub queue: VecDeque<Action>,
     /// The panel selected.
@@ -176,6 +190,7 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
+            progress: None,
             checking: None,
             stiffness: None,
             device: None,

@@ -159,7 +159,7 @@ mod tests {
     fn numbers_stay_and_free_ones_are_taken_again() {
         let curve = |amplitude: &str| {
             let preset = preset(&[("gap.amplitude", amplitude), ("path.end_contact_radius", "0.35")]);
-            Arc::new(CurveData::compute(&preset, || true).unwrap())
+            Arc::new(CurveData::compute(&preset, |_| true).unwrap())
         };
         let mut pins = Pins::default();
         let first = curve("0.001");

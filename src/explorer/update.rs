@@ -89,6 +89,12 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result),
+        Reply::Progress { id, progress } => {
+            if id == model.curve_wanted && model.is_computing() {
+                model.progress = Some(progress);
+            }
+            return Vec::new();
+        }
         Reply::Walked { id, made, outcome } => walked(model, id, made, outcome),
         Reply::Checked { id, curve } => {
             checked(model, id, curve);
@@ -119,8 +125,9 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),
         Id::Double => scale_length(model, 2.0),
-        Id::Undo if model.is_ahead() => return take_back(model),
+        Id::Undo | Id::UndoCommand if model.is_ahead() => return take_back(model),
         Id::Undo => return travel(model, History::undo),
+        Id::UndoCommand => return travel(model, History::undo_request),
         Id::Redo => return travel(model, History::redo),
         Id::Control => return change_control(model),
         Id::Less => return turn(model, false, Amount::Fine),

@@ -53,6 +53,7 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
         Id::Undo => &[Char('u')],
+        Id::UndoCommand => &[Char('U')],
         Id::Redo => &[Ctrl('r')],
         Id::Restart => &[Char('0')],
         Id::Control => &[Char('c')],

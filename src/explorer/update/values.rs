@@ -21,6 +21,7 @@ use std::sync::Arc;
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
+    model.progress = None;
     // The curve does not know what is controlled: under another control it need not be swept again.
     let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
     let sweep = known.map(Arc::clone);

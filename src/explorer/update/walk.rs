@@ -5,7 +5,7 @@ use super::{number, tell};
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::Effect;
 use crate::explorer::history::{History, Node, NodeKind};
-use crate::explorer::model::{LENGTHS, Level, Model};
+use crate::explorer::model::{LENGTHS, Level, Model, Walking};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use std::sync::Arc;
 
@@ -52,7 +52,8 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let from = node.map(|node| node.point.clone());
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = number(model);
-    model.walking = Some(id);
+    let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
+    model.walking = Some(Walking { id, made: 0, wanted });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
@@ -60,11 +61,10 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
 }
 
 pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
-    if model.walking != Some(id) {
-        return Vec::new();
-    }
+    let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else { return Vec::new() };
+    walking.made += made.len();
     for state in made {
-        append(model, state);
+        append(model, id, state);
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
@@ -78,7 +78,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             model.queue.clear();
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
             if unsolved {
-                mark_stale(model, &reason);
+                mark_stale(model, id, &reason);
             }
             tell(model, Level::Error, reason);
         }
@@ -101,7 +101,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     }
 }
 
-fn append(model: &mut Model, state: Made) {
+fn append(model: &mut Model, request: u64, state: Made) {
     let step = model.history.current().map_or(0, |node| node.step + 1);
     let step = if state.begins { 0 } else { step };
     let solved = state.kind == NodeKind::Solved;
@@ -123,22 +123,24 @@ fn append(model: &mut Model, state: Made) {
         digits: state.digits,
         from_exact: state.from_exact,
         begins: state.begins,
+        request,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.
     if solved && again { model.history.push_beside(node) } else { model.history.push(node) }
 }
 
 /// A state that could not be solved for the new values stays, marked, with the reason.
-fn mark_stale(model: &mut Model, reason: &str) {
+fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     let Some(node) = model.history.current().cloned() else { return };
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
-    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step: node.step + 1, begins: false, ..node };
+    let kind = NodeKind::Stale(reason.to_owned());
+    let stale = Node { kind, step: node.step + 1, begins: false, request, ..node };
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
-    model.walking.map(Effect::StopWalk).into_iter().collect()
+    model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
@@ -181,5 +183,6 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         digits: curve.sweep.digits,
         from_exact: from_exact(&curve.setting.case, &state),
         begins: true,
+        request: 0,
     });
 }

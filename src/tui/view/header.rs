@@ -57,7 +57,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         }
     }
     if model.is_computing() {
-        spans.push(Span::styled("  computing", theme.key().add_modifier(Modifier::BOLD)));
+        let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));
+        spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     if let Some(warning) = warning {
         spans.push(Span::styled(format!("  ! {}", theme.text(warning)), theme.error()));

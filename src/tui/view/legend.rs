@@ -84,7 +84,7 @@ fn glyph(stroke: Stroke, theme: Theme) -> &'static str {
     }
 }
 
-/// The cross-hair in words: both coordinates, and on a curve the nearest state.
+/// The cross-hair in words: on a curve the state near to it, then both coordinates.
 pub fn reading(model: &Model) -> Option<String> {
     let (share, view) = (model.cross?, model.view);
     let subject = Subject::of(model)?;
@@ -93,7 +93,8 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     Some(match nearest(&subject, view, &bounds, at) {
-        Some(nearest) => format!("+ {here}; * {}", nearest.text(&subject.curve.setting.preset.units)),
+        // What it is first: that is new, and narrow screens cut the end.
+        Some(nearest) => format!("* {}; + {here}", nearest.text(&subject.curve.setting.preset.units)),
         None => format!("+ {here}"),
     })
 }

@@ -215,7 +215,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("i");
     let text = screen.text(120, 40);
-    assert!(text.contains("+ δ ") && text.contains("; * δ ") && text.contains("stable"), "{text}");
+    assert!(text.contains("* δ ") && text.contains("; + δ ") && text.contains("stable"), "{text}");
     let before = screen.app.model.cross;
     screen.press(KeyCode::Up);
     screen.press(KeyCode::Right);
@@ -228,7 +228,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     // On a view of the state only its own coordinates.
     screen.keys("ttt");
     let text = screen.text(120, 40);
-    assert!(text.contains("+ r/λ ") && !text.contains("; * δ "), "{text}");
+    assert!(text.contains("+ r/λ ") && !text.contains("* δ "), "{text}");
     screen.keys("\x1b");
     assert!(screen.app.model.cross.is_none());
 }
