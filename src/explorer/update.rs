@@ -24,8 +24,8 @@ use super::model::{Axes, EventSource, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
-use crate::preset::text::greek;
-use crate::preset::{Loaded, Overwrite, groups};
+use crate::preset::text::{greek, show_name};
+use crate::preset::{Loaded, Overwrite, Value, groups};
 use files::{browse, export, file, file_done, save, save_back};
 use values::{
     adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
@@ -192,7 +192,7 @@ fn move_selection(model: &mut Model, down: bool) {
     match model.panel {
         Panel::Problem => {
             model.parameter = moved(model.parameter, model.knobs().len());
-            if let Some(text) = group_effect(model) {
+            if let Some(text) = group_effect(model).or_else(|| long_text(model)) {
                 tell(model, Level::Info, text);
             }
         }
@@ -209,6 +209,19 @@ fn group_effect(model: &Model) -> Option<String> {
     let (row, _) = model.selected_knob()?;
     let [changed, held] = groups::effect(&row.key)?;
     Some(greek(&format!("{} follows from others: to turn it changes {changed}, {held} held", row.label)))
+}
+
+/// A selected text that is longer than its place beside the label may be, whole.
+fn long_text(model: &Model) -> Option<String> {
+    /// Characters that fit on every screen.
+    const FITTING: usize = 11;
+    match model.selected_knob()? {
+        (row, Some(Value::Text(text))) if text.chars().count() > FITTING => {
+            Some(format!("{}: {text}", row.label))
+        }
+        (row, Some(Value::Profile(rows))) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
+        _ => None,
+    }
 }
 
 /// Enter on an event: the walker goes to its limit point.

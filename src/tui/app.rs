@@ -415,6 +415,6 @@ impl App {
             (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
             _ => scroll,
         };
-        self.overlay = Some(Over::Help(scroll.min(super::view::help::lines())));
+        self.overlay = Some(Over::Help(scroll.min(super::view::help::lines(&self.model))));
     }
 }

@@ -1,12 +1,14 @@
 //! The help, read from the one table of commands.
 
 use super::panel;
+use crate::explorer::Model;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;
 use crate::tui::keymap;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
@@ -25,8 +27,20 @@ const READING: &[&str] = &[
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
-fn text(theme: Theme) -> Vec<Line<'static>> {
-    let mut lines = Vec::new();
+/// What narrow screens cut elsewhere, whole: the status, warnings, notes.
+fn now(theme: Theme, model: &Model) -> Vec<Line<'static>> {
+    let mut lines = vec![Line::default(), Line::styled("Now", theme.strong())];
+    lines.push(Line::raw(format!("  {}", theme.text(&model.status().1))));
+    if let Some(curve) = &model.curve {
+        let line = |text: &String, style| Line::styled(format!("  {}", theme.text(text)), style);
+        lines.extend(curve.sweep.warnings.iter().map(|text| line(&format!("! {text}"), theme.error())));
+        lines.extend(curve.sweep.notes.iter().map(|text| line(text, Style::new())));
+    }
+    lines
+}
+
+fn text(theme: Theme, model: &Model) -> Vec<Line<'static>> {
+    let mut lines = now(theme, model);
     let mut section = "";
     for row in ROWS {
         if row.section != section {
@@ -51,16 +65,16 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
 }
 
 /// How far the help can be scrolled.
-pub fn lines() -> u16 {
+pub fn lines(model: &Model) -> u16 {
     /// As many rows as a line may take on the narrowest screen.
     const WRAPPED: usize = 3;
-    u16::try_from(WRAPPED * text(Theme { ascii: true }).len()).unwrap_or(u16::MAX)
+    u16::try_from(WRAPPED * text(Theme { ascii: true }, model).len()).unwrap_or(u16::MAX)
 }
 
 /// Draws the help over the screen, scrolled by so many lines.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
     let theme = app.theme;
-    let lines = text(theme);
+    let lines = text(theme, &app.model);
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
     let block = panel(theme, "Help: up and down scroll, Esc closes", true);
     let inner = block.inner(area);

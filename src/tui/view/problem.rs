@@ -29,7 +29,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     };
     let all = model.knobs();
     // The groups that can be set stand behind the parameters, among those that cannot.
-    let (knobs, groups) = all.split_at(all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count());
+    let (knobs, groups) =
+        all.split_at(all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count());
     let chosen = model.selected_knob().filter(|_| selected).map(|(row, _)| row.key.clone());
     let in_groups = model.parameter >= knobs.len() && selected;
     let groups = group_lines(theme, model, groups, chosen.as_deref(), inner.width);
@@ -66,7 +67,14 @@ fn knob_line(
     selected: bool,
     width: u16,
 ) -> Line<'static> {
-    let shown = |quantity, x, digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
+    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
+    let label = format!("{mark}{:<8} ", theme.symbols(&row.label));
+    let room = usize::from(width).saturating_sub(label.chars().count() + ends.len());
+    // As many digits as there is room for, so that no unit is cut.
+    let shown = |quantity, x, most: usize| {
+        let text = |digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
+        (4..=most).rev().map(text).find(|text| text.chars().count() <= room).unwrap_or_else(|| text(3))
+    };
     let text = match value {
         None => "auto".to_owned(),
         Some(Value::Number(x)) => shown(row.quantity, *x, 7),
@@ -75,10 +83,8 @@ fn knob_line(
         }
         Some(value) => theme.text(&value.to_string()),
     };
-    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
-    let room = usize::from(width).saturating_sub(10 + ends.len());
     let text: String = text.chars().take(room).collect();
-    let line = format!("{mark}{:<8} {text}{ends}", theme.symbols(&row.label));
+    let line = format!("{label}{text}{ends}");
     let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }
@@ -95,9 +101,7 @@ fn group_lines(
     let mut items: Vec<(String, f64, bool)> = settable
         .iter()
         .filter_map(|(row, value)| match value {
-            Some(Value::Number(x)) => {
-                Some((theme.symbols(&row.label), *x, chosen == Some(&row.key)))
-            }
+            Some(Value::Number(x)) => Some((theme.symbols(&row.label), *x, chosen == Some(&row.key))),
             _ => None,
         })
         .collect();

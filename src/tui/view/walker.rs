@@ -101,12 +101,12 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     if let Some(crest) = wave_index(s, wave) {
         last.extend(pair(theme, " crest ", &crest.to_string()));
     }
-    last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
-    last.extend(pair(theme, " dig. ", &fixed(node.digits, 1)));
+    last.extend(pair(theme, " digits ", &fixed(node.digits, 1)));
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
     lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
     lines.extend(stiffness(theme, node));
+    lines.push(Line::from(pair(theme, " iterations ", &node.point.rounds.to_string()).to_vec()));
     lines
 }
 
