@@ -211,7 +211,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("from 4 to 2000"), "the prompt");
     pty.keys("\x152000\r");
-    pty.wait_for(|screen| screen.contains("computing"), "the new curve under way");
+    pty.wait_for(|screen| screen.contains("computing point "), "how many points of the curve are known");
     pty.keys("\x1b");
     pty.wait_for(|screen| screen.contains("cancelled: the curve shown is of the values before"), "given up");
     assert!(pty.screen().contains("Events on the curve: 8") && pty.screen().contains("unsaved"));

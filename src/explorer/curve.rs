@@ -111,6 +111,9 @@ impl Sweep {
             go_on(Progress::Curve { done: asked - 1, of })
         })?;
         for control in SHOWN {
+            if !go_on(Progress::Limits) {
+                return Err(CaseError::Cancelled);
+            }
             curve.hold(control);
         }
         let start = curve.branch.points.first().map(|point| curve.equilibrium.admissibility(point));

@@ -286,7 +286,7 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
         let mut pace = Pace::begin();
         let id = wish.id;
         let go_on = |progress| {
-            if pace.is_due() {
+            if pace.is_due(progress) {
                 reply(Reply::Progress { id, progress });
             }
             let newest = !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;

@@ -1,5 +1,6 @@
 //! How far a curve that is computed has come.
 
+use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
 /// What a curve is at; it passes these in order, without those that are known.
@@ -14,6 +15,8 @@ pub enum Progress {
         /// Points in all, as long as each has an equilibrium.
         of: usize,
     },
+    /// Its limit points are located.
+    Limits,
     /// Its unloading is followed: the events found.
     Events(usize),
 }
@@ -25,6 +28,7 @@ impl Progress {
         match self {
             Self::Basis(share) => format!("basis {:.0} %", (100.0 * share).floor().clamp(0.0, 99.0)),
             Self::Curve { done, of } => format!("point {done} of {of}"),
+            Self::Limits => "limit points".to_owned(),
             Self::Events(found) => format!("event {}", found + 1),
         }
     }
@@ -33,7 +37,8 @@ impl Progress {
 /// When a computation is told of: not while it is short, and seldom enough to be read.
 #[derive(Debug)]
 pub struct Pace {
-    due: Instant,
+    begun: Instant,
+    told: Option<(Instant, Progress)>,
 }
 
 /// Shorter computations tell nothing.
@@ -44,15 +49,17 @@ const BETWEEN: Duration = Duration::from_millis(250);
 impl Pace {
     /// For a computation that begins now.
     pub fn begin() -> Self {
-        Self { due: Instant::now() + SHORT }
+        Self { begun: Instant::now(), told: None }
     }
 
-    /// Whether something is to be told now.
-    pub fn is_due(&mut self) -> bool {
-        let now = Instant::now();
-        let is_due = now >= self.due;
+    /// Whether `progress` is to be told now; another part of the computation may be a long one, so it is told at once.
+    pub fn is_due(&mut self, progress: Progress) -> bool {
+        let is_due = match self.told {
+            None => self.begun.elapsed() >= SHORT,
+            Some((at, last)) => at.elapsed() >= BETWEEN || discriminant(&last) != discriminant(&progress),
+        };
         if is_due {
-            self.due = now + BETWEEN;
+            self.told = Some((Instant::now(), progress));
         }
         is_due
     }
@@ -78,14 +85,15 @@ mod tests {
         let part = |progress: &Progress| match progress {
             Progress::Basis(_) => 0,
             Progress::Curve { .. } => 1,
-            Progress::Events(_) => 2,
+            Progress::Limits => 2,
+            Progress::Events(_) => 3,
         };
         assert!(told.is_sorted_by_key(part), "{told:?}");
         let counted: Vec<_> = told.iter().filter(|progress| part(progress) == 1).copied().collect();
         let expected: Vec<_> = (0..points).map(|done| Progress::Curve { done, of: points }).collect();
         assert_eq!(counted, expected);
         assert!(told.iter().any(|progress| part(progress) == 0), "the rings are built in blocks");
-        assert!(told.contains(&Progress::Events(5)));
+        assert!(told.contains(&Progress::Limits) && told.contains(&Progress::Events(5)));
         assert_eq!(Progress::Basis(0.999).text(), "basis 99 %");
     }
 }

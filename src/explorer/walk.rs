@@ -98,6 +98,8 @@ pub enum Outcome {
     Done,
     /// A limit point of the control was reached.
     AtLimit,
+    /// It was stopped from outside.
+    Paused,
     /// It cannot go on, in words.
     Stopped(String),
 }
@@ -208,7 +210,7 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
         let s = equilibrium.contact_radius(&next);
         here = next.clone();
         if !emit(made(request, NodeKind::Step, next)) {
-            return Outcome::Stopped("paused".to_owned());
+            return Outcome::Paused;
         }
         if request.inward && s < case.end {
             return Outcome::Stopped("the end contact radius is reached; b turns round".to_owned());

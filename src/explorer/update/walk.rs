@@ -74,6 +74,13 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             // A held key stops at the limit point; pressing it again goes on.
             model.queue.retain(|action| !matches!(action, Action::Steps(_)));
         }
+        Outcome::Paused => {
+            model.queue.clear();
+            // Otherwise another value ended it, whose curve is to be told of.
+            if !model.is_computing() {
+                tell(model, Level::Info, "paused; Space steps, r runs on");
+            }
+        }
         Outcome::Stopped(reason) => {
             model.queue.clear();
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));

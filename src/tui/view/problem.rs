@@ -68,7 +68,7 @@ fn knob_line(
     width: u16,
 ) -> Line<'static> {
     let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
-    let label = format!("{mark}{:<8} ", theme.symbols(&row.label));
+    let label = format!("{mark}{:<9} ", theme.symbols(&row.label));
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.len());
     // As many digits as there is room for, so that no unit is cut.
     let shown = |quantity, x, most: usize| {
@@ -83,6 +83,8 @@ fn knob_line(
         }
         Some(value) => theme.text(&value.to_string()),
     };
+    // A word is worth more than the sign that it can be turned.
+    let (ends, room) = if text.chars().count() > room { ("", room + ends.len()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
     let line = format!("{label}{text}{ends}");
     let style = if selected { theme.selection() } else { ratatui::style::Style::new() };

@@ -1,6 +1,6 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
-use crate::explorer::{Command, Id, Inline, Panel, View};
+use crate::explorer::{Command, Id, Inline, Panel, View, update};
 use crate::preset::Store;
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -437,4 +437,40 @@ fn a_formula_shows_where_it_is_wrong() {
     screen.keys("\r");
     assert!(screen.app.model.preset.get("gap.formula").unwrap().to_string().ends_with("lambda)) + 0*r"));
     assert!(screen.app.model.untried.is_none() && screen.app.model.is_unsaved());
+}
+
+#[test]
+fn a_warning_cut_in_the_header_is_whole_in_the_help() {
+    let mut screen = Screen::new("wavy-sphere");
+    for (key, text) in [("basis.kind", "rings"), ("basis.rings", "40")] {
+        let effects = update(&mut screen.app.model, Command::Set { key: key.into(), text: text.to_owned() });
+        screen.settle(effects);
+    }
+    let warning = screen.app.model.curve.as_ref().unwrap().sweep.warnings[0].clone();
+    let text = screen.text(80, 24);
+    assert!(text.lines().next().unwrap().ends_with("... ?: all"), "{text}");
+    assert!(!text.contains(&warning));
+    screen.keys("?");
+    let unwrapped: String = screen.text(80, 24).chars().filter(|c| !c.is_whitespace() && *c != '│').collect();
+    let wanted: String = warning.chars().filter(|c| !c.is_whitespace()).collect();
+    assert!(unwrapped.contains(&wanted), "{unwrapped}");
+}
+
+#[test]
+fn groups_are_selected_where_they_stand() {
+    let mut screen = Screen::new("wavy-sphere");
+    let knobs = screen.app.model.knobs().len();
+    for (key, label) in [("amplitude_over_wavelength", ">A/λ 0.05 < >"), ("adhesion", ">γ' 0.025 < >")] {
+        screen.app.model.parameter = 0;
+        screen.keys(&"j".repeat(knobs));
+        while screen.app.model.selected_knob().unwrap().0.key != format!("groups.{key}") {
+            screen.keys("k");
+        }
+        for (width, height) in [(80, 24), (100, 30), (200, 60)] {
+            let buffer = screen.draw(width, height);
+            assert!(find(&buffer, label).modifier.contains(Modifier::REVERSED), "{label} {width}x{height}");
+        }
+    }
+    screen.keys(">");
+    assert!(screen.text(80, 24).contains(">γ' 0.02525 < >"), "{}", screen.text(80, 24));
 }
