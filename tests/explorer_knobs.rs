@@ -69,10 +69,12 @@ fn in_si_what_a_group_changed_and_a_pin_have_units() {
     session.does(Id::MuchMore);
     assert_eq!(session.status(), "changed: A 13.75 µm; λ held");
     assert_eq!(session.model.pins.all()[0].name(&session.model.preset), "A 12.5 µm");
-    session.set("path.end_contact_radius", "3 mm");
+    // Beyond the pull-off force of 28 mN.
+    session.set("path.start_force", "-40 mN");
     let (level, text) = session.model.status();
     assert_eq!(level, Level::Error);
-    assert!(text.contains("= 3000 µm must be") && text.contains("which is 2500 µm"), "{text}");
+    assert!(text.contains("no contact has the force -40000 µN; the smallest"), "{text}");
+    assert_eq!(text.matches(" µN").count(), 2, "{text}");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
+use super::fitted;
 use crate::contact::Control;
-use crate::explorer::{Axes, Id, Model};
+use crate::explorer::{Axes, Model};
 use crate::report::number::{significant, with_unit};
 use crate::tui::app::App;
-use crate::tui::keymap;
 use crate::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -50,7 +50,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             theme.dim(),
         ));
     }
-    let warnings = model.curve.as_ref().map_or(&[][..], |curve| &curve.sweep.warnings);
+    let warnings = model.curve.iter().flat_map(|curve| &curve.sweep.warnings);
+    let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
     for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
         // A warning needs the room more than what the Problem panel says as well.
         if let (Some(count), true) = (model.preset.get(key), warnings.is_empty()) {
@@ -62,8 +63,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     let used: usize = spans.iter().map(Span::width).sum();
-    if let Some(text) = warned(warnings, usize::from(area.width).saturating_sub(used + 2)) {
-        spans.push(Span::styled(format!("  {}", theme.text(&text)), theme.error()));
+    if let Some(text) = warned(&warnings, usize::from(area.width).saturating_sub(used + 2)) {
+        spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
         spans.push(Span::styled(format!("  {}", theme.text(&model.preset.title)), theme.dim()));
     }
@@ -73,14 +74,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 /// The first warning, as much of it as `room` holds, and the key that tells the rest.
 fn warned(warnings: &[String], room: usize) -> Option<String> {
     let (first, others) = warnings.split_first()?;
-    let whole = format!("! {first}");
-    if others.is_empty() && whole.chars().count() <= room {
-        return Some(whole);
-    }
-    let more = if others.is_empty() { String::new() } else { format!(" +{}", others.len()) };
-    let rest = format!("...{more} {}: all", keymap::label(Id::Help));
-    let kept: String = whole.chars().take(room.saturating_sub(rest.chars().count())).collect();
-    Some(format!("{}{rest}", kept.trim_end()))
+    let more = if others.is_empty() { String::new() } else { format!("+{}", others.len()) };
+    Some(fitted(&format!("! {first}"), &more, room))
 }
 
 #[cfg(test)]

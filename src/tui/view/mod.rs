@@ -11,10 +11,11 @@ pub mod status;
 pub mod walker;
 
 use super::app::App;
+use super::keymap;
 use super::layout::{SMALLEST, regions};
 use super::overlay::Overlay;
 use super::theme::Theme;
-use crate::explorer::Panel;
+use crate::explorer::{Id, Panel};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -72,6 +73,17 @@ fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
 /// Whether a panel is the selected one, and nothing lies over it.
 fn is_selected(app: &App, panel: Panel) -> bool {
     app.model.panel == panel && app.overlay.is_none()
+}
+
+/// `text` as far as there is room for it; where it is cut, or more is to be told, the key of the help, which has all.
+fn fitted(text: &str, more: &str, room: usize) -> String {
+    if more.is_empty() && text.chars().count() <= room {
+        return text.to_owned();
+    }
+    let rest = if more.is_empty() { "...".to_owned() } else { format!("... {more}") };
+    let rest = format!("{rest} {}: all", keymap::label(Id::Help));
+    let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
+    format!("{}{rest}", kept.trim_end())
 }
 
 /// `key value` with the key dim.

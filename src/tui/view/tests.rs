@@ -474,3 +474,21 @@ fn groups_are_selected_where_they_stand() {
     screen.keys(">");
     assert!(screen.text(80, 24).contains(">γ' 0.02525 < >"), "{}", screen.text(80, 24));
 }
+
+#[test]
+fn every_column_of_the_events_is_in_its_unit() {
+    let screen = Screen::new("fig-9-si");
+    for (width, radius) in [(80, " 2459 "), (120, " 2459.2 ")] {
+        let text = screen.text(width, 40);
+        assert!(text.contains("in µm") && text.contains(radius), "{text}");
+    }
+    let mut rough = Screen::new("fig-9-si");
+    rough.keys("\r").keys("40\r");
+    let text = rough.text(120, 60);
+    assert!(text.contains("! inadmissible s = ") && text.contains("at the crest r = "), "{text}");
+    let part = text.lines().find(|line| line.contains("! inadmissible s = ")).unwrap();
+    assert_eq!(part.matches(" µm").count(), 3, "{part}");
+    // A cone has no P_c: its forces are forces, and the head says so.
+    let text = Screen::new("cone").text(80, 24);
+    assert!(!text.contains("P/Pc") && text.contains("-0.000239"), "{text}");
+}
