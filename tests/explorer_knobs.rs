@@ -9,23 +9,16 @@ use pulloff::preset::Value;
 use session::Session;
 
 fn number(session: &Session, key: &str) -> f64 {
-    match session.model.preset.get(key) {
-        Some(Value::Number(x)) => x,
-        other => panic!("{key}: {other:?}"),
-    }
+    let value = session.model.preset.get(key);
+    value.and_then(|value| if let Value::Number(x) = value { Some(x) } else { None }).expect("a number")
 }
 
+/// Selects a knob that is not the first, as the arrows do.
 fn select(session: &mut Session, key: &str) {
     session.model.panel = Panel::Problem;
-    let count = session.model.knobs().len();
-    session.model.parameter = 0;
-    for _ in 0..count {
-        if session.model.selected_knob().is_some_and(|(row, _)| row.key == key) {
-            return;
-        }
-        session.does(Id::Down);
-    }
-    panic!("no knob {key}");
+    let at = session.model.knobs().iter().position(|(row, _)| row.key == key).expect("a knob");
+    session.model.parameter = at - 1;
+    session.does(Id::Down);
 }
 
 #[test]
