@@ -77,7 +77,7 @@ fn width(text: &str) -> Result<Width, String> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = Format::of(arguments.output.as_deref())?;
     let preset = arguments.problem.load()?.preset;
-    let curve = CurveData::compute(&preset, || true)?;
+    let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
     warn(&curve.sweep.warnings);
     let view = arguments.view.0;

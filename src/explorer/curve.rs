@@ -15,7 +15,6 @@ use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
 use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Point, Stiffness, Unloading};
-use crate::report::number::{short, with_unit};
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
@@ -42,11 +41,6 @@ pub struct Inadmissible {
     pub report: OverlapReport,
     /// δ, P and s of its states in the user's units, both ends included.
     pub places: Vec<[f64; 3]>,
-}
-
-/// Why there is no curve or no path, in the units of its preset.
-pub(super) fn in_words(error: &CaseError, preset: &Preset) -> String {
-    error.text(&|quantity, x| with_unit(&preset.units, quantity, x, false, |x| short(x, 6)))
 }
 
 /// What belongs to the problem, whatever is controlled: the curve, swept once, and all that follows from it alone.
@@ -206,7 +200,7 @@ impl CurveData {
         };
         let unloading = match case.unload_while(&mut longer, control, next) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
-            unloading => unloading.map_err(|error| in_words(&error, preset)),
+            unloading => unloading.map_err(|error| error.to_string()),
         };
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
         let equilibrium = curve.equilibrium.clone();

@@ -5,7 +5,7 @@
 //! states, files have a lane of their own, and none of them waits for another. Which states of a curve are admissible
 //! is found in the lane of the curves, until another curve is wanted.
 
-use super::curve::{CurveData, Sweep, in_words};
+use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};
 use super::model::Model;
 use super::profile::{Ask, Inside};
@@ -156,7 +156,7 @@ fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
     match result {
         Err(CaseError::Cancelled) => None,
         result => {
-            let result = result.map(Arc::new).map_err(|error| in_words(&error, &wish.preset));
+            let result = result.map(Arc::new).map_err(|error| error.to_string());
             Some(Reply::Curve { id: wish.id, result })
         }
     }

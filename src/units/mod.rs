@@ -21,6 +21,6 @@ pub mod unit;
 pub mod value;
 
 pub use dimension::{Dimension, Quantity};
-pub use system::{DisplayUnits, Shown, UnitSystem, Writer, bare};
+pub use system::{DisplayUnits, Shown, UnitSystem};
 pub use unit::{Unit, UnitError};
 pub use value::{Value, ValueError, parse_quantity};

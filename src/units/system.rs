@@ -140,14 +140,6 @@ impl UnitSystem {
     }
 }
 
-/// How a message writes a value of a quantity.
-pub type Writer<'a> = &'a dyn Fn(Quantity, f64) -> String;
-
-/// A [`Writer`] that knows no units: the number alone, in seven digits.
-pub fn bare(_: Quantity, x: f64) -> String {
-    format!("{x:.6e}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
