@@ -1,5 +1,6 @@
 //! The gap shapes a person can choose.
 
+use super::breaks::Breaks;
 use super::formula::TypedGap;
 use super::gap::{Gap, Jet};
 use super::lanes::map_lanes;
@@ -225,6 +226,18 @@ impl Gap for Shape {
             return other.gap().band_limit();
         }
         self.feature_length()
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        match self {
+            Self::Sphere { .. } | Self::WavySphere { .. } => Breaks::default(),
+            Self::ExactSphere(gap) => gap.breaks(),
+            Self::Cone { .. } => PowerLaw::CONE_BREAKS,
+            Self::PowerLaw(gap) => gap.breaks(),
+            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => gap.breaks(),
+            Self::Formula(typed) => typed.gap().breaks(),
+            Self::Profile(measured) => measured.profile().breaks(),
+        }
     }
 
     fn reference_length(&self) -> f64 {

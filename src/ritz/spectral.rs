@@ -26,7 +26,8 @@
 //!
 //! P and q need one and the same sampling of the gap's slope (see [`super::moments`]), and so do their derivatives:
 //! `sH' = g − H` makes `∂P/∂s = −2q` exactly. Only energy and pressure need the coefficients `d_k`: Gauss nodes in t,
-//! the positive half of a rule on (−1, 1), because all is even in t; n of them for n functions.
+//! the positive half of a rule on (−1, 1), because all is even in t; n of them for n functions. Where the gap is not
+//! smooth they are nodes in θ, broken there (see [`breaks`](crate::contact::breaks)).
 //!
 //! Sources: Popov, J. Appl. Math. Mech. 27 (1963), for the eigenfunctions; Sneddon, Int. J. Eng. Sci. 3 (1965) 47,
 //! doi:10.1016/0020-7225(65)90019-4, for g.
@@ -36,10 +37,12 @@ use super::caution::Caution;
 use super::functional::Evaluation;
 use super::moments::{EdgeRules, Moments};
 use super::outside;
-use crate::contact::{Gap, Reduced};
+use crate::contact::breaks::{Angles, CUBIC_FREQUENCY};
+use crate::contact::{Axis, Gap, Reduced};
 use gauss_quad::GaussLegendre;
 use nalgebra::DVectorView;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
@@ -202,9 +205,27 @@ impl Spectral {
         }
     }
 
+    /// The rule for projections of `gap` on a disc of radius `s`.
+    ///
+    /// A gap that is not even and smooth in r is neither in t: it takes nodes in θ, t = cos θ, broken where it breaks.
+    fn rule(&self, gap: &dyn Gap, s: f64) -> Cow<'_, DiscRule> {
+        let breaks = gap.breaks();
+        if breaks.axis == Axis::Even && !breaks.matter(s) {
+            return Cow::Borrowed(&self.disc);
+        }
+        let degree = 2.0 * self.functions as f64;
+        let frequency = degree + if breaks.cubic { CUBIC_FREQUENCY } else { degree };
+        let Angles { sines, cosines, mut weights } = Angles::new(breaks, s, frequency);
+        for (weight, sin) in weights.iter_mut().zip(&sines) {
+            *weight *= sin;
+        }
+        Cow::Owned(DiscRule { depths: cosines, radii: sines, weights })
+    }
+
     /// `d_k` of δ − h on the disc of radius `s`, n of them, lengths.
     fn coefficients(&self, gap: &dyn Gap, s: f64, delta: f64) -> Vec<f64> {
-        let DiscRule { depths, radii, weights } = &self.disc;
+        let rule = self.rule(gap, s);
+        let DiscRule { depths, radii, weights } = rule.as_ref();
         let mut samples = vec![0.0; radii.len()];
         gap.values(s, radii, &mut samples);
         for (sample, weight) in samples.iter_mut().zip(weights) {

@@ -48,7 +48,7 @@ impl NotFinite {
 }
 
 /// The grid on (0, `largest`], ascending.
-fn grid(largest: f64) -> Vec<f64> {
+pub(super) fn grid(largest: f64) -> Vec<f64> {
     let step = largest / NODES as f64;
     let halved = (1..=HALVINGS).rev().map(|k| step * 0.5f64.powi(i32::try_from(k).unwrap_or(i32::MAX)));
     halved.chain((1..=NODES).map(|k| if k == NODES { largest } else { step * k as f64 })).collect()
@@ -128,7 +128,7 @@ impl Bound {
     }
 
     /// The operand made by these steps, with N − 1 derivatives, at each of `radii`.
-    fn operand<const N: usize>(&self, steps: &Range<usize>, radii: &[f64]) -> Vec<[f64; N]> {
+    pub(super) fn operand<const N: usize>(&self, steps: &Range<usize>, radii: &[f64]) -> Vec<[f64; N]> {
         let mut operand = Vec::with_capacity(radii.len());
         self.each(&self.steps.steps[steps.clone()], 1.0, radii, |_, jet| operand.push(jet));
         operand
@@ -136,7 +136,7 @@ impl Bound {
 }
 
 /// The first radius found where `good` no longer holds; it holds at `from` and not at `to`.
-fn bisect(mut from: f64, mut to: f64, good: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn bisect(mut from: f64, mut to: f64, good: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (from + to);
         if good(middle) {
