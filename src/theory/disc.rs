@@ -16,7 +16,8 @@
 //! Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141. The formulas
 //! hold for one connected disc; whether the gap outside stays open is not asked here.
 
-use super::quadrature::{Integral, integrate};
+use super::quadrature::{Integral, integrate, integrate_broken};
+use crate::contact::Breaks;
 use std::f64::consts::{PI, TAU};
 
 /// The Abel transform of a gap at one radius.
@@ -67,7 +68,14 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     fn work_of_adhesion(&self) -> f64;
 
     /// The shortest wave of the gap, by which integrals are divided.
-    fn wave(&self) -> Option<f64>;
+    fn wave(&self) -> Option<f64> {
+        None
+    }
+
+    /// Where the gap is not smooth and its transform is singular.
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks::default()
+    }
 
     /// g, g' and M₁ at the radius `a ≥ 0`.
     fn transform(&self, a: f64) -> Transform;
@@ -117,7 +125,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     fn rise(&self, from: f64, to: f64) -> Integral<1> {
         // A product of two waves has waves of half the length.
         let wave = self.wave().map(|wave| 0.5 * wave);
-        integrate(from, to, wave, |a| {
+        integrate_broken(self.breaks(), from, to, wave, |a| {
             let g = self.transform(a);
             [2.0 * g.slope * g.moment]
         })

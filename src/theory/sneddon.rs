@@ -6,11 +6,13 @@
 //! g  = a ∫₀^{π/2} h'(r) dθ,   g' = ∫₀^{π/2} [h'(r) + r h''(r)] dθ,   M₁ = a² ∫₀^{π/2} h'(r) sin²θ dθ
 //! ```
 //!
-//! so that δ, P and their slopes cost one pass over the gap. I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965),
+//! so that δ, P and their slopes cost one pass over the gap, in pieces between its knots: there a measured profile is a
+//! cubic, a polynomial in sin θ of which a rule of known size is exact to rounding. I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965),
 //! doi:10.1016/0020-7225(65)90019-4.
 
 use super::disc::{Disc, Transform};
 use super::quadrature::{Integral, integrate};
+use crate::contact::breaks::{Angles, Breaks, CUBIC_FREQUENCY};
 use crate::contact::Gap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -43,16 +45,48 @@ impl Disc for Sneddon {
         self.gap.feature_length()
     }
 
+    fn breaks(&self) -> Breaks<'_> {
+        self.gap.breaks()
+    }
+
     fn transform(&self, a: f64) -> Transform {
+        let Integral { values: [value, slope, moment], resolved } =
+            if self.breaks().cubic { self.cubic_sums(a) } else { self.sums(a) };
+        Transform { value: a * value, slope, moment: a * a * moment, resolved }
+    }
+}
+
+impl Sneddon {
+    /// ∫h', ∫(h' + rh'') and ∫h' sin²θ over θ.
+    fn sums(&self, a: f64) -> Integral<3> {
         // Near θ = 0 a wave spans λ/a of θ.
         let wave = self.wave().map(|wave| wave / a);
-        let Integral { values: [value, slope, moment], resolved } =
-            integrate(0.0, FRAC_PI_2, wave, |theta| {
+        let mut sums = Integral { values: [0.0; 3], resolved: true };
+        let mut from = 0.0;
+        let knots = self.breaks().between(0.0, a).iter().map(|knot| (knot / a).asin());
+        for to in knots.chain([FRAC_PI_2]) {
+            sums += integrate(from, to, wave, |theta| {
                 let sin = theta.sin();
                 let r = a * sin;
                 let h = self.gap.jet(r);
                 [h.first, h.first + r * h.second, h.first * sin * sin]
             });
-        Transform { value: a * value, slope, moment: a * a * moment, resolved }
+            from = to;
+        }
+        sums
+    }
+
+    /// The same over a gap that is a cubic between its knots.
+    fn cubic_sums(&self, a: f64) -> Integral<3> {
+        let Angles { sines, weights, .. } = Angles::new(self.breaks(), a, CUBIC_FREQUENCY);
+        let [mut first, mut second, mut third] = [(); 3].map(|()| vec![0.0; sines.len()]);
+        self.gap.derivatives(a, &sines, [&mut first, &mut second, &mut third]);
+        let mut values = [0.0; 3];
+        for (((sin, weight), first), second) in sines.iter().zip(&weights).zip(&first).zip(&second) {
+            values[0] += weight * first;
+            values[1] += weight * (first + a * sin * second);
+            values[2] += weight * first * sin * sin;
+        }
+        Integral { values, resolved: values.iter().all(|value| value.is_finite()) }
     }
 }
