@@ -30,6 +30,8 @@ pub struct Case {
     pub reduced: Reduced,
     /// The discretization.
     pub basis: Arc<dyn Basis>,
+    /// Whether the number of functions follows from the contact.
+    pub automatic: bool,
     /// What is controlled, in reduced units.
     pub control: Control,
     /// The contact radius at the start, reduced.
@@ -114,7 +116,8 @@ impl Case {
         }
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
-        Ok(Self { problem, reduced, basis, control, start, end, tabor, shown })
+        let automatic = matches!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+        Ok(Self { problem, reduced, basis, automatic, control, start, end, tabor, shown })
     }
 
     /// The factors to the user's units.
@@ -173,7 +176,8 @@ impl Case {
         radii(self.start, self.end, self.reduced.gap.feature_length(), SWEEP_STEPS_PER_WAVE).len()
     }
 
-    /// The quasi-static unloading along `curve`, which is extended where a landing needs it.
+    /// The quasi-static unloading along `curve`, which is extended where a landing needs it, and made anew where an
+    /// automatic number of functions does not resolve how far an unstable start runs outward.
     ///
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
@@ -189,14 +193,32 @@ impl Case {
         &self,
         curve: &mut Curve,
         control: Control,
-        go_on: impl FnMut() -> bool,
+        mut go_on: impl FnMut() -> bool,
     ) -> Result<Unloading, CaseError> {
-        unload_while(curve, control, go_on).map_err(|e| match e {
-            UnloadError::Cancelled => CaseError::Cancelled,
-            other @ UnloadError::UnstableStart { .. } => {
-                CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
-            }
-        })
+        loop {
+            let unloading = unload_while(curve, control, &mut go_on).map_err(|e| match e {
+                UnloadError::Cancelled => CaseError::Cancelled,
+                other @ UnloadError::UnstableStart { .. } => {
+                    CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
+                }
+            })?;
+            let Some(finer) = self.finer(curve, &unloading)? else { return Ok(unloading) };
+            *curve = Curve::swept(self.reduced.clone(), finer, self.start, self.end, &mut go_on)
+                .ok_or_else(|| self.no_start())?;
+        }
+    }
+
+    /// The basis for a path whose start ran outward beyond the wave more that an automatic number of functions allows for;
+    /// none where that of `curve` will do.
+    fn finer(&self, curve: &Curve, unloading: &Unloading) -> Result<Option<Arc<dyn Basis>>, CaseError> {
+        let largest = unloading.start.contact_radius;
+        let allowed = self.start + self.reduced.gap.feature_length().unwrap_or(0.0);
+        if !self.automatic || largest <= allowed {
+            return Ok(None);
+        }
+        let finer = Spectral::resolving(&self.reduced, largest).map_err(BasisError::from)?;
+        // More than twice is not needed: where the path starts no longer moves.
+        Ok((finer.size() > curve.equilibrium.basis.size()).then(|| Arc::new(finer) as Arc<dyn Basis>))
     }
 
     /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
@@ -216,7 +238,10 @@ impl Case {
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
         let mut warnings = self.problem.shape.notes(&self.shown);
-        warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        // An automatic number of functions follows the contact.
+        if !self.automatic {
+            warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        }
         if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
             warnings.push(format!(
                 "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \

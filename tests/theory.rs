@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::shapes::{ExactSphere, PowerLaw};
+use pulloff::contact::shapes::{ExactSphere, PowerLaw, Profile, Smoothing};
 use pulloff::contact::{Control, Gap, Jet, Problem, Shape};
 use pulloff::theory::guduru::Guduru;
 use pulloff::theory::jkr::Jkr;
@@ -300,4 +300,70 @@ fn the_slopes_vanish_at_the_limit_points_of_the_reference() {
             }
         }
     }
+}
+
+/// A gap that keeps its knots to itself: every integral over it halves its way towards them.
+#[derive(Debug)]
+struct Silent<G>(G);
+
+impl<G: Gap> Gap for Silent<G> {
+    fn jet(&self, r: f64) -> Jet {
+        self.0.jet(r)
+    }
+    fn feature_length(&self) -> Option<f64> {
+        self.0.feature_length()
+    }
+    fn reference_length(&self) -> f64 {
+        self.0.reference_length()
+    }
+}
+
+fn rough_profile(rows: u16) -> Profile {
+    let radii: Vec<f64> = (0..rows).map(|i| f64::from(i) / f64::from(rows - 1)).collect();
+    let gaps: Vec<f64> = radii.iter().map(|r| 0.5 * r * r + 0.01 * (17.0 * r * r + 3.0 * r).sin()).collect();
+    Profile::new(&radii, &gaps, Smoothing::None).unwrap()
+}
+
+#[test]
+fn a_profile_between_its_rows_is_what_halving_finds() {
+    let (modulus, gamma) = (0.7, 0.004);
+    for rows in [8, 60] {
+        let by_pieces = Exact::by_quadrature(modulus, gamma, Arc::new(rough_profile(rows)));
+        let by_halving = Exact::by_quadrature(modulus, gamma, Arc::new(Silent(rough_profile(rows))));
+        let radii = [0.004, 0.11, 0.5, 4.0 / 7.0, 0.83, 1.0];
+        for (a, b) in by_pieces.curve(&radii).iter().zip(&by_halving.curve(&radii)) {
+            let s = a.contact_radius;
+            assert!(a.resolved, "{rows} {s}");
+            let (g, h) = (by_pieces.transform(s), by_halving.transform(s));
+            for (ours, theirs, size) in [
+                (g.value, h.value, h.value.abs() + s * s),
+                (g.slope, h.slope, h.slope.abs() + s),
+                (a.force, b.force, b.force_scale),
+                (a.energy, b.energy, b.force_scale * s),
+            ] {
+                assert!((ours - theirs).abs() <= 2e-12 * size, "{rows} {s}: {ours} {theirs}");
+            }
+        }
+        let inside = [0.0, 0.2, 0.43, 0.5, 0.77];
+        for (r, p) in inside.iter().zip(by_pieces.pressures(0.8, &inside)) {
+            let exact = by_halving.pressure(0.8, *r);
+            assert!((p - exact).abs() <= 1e-7 * (exact.abs() + modulus), "{rows} {r}: {p} {exact}");
+        }
+    }
+}
+
+#[test]
+fn a_corner_of_a_formula_is_met() {
+    // h = max(r − c, 0)²/2: h' = r − c beyond c, g = a (cos θ a − c (π/2 − θ)) with sin θ = c/a.
+    let formula = pulloff::contact::formula::Formula::parse("max(r - 0.3, 0)^2/2").unwrap();
+    let gap = formula.bind(&[]).unwrap().over(1.0).unwrap();
+    assert!((gap.breaks().knots[0] - 0.3).abs() < 1e-15);
+    let exact = Exact::by_quadrature(1.0, 0.0, Arc::new(gap));
+    for a in [0.300_001_f64, 0.31, 0.5, 1.0] {
+        let theta = (0.3 / a).asin();
+        let g = a * (a * theta.cos() - 0.3 * (0.5 * PI - theta));
+        let ours = exact.transform(a);
+        assert!(ours.resolved && (ours.value - g).abs() <= 1e-14 * a * a, "{a}: {} {g}", ours.value);
+    }
+    assert_eq!(exact.transform(0.3).value.to_bits(), 0f64.to_bits());
 }

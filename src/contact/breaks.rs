@@ -225,8 +225,8 @@ mod tests {
             let angles = Angles::new(Breaks { axis: Axis::Broken, ..Breaks::default() }, 1.0, frequency);
             for n in [1.0_f64, 1.1, 1.5, 1.9, 2.7] {
                 // Wallis: ∫ sinⁿ⁻¹θ dθ.
-                let exact = 0.5 * std::f64::consts::PI.sqrt() * libm::tgamma(0.5 * n)
-                    / libm::tgamma(0.5 * (n + 1.0));
+                let exact =
+                    0.5 * std::f64::consts::PI.sqrt() * libm::tgamma(0.5 * n) / libm::tgamma(0.5 * (n + 1.0));
                 let sum: f64 =
                     angles.sines.iter().zip(&angles.weights).map(|(sin, w)| w * sin.powf(n - 1.0)).sum();
                 assert!((sum / exact - 1.0).abs() < 1e-13, "{n} {frequency}: {}", sum / exact - 1.0);

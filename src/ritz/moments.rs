@@ -17,8 +17,8 @@
 use crate::contact::Gap;
 use crate::contact::breaks::{Angles, CUBIC_FREQUENCY};
 use gauss_quad::GaussLegendre;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 use std::num::NonZeroUsize;
 use wide::f64x4;
 

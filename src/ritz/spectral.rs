@@ -41,8 +41,8 @@ use crate::contact::breaks::{Angles, CUBIC_FREQUENCY};
 use crate::contact::{Axis, Gap, Reduced};
 use gauss_quad::GaussLegendre;
 use nalgebra::DVectorView;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
 
@@ -156,8 +156,8 @@ impl Spectral {
     /// Enough functions for the gap of `problem` in a contact of radius `s` (reduced) and one wave more.
     ///
     /// The first guess counts the waves; it grows until the tail of the coefficients is below [`TAIL_TOLERANCE`].
-    /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, and at
-    /// least 256.
+    /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, at least
+    /// 256 and at most all.
     ///
     /// # Errors
     /// [`SpectralError::Unresolved`] with the numbers when the most functions are not enough.
@@ -178,7 +178,7 @@ impl Spectral {
             if tail <= SLOW_TAIL && slow.is_none() {
                 slow = Some((2 * functions).max(SLOW_FUNCTIONS));
             }
-            if tail <= TAIL_TOLERANCE || slow.is_some_and(|enough| functions >= enough) {
+            if tail <= TAIL_TOLERANCE || slow.is_some_and(|enough| functions >= enough.min(most)) {
                 return Ok(basis);
             }
             if functions >= most {

@@ -113,12 +113,12 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     /// Its integral has the waves of g', which the transform of the gap has resolved where it says so.
     fn pressure(&self, s: f64, r: f64) -> f64 {
         let depth = ((s - r) * (s + r)).sqrt();
-        // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
-        let pressed = integrate(0.0, depth, self.wave(), |t| {
-            let a = r.hypot(t);
-            [self.transform(a).slope / a]
-        });
-        self.effective_modulus() / PI * (pressed.values[0] - self.edge(s) / depth)
+        self.effective_modulus() / PI * (pressed(self, s, r) - self.edge(s) / depth)
+    }
+
+    /// The pressure in a disc of radius `s` at each of `radii`, as [`Disc::pressure`].
+    fn pressures(&self, s: f64, radii: &[f64]) -> Vec<f64> {
+        radii.iter().map(|&r| self.pressure(s, r)).collect()
     }
 
     /// M₂ at `to` less M₂ at `from`.
@@ -164,4 +164,15 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         };
         radii.iter().zip(squares).map(state).collect()
     }
+}
+
+/// ∫_r^s g'(a)/√(a² − r²) da.
+pub(super) fn pressed(disc: &(impl Disc + ?Sized), s: f64, r: f64) -> f64 {
+    let depth = ((s - r) * (s + r)).sqrt();
+    // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
+    let pressed = integrate(0.0, depth, disc.wave(), |t| {
+        let a = r.hypot(t);
+        [disc.transform(a).slope / a]
+    });
+    pressed.values[0]
 }

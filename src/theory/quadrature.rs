@@ -23,11 +23,12 @@ const STARTED: f64 = 4096.0;
 /// Panels of one integral at most: what is not resolved then stays as good as it is, and says so.
 const PANELS: usize = 1 << 15;
 
-/// Nodes of a stretch between two knots of a cubic gap. What is singular one stretch further in then counts by 4.1⁻²⁰ of
+/// Nodes of a stretch between two knots of a cubic gap. What is singular one stretch further in then counts by 4.1⁻²⁴ of
 /// itself, and itself is small.
-const STRETCH_NODES: NonZeroUsize = NonZeroUsize::new(10).unwrap();
+const STRETCH_NODES: NonZeroUsize = NonZeroUsize::new(12).unwrap();
 
-static STRETCH: LazyLock<Vec<(f64, f64)>> =
+/// Its nodes and weights on (−1, 1).
+pub(super) static STRETCH: LazyLock<Vec<(f64, f64)>> =
     LazyLock::new(|| GaussLegendre::new(STRETCH_NODES).as_node_weight_pairs().to_vec());
 
 /// A node on (−1, 1), its weight, and its weights in the last two Legendre coefficients.
