@@ -15,7 +15,7 @@ use pulloff::theory::unloading::{Path, unload};
 
 /// How near eigenfunctions come in an automatic number: δ and P relative to their parts, radii of limit points and landings
 /// over that of the start, losses. A snap of little loss is a difference of energies a thousand times as large.
-const SPECTRAL: [f64; 3] = [1e-13, 1e-12, 1e-8];
+const SPECTRAL: [f64; 3] = [1e-13, 1e-12, 1e-7];
 
 /// How near 400 rings come on the whole.
 const RINGS: [f64; 3] = [5e-3, 1e-3, 5e-3];

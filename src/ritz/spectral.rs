@@ -156,8 +156,9 @@ impl Spectral {
     /// Enough functions for the gap of `problem` in a contact of radius `s` (reduced) and one wave more.
     ///
     /// The first guess counts the waves; it grows until the tail of the coefficients is below [`TAIL_TOLERANCE`].
-    /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, at least
-    /// 256 and at most all.
+    /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, and at
+    /// least 256. Where it is known not to be smooth, as many as take it there and at most all: δ and P do not depend on
+    /// their number, and energies feel its square.
     ///
     /// # Errors
     /// [`SpectralError::Unresolved`] with the numbers when the most functions are not enough.
@@ -168,6 +169,8 @@ impl Spectral {
         let largest = (s + wave.unwrap_or(0.0)).min(problem.largest_contact().max(s));
         let waves = wave.map_or(0.0, |wave| largest / wave);
         let mut wanted = FUNCTIONS_PER_WAVE * waves;
+        let breaks = problem.gap.breaks();
+        let rough = (breaks.axis != Axis::Even || breaks.matter(largest)) && wanted <= most as f64;
         let mut slow = None;
         loop {
             // Positive and at most 4096.
@@ -176,9 +179,13 @@ impl Spectral {
             let basis = Self::new(functions)?;
             let tail = basis.tail(problem, largest);
             if tail <= SLOW_TAIL && slow.is_none() {
-                slow = Some((2 * functions).max(SLOW_FUNCTIONS));
+                // Where the gap is not smooth, twice as many would buy half a digit.
+                let enough = if rough { functions } else { 2 * functions };
+                slow = Some(enough.max(SLOW_FUNCTIONS));
             }
-            if tail <= TAIL_TOLERANCE || slow.is_some_and(|enough| functions >= enough.min(most)) {
+            if tail <= TAIL_TOLERANCE
+                || slow.is_some_and(|enough| functions >= if rough { enough.min(most) } else { enough })
+            {
                 return Ok(basis);
             }
             if functions >= most {
