@@ -217,7 +217,7 @@ impl Case {
             return Ok(None);
         }
         let finer = Spectral::resolving(&self.reduced, largest).map_err(BasisError::from)?;
-        // More than twice is not needed: where the path starts no longer moves.
+        // The second time its size is the same: where the path starts has moved by rounding at most.
         Ok((finer.size() > curve.equilibrium.basis.size()).then(|| Arc::new(finer) as Arc<dyn Basis>))
     }
 
