@@ -37,6 +37,8 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     problem: Problem,
+    #[command(flatten)]
+    flags: explore::Flags,
 }
 
 #[derive(Debug, Subcommand)]
@@ -100,7 +102,7 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem),
+        None => explore::run(&cli.problem, &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),

@@ -7,7 +7,8 @@
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
-//! | [`theme`] | colours and glyphs, Unicode or ASCII |
+//! | [`look`] | theme, charts and mouse from flags, configuration and environment |
+//! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
 //! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
 //! | [`hatch`] | areas filled with slanting lines |
@@ -18,6 +19,7 @@ pub mod chart;
 pub mod hatch;
 pub mod keymap;
 pub mod layout;
+pub mod look;
 pub mod overlay;
 pub mod stroke;
 pub mod terminal;
@@ -29,23 +31,26 @@ pub use terminal::refuse_reason;
 use crate::explorer::{Reply, Workers};
 use crate::preset::{Loaded, Store};
 use app::App;
+use look::Look;
 use std::io;
 use std::process::ExitCode;
 use terminal::Incoming;
-use theme::Theme;
+use theme::Palette;
 
 /// Runs the explorer until the person quits.
 ///
 /// # Errors
 /// When the terminal cannot be taken, or the system gives no thread.
-pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
+pub fn run(store: Store, loaded: Loaded, look: Look) -> io::Result<ExitCode> {
+    // A theme asked for by name holds against NO_COLOR, which the backend would obey by itself.
+    crossterm::style::force_color_output(look.theme != Palette::Mono);
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
         // Refused only when the screen is gone, and the process with it.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects) = App::new(loaded, Theme::of_environment());
+    let (mut app, effects) = App::new(loaded, look.theme());
     workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {

@@ -22,6 +22,7 @@ const READING: &[&str] = &[
     "Views follow each other with t: three of the curve, then the pressure in the disc, the gap outside it and the",
     "potential over the radius at the walker's state, and the unloading with its losses hatched. In the potential",
     "m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the crests.",
+    "Along the curve w marks the states walked and j a jump; letters and dashes tell lines apart without colour.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
@@ -68,7 +69,7 @@ fn text(theme: Theme, model: &Model) -> Vec<Line<'static>> {
 pub fn lines(model: &Model) -> u16 {
     /// As many rows as a line may take on the narrowest screen.
     const WRAPPED: usize = 3;
-    u16::try_from(WRAPPED * text(Theme { ascii: true }, model).len()).unwrap_or(u16::MAX)
+    u16::try_from(WRAPPED * text(Theme::default(), model).len()).unwrap_or(u16::MAX)
 }
 
 /// Draws the help over the screen, scrolled by so many lines.

@@ -4,7 +4,6 @@ use super::charts::{letter, look};
 use crate::contact::Control;
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
-use crate::tui::stroke::Stroke;
 use crate::tui::theme::Theme;
 
 /// The legends of a figure, each shorter than the one before: the least wanted words go first.
@@ -20,10 +19,8 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
     lines.sort_by_key(|line| std::cmp::Reverse(line.role));
     lines.sort_by_key(|line| rank(line.role) == 0);
     for line in lines {
-        if !matches!(line.role, Role::Walk | Role::Jump) {
-            let (stroke, _) = look(line.role);
-            add(rank(line.role), format!("{} {}", glyph(stroke, theme), theme.symbols(&line.name)));
-        }
+        let (stroke, _) = look(line.role, theme.styles());
+        add(rank(line.role), format!("{} {}", stroke.glyph(theme), theme.symbols(&line.name)));
     }
     for mark in &figure.marks {
         if let Some((rank, word)) = meaning(mark.sign) {
@@ -50,6 +47,7 @@ fn rank(role: Role) -> u8 {
         | Role::Barrier
         | Role::Device => 1,
         Role::Smooth => 3,
+        Role::Walk | Role::Jump => 5,
         _ => 4,
     }
 }
@@ -70,18 +68,6 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Barrier => (1, "barrier"),
         Sign::Walker => (1, "here"),
     })
-}
-
-fn glyph(stroke: Stroke, theme: Theme) -> &'static str {
-    match stroke {
-        Stroke::Solid => theme.glyph("━", "o"),
-        Stroke::Dotted => theme.glyph("┈", "."),
-        Stroke::Sparse => theme.glyph("· ·", ". ."),
-        Stroke::Dashed => theme.glyph("╌", "--"),
-        Stroke::ShortDashed => theme.glyph("┅", "::"),
-        Stroke::LongDashed => theme.glyph("━ ━", "~~"),
-        Stroke::Lettered(letter) | Stroke::Repeated(letter) => letter,
-    }
 }
 
 /// The cross-hair in words: on a curve the state near to it, then both coordinates.

@@ -67,7 +67,7 @@ fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
     Block::bordered()
         .border_set(theme.border())
         .border_style(theme.frame(selected))
-        .title(Span::styled(theme.text(title), theme.strong()))
+        .title(Span::styled(theme.text(title), theme.title(selected)))
 }
 
 /// Whether a panel is the selected one, and nothing lies over it.

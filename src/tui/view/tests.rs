@@ -1,14 +1,19 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
 use crate::explorer::{Command, Id, Inline, Panel, View, update};
+mod looks;
+
 use crate::preset::Store;
 use crate::tui::app::App;
-use crate::tui::theme::Theme;
+use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
+
+/// Dark, and in ASCII.
+const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, ascii: true };
 
 /// The explorer with its effects done inline.
 struct Screen {
@@ -22,7 +27,7 @@ impl Screen {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
-        let (app, effects) = App::new(loaded, Theme { ascii: false });
+        let (app, effects) = App::new(loaded, Theme::default());
         (Self { app, driver: Inline::new(store), _folder: folder }, effects)
     }
 
@@ -181,7 +186,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     }
     assert_eq!(text.matches("(t: radius-force)").count(), 1);
     // A jump's loss is hatched, in ASCII as well.
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
     screen.keys("T");
@@ -251,7 +256,7 @@ fn pins_are_listed_and_taken_away_one_by_one() {
 #[test]
 fn an_ascii_terminal_gets_nothing_else() {
     let mut screen = Screen::new("wavy-sphere");
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     for keys in ["", "n", "x", "t", "?", "\x1bo", "\x1b\r", "\x1bp}i+", "tttttty\r", "\x1bP"] {
         screen.keys(keys);
         for (width, height) in [(80, 24), (120, 40)] {
@@ -289,7 +294,7 @@ fn inadmissible_parts_need_no_colour() {
     let effects = crate::explorer::update(&mut screen.app.model, weak);
     screen.settle(effects);
     for ascii in [false, true] {
-        screen.app.theme = Theme { ascii };
+        screen.app.theme = if ascii { PLAIN } else { Theme::default() };
         let text = screen.text(160, 50);
         // In the legend and in the log; the others stand on the curves.
         let told = text.matches("! inadmissible").count();
@@ -386,7 +391,7 @@ fn shapes_are_chosen_by_their_pictures() {
             screen.draw(width, height);
         }
     }
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     let text = screen.text(100, 30);
     assert!(text.is_ascii() && text.contains("> exact-sphere  R - sqrt(R2 - r2), up to R"), "{text}");
     let row = text.lines().find(|line| line.contains("random-waves")).unwrap();
