@@ -23,7 +23,7 @@ fn session(view: View, views: usize) -> App {
     let driver = Inline::new(store);
     driver.settle(&mut app.model, effects);
     app.model.view = view;
-    let effects = app.make_room(views);
+    let effects = app.make_room(app.screen, views);
     driver.settle(&mut app.model, effects);
     app
 }

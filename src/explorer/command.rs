@@ -4,7 +4,7 @@
 //! each id its keys.
 
 use super::model::{Model, Panel};
-use super::view::{Overlay, Window};
+use super::view::{Overlay, View, Window};
 use crate::preset::Key;
 use std::path::PathBuf;
 
@@ -91,6 +91,10 @@ pub enum Id {
     SaveAs,
     /// Write the curve, the walk or the events to a file.
     Export,
+    /// Put something into the clipboard.
+    Copy,
+    /// Take the mouse, or leave it to the terminal.
+    Mouse,
     /// The help screen.
     Help,
     /// Take back, close, pause.
@@ -143,8 +147,19 @@ pub enum Command {
     TakeBack,
     /// List the profiles in this folder; without one, in that of the preset's own profile.
     Browse(Option<PathBuf>),
-    /// Closer to a place of the first view, or further away.
+    /// Select a panel, and a line of it.
+    Pick {
+        /// The panel.
+        panel: Panel,
+        /// The line.
+        line: Option<usize>,
+    },
+    /// Go to the state of this contact radius, in the user's units.
+    MoveTo(f64),
+    /// Closer to a place of a view, or further away.
     Zoom {
+        /// The view.
+        view: View,
         /// Whether closer.
         closer: bool,
         /// The place that stays where it is, in shares of the window.
@@ -156,6 +171,8 @@ pub enum Command {
     Unpin(Option<usize>),
     /// Open this preset, by name or path.
     Open(String),
+    /// Delete the person's own preset of this name, for good.
+    Delete(String),
     /// Save under this name.
     SaveAs {
         /// The name.
@@ -167,6 +184,15 @@ pub enum Command {
     },
     /// Save although the file was changed by somebody else meanwhile.
     SaveAnyway,
+    /// Write a text, such as the screen, to a file ending in `.txt`.
+    ExportText {
+        /// The text.
+        text: String,
+        /// The path.
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         /// The document.
@@ -190,16 +216,17 @@ impl Command {
         match self {
             Self::Plain(id) => *id,
             Self::Steps(_) => Id::Step,
-            Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
+            Self::Set { .. } | Self::Try { .. } | Self::Browse(_) | Self::MoveTo(_) => Id::Edit,
+            Self::Pick { .. } => Id::NextPanel,
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
             Self::Unpin(_) => Id::Pins,
-            Self::Open(_) => Id::Open,
+            Self::Open(_) | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportText { .. } => Id::Export,
         }
     }
 }
@@ -333,7 +360,7 @@ pub static ROWS: &[Row] = &[
             "edit",
             VALUES,
             "type value",
-            "type the selected value, or choose it; in Events: go to the selected event",
+            "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there",
             always,
         ),
     ),
@@ -389,7 +416,10 @@ pub static ROWS: &[Row] = &[
     ),
     row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", has_curve),
     taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", has_pins)),
-    taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
+    taking(
+        "preset",
+        row(Id::Open, "open", FILES, "open", "open a preset; D in the list deletes one of your own", always),
+    ),
     row(Id::Save, "save", FILES, "save", "save the preset", always),
     taking(
         "name",
@@ -402,9 +432,25 @@ pub static ROWS: &[Row] = &[
             "export",
             FILES,
             "export",
-            "write the curve, the walk or the events as CSV or JSON",
+            "write the curve, the walk or the events as CSV or JSON, or the screen as text",
             always,
         ),
+    ),
+    row(
+        Id::Copy,
+        "copy",
+        FILES,
+        "copy",
+        "the state, the events, the chart or the screen into the terminal's clipboard",
+        always,
+    ),
+    row(
+        Id::Mouse,
+        "mouse",
+        PROGRAM,
+        "mouse",
+        "take the mouse (click, wheel), or leave it to the terminal to select text",
+        always,
     ),
     row(Id::Help, "help", PROGRAM, "help", "this help", always),
     row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run or a curve", always),

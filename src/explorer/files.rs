@@ -6,6 +6,7 @@ use super::history::{Node, NodeKind};
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
 use crate::preset::measured;
+use crate::preset::text::show_path;
 use crate::preset::{
     Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
 };
@@ -48,6 +49,8 @@ pub enum Job {
     List,
     /// Open a preset by name or path.
     Open(String),
+    /// Delete a preset of the person's own.
+    Delete(String),
     /// List the profiles of a folder.
     Browse {
         /// The folder; without one, the profile's own.
@@ -82,6 +85,15 @@ pub enum Job {
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
     },
+    /// Write a text.
+    Write {
+        /// The text.
+        text: String,
+        /// The path as typed.
+        path: String,
+        /// Whether a file there may be replaced.
+        replace: bool,
+    },
     /// Export a document.
     Export {
         /// Which.
@@ -110,6 +122,8 @@ pub enum Done {
     Read(Arc<Rows>),
     /// A preset was opened.
     Opened(Box<Loaded>),
+    /// A preset was deleted: its file, safe to show, and what is left.
+    Deleted(String, Box<Listing>),
     /// The preset was saved.
     Saved {
         /// Where.
@@ -127,6 +141,8 @@ pub enum Done {
     Exported(String),
     /// A file of this name exists: not written.
     FileExists(Document, String),
+    /// The same of this text, at this path.
+    TextExists(String, String),
     /// It failed, in words; nothing was changed.
     Failed(String),
 }
@@ -139,6 +155,10 @@ pub fn run(store: &Store, job: Job) -> Done {
             let loaded = store.resolve(&argument).and_then(|source| store.load(&source, &[] as &[&str]));
             loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
         }
+        Job::Delete(name) => match store.delete(&name) {
+            Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
+            Err(error) => Done::Failed(format!("not deleted: {error}")),
+        },
         Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
             Ok(folder) => Done::Browsed(Box::new(folder)),
             Err(reason) => Done::Failed(reason),
@@ -176,6 +196,10 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }
+        Job::Write { text, path, replace } => match put(&path, &text, replace) {
+            Err(WriteError::Exists { .. }) => Done::TextExists(text, path),
+            result => exported(path, result),
+        },
         Job::Export { what, curve, walk, events, path, replace } => {
             let text = match text(
                 what,
@@ -187,13 +211,23 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Ok(text) => text,
                 Err(error) => return Done::Failed(format!("not exported: {error}")),
             };
-            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-            match write_atomically(&target(&path), text.as_bytes(), overwrite) {
-                Ok(_) => Done::Exported(path),
+            match put(&path, &text, replace) {
                 Err(WriteError::Exists { .. }) => Done::FileExists(what, path),
-                Err(error) => Done::Failed(format!("not exported: {error}")),
+                result => exported(path, result),
             }
         }
+    }
+}
+
+fn put(path: &str, text: &str, replace: bool) -> Result<Fingerprint, WriteError> {
+    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+    write_atomically(&target(path), text.as_bytes(), overwrite)
+}
+
+fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
+    match result {
+        Ok(_) => Done::Exported(path),
+        Err(error) => Done::Failed(format!("not exported: {error}")),
     }
 }
 

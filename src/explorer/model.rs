@@ -60,6 +60,8 @@ pub enum Question {
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::files::Document, String),
+    /// Replace the file by this text; its path.
+    ReplaceText(String, String),
 }
 
 /// A walk request that is running.

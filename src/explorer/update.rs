@@ -26,7 +26,7 @@ use super::view::View;
 use super::walk::Action;
 use crate::preset::text::{greek, show_name};
 use crate::preset::{Loaded, Overwrite, Value, groups};
-use files::{browse, export, file, file_done, save, save_back};
+use files::{browse, export, export_text, file, file_done, save, save_back};
 use values::{
     adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
     want_check, want_curve,
@@ -63,8 +63,13 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Try { key, text } => try_out(model, &key, &text),
         Command::TakeBack => untry(model),
         Command::Browse(folder) => vec![browse(model, folder)],
-        Command::Zoom { closer, about } => {
-            look::zoom(model, closer, about);
+        Command::Pick { panel, line } => {
+            pick(model, panel, line);
+            Vec::new()
+        }
+        Command::MoveTo(radius) => move_to(model, radius),
+        Command::Zoom { view, closer, about } => {
+            look::zoom(model, view, closer, about);
             Vec::new()
         }
         Command::Overlay(overlay) => {
@@ -76,12 +81,14 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             Vec::new()
         }
         Command::Open(name) => vec![file(Job::Open(name))],
+        Command::Delete(name) => vec![file(Job::Delete(name))],
         Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
             vec![file(Job::SaveAs { name, preset, replace, with_data })]
         }
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
+        Command::ExportText { text, path, replace } => export_text(model, text, path, replace),
     }
 }
 
@@ -145,8 +152,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
         Id::NextView => look::turn_view(model, 1),
         Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
-        Id::ZoomIn => look::zoom(model, true, look::MIDDLE),
-        Id::ZoomOut => look::zoom(model, false, look::MIDDLE),
+        Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
+        Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Fit => look::fit(model),
         Id::CrossHair => look::cross_hair(model),
         Id::Pin => look::pin(model),
@@ -164,7 +171,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Help => {}
+        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins => {}
+        Id::Copy | Id::Mouse | Id::Help => {}
     }
     Vec::new()
 }
@@ -222,6 +230,29 @@ fn long_text(model: &Model) -> Option<String> {
         (row, Some(Value::Profile(rows))) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
         _ => None,
     }
+}
+
+/// A panel is selected, and a line of it, the last at most.
+fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
+    model.panel = panel;
+    let lines = match panel {
+        Panel::Problem => model.knobs().len(),
+        Panel::Events => model.shown_events().len() + model.shown_inadmissible().len(),
+        Panel::Walker | Panel::Charts => 0,
+    };
+    let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
+    match panel {
+        Panel::Problem => model.parameter = line,
+        Panel::Events => model.event = line,
+        Panel::Walker | Panel::Charts => {}
+    }
+}
+
+/// The walker goes to the state of this contact radius, in the user's units.
+fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
+    let Some(curve) = &model.curve else { return Vec::new() };
+    let reduced = radius / curve.setting.case.units().length;
+    walk(model, Action::MoveTo(reduced))
 }
 
 /// Enter on an event: the walker goes to its limit point.

@@ -10,7 +10,7 @@ use crate::figure::Bounds;
 use crate::report::number::{fixed, short};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
 use ratatui::style::{Color, Style};
 use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
@@ -110,14 +110,8 @@ impl Chart {
         }
         let inner = block.inner(area);
         frame.render_widget(block, area);
-        if inner.width < 12 || inner.height < 4 {
-            return;
-        }
-        let y_ticks = ticks(self.bounds.y, usize::from(inner.height / 3).clamp(2, 8));
-        let gutter = y_ticks.iter().map(|(_, label)| label.len()).max().unwrap_or(0);
-        let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
-        let plot =
-            Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner };
+        let Some(plot) = self.plot(area) else { return };
+        let gutter = plot.x - inner.x;
         let buffer = frame.buffer_mut();
         if let Some(reason) = &self.missing {
             let text = theme.text(reason);
@@ -126,7 +120,7 @@ impl Chart {
         }
         self.draw_lines(buffer, plot, theme);
         self.draw_cross(buffer, plot, theme);
-        for (value, label) in &y_ticks {
+        for (value, label) in &self.y_ticks(inner) {
             if let Some(row) = cell(*value, self.bounds.y, plot.height, true) {
                 let room = usize::from(gutter.saturating_sub(1));
                 let text = format!("{label:>room$}");
@@ -162,6 +156,22 @@ impl Chart {
                 put(buffer, (plot.x + column, plot.y + row), mark.letter, mark.style);
             }
         }
+    }
+
+    /// The ticks of y in a frame of this inside.
+    fn y_ticks(&self, inner: Rect) -> Vec<(f64, String)> {
+        ticks(self.bounds.y, usize::from(inner.height / 3).clamp(2, 8))
+    }
+
+    /// Where the curves are drawn, with the frame in `area`; `None` where there is no room for them.
+    pub fn plot(&self, area: Rect) -> Option<Rect> {
+        let inner = area.inner(Margin::new(1, 1));
+        if inner.width < 12 || inner.height < 4 {
+            return None;
+        }
+        let gutter = self.y_ticks(inner).iter().map(|(_, label)| label.len()).max().unwrap_or(0);
+        let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
+        Some(Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner })
     }
 
     /// Areas and curves, whole lines over dots and dashes.

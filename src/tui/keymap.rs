@@ -84,6 +84,8 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Save => &[Char('s')],
         Id::SaveAs => &[Char('S')],
         Id::Export => &[Char('e')],
+        Id::Copy => &[Char('Y')],
+        Id::Mouse => &[Char('m')],
         Id::Help => &[Char('?')],
         Id::Cancel => &[Named(KeyCode::Esc)],
         Id::Quit => &[Char('q'), Ctrl('c')],

@@ -11,11 +11,13 @@
 //! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
 //! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
+//! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
 //! | [`hatch`] | areas filled with slanting lines |
 //! | [`view`] | one file per screen region |
 
 pub mod app;
 pub mod chart;
+pub mod copy;
 pub mod hatch;
 pub mod keymap;
 pub mod layout;
@@ -51,6 +53,7 @@ pub fn run(store: Store, loaded: Loaded, look: Look) -> io::Result<ExitCode> {
         let _ = sender.send(reply);
     })?;
     let (mut app, effects) = App::new(loaded, look.theme());
+    app.mouse = look.mouse;
     workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {
@@ -63,6 +66,7 @@ pub fn run(store: Store, loaded: Loaded, look: Look) -> io::Result<ExitCode> {
                     Vec::new()
                 }
                 Incoming::Key(key) => app.key(key),
+                Incoming::Mouse(mouse) => app.mouse(mouse),
                 Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
                     display.repaint();
@@ -73,11 +77,18 @@ pub fn run(store: Store, loaded: Loaded, look: Look) -> io::Result<ExitCode> {
             workers.submit_all(effects);
             dirty = true;
         }
+        display.take_mouse(app.mouse);
+        if let Some(text) = app.clipboard.take() {
+            display.copy(&text);
+        }
         if dirty && display.is_due() {
-            let mut views = 0;
-            display.draw(|frame| views = view::draw(frame, &app));
+            let (mut views, mut screen) = (0, app.screen);
+            display.draw(|frame| {
+                screen = frame.area();
+                views = view::draw(frame, &app);
+            });
             dirty = false;
-            workers.submit_all(app.make_room(views));
+            workers.submit_all(app.make_room(screen, views));
         }
     }
     drop(guard);

@@ -29,8 +29,7 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
         tell(model, Level::Error, "there is no curve to export yet");
         return Vec::new();
     };
-    let ending = std::path::Path::new(&path).extension().and_then(|ending| ending.to_str());
-    if !ending.is_some_and(|ending| ["csv", "json"].iter().any(|known| known.eq_ignore_ascii_case(ending))) {
+    if !ends_in(&path, &["csv", "json"]) {
         tell(model, Level::Error, "the file must end in .csv or .json");
         return Vec::new();
     }
@@ -39,9 +38,26 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
     vec![file(Job::Export { what, curve, walk, events, path, replace })]
 }
 
+pub(super) fn export_text(model: &mut Model, text: String, path: String, replace: bool) -> Vec<Effect> {
+    if ends_in(&path, &["txt"]) {
+        return vec![file(Job::Write { text, path, replace })];
+    }
+    tell(model, Level::Error, "the file must end in .txt");
+    Vec::new()
+}
+
+fn ends_in(path: &str, endings: &[&str]) -> bool {
+    let ending = std::path::Path::new(path).extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+}
+
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
         Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Deleted(path, listing) => {
+            tell(model, Level::Info, format!("deleted {path}; what is on the screen stays"));
+            model.listing = Some(*listing);
+        }
         Done::Browsed(folder) => model.folder = Some(*folder),
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
@@ -73,6 +89,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::FileExists(what, path) => {
             tell(model, Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
+        }
+        Done::TextExists(text, path) => {
+            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.question = Some(Question::ReplaceText(text, path));
         }
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }

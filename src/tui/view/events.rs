@@ -38,7 +38,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     }
     let rows = usize::from(body.height);
     let count = events.len() + parts.len();
-    let first = (model.event + 1).saturating_sub(rows).min(count.saturating_sub(rows));
+    let first = first(model, count, rows);
     let here = here(model, &events);
     let hidden = count.saturating_sub(first + rows);
     let texts = events.iter().enumerate().map(|(i, event)| {
@@ -71,6 +71,21 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let notes = notes.flat_map(|curve| &curve.sweep.notes);
     lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
     frame.render_widget(Paragraph::new(lines), body);
+}
+
+/// The first line shown, so that the selected one is.
+fn first(model: &Model, count: usize, rows: usize) -> usize {
+    (model.event + 1).saturating_sub(rows).min(count.saturating_sub(rows))
+}
+
+/// The line in this row of the screen, in the panel `area`.
+pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
+    // The frame and the heads.
+    let rows = usize::from(area.height.saturating_sub(3));
+    let count = model.shown_events().len() + model.shown_inadmissible().len();
+    let below = usize::from(row.checked_sub(area.y + 2)?);
+    let line = first(model, count, rows) + below;
+    (below < rows && line < count).then_some(line)
 }
 
 /// An inadmissible part of the curve: no event, so it has no number.

@@ -12,7 +12,7 @@ pub mod walker;
 
 use super::app::App;
 use super::keymap;
-use super::layout::{SMALLEST, regions};
+use super::layout::{Regions, SMALLEST, regions};
 use super::overlay::Overlay;
 use super::theme::Theme;
 use crate::explorer::{Id, Panel};
@@ -28,8 +28,7 @@ const PARTS: usize = 3;
 pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
-    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
-    let Some(regions) = regions(area, app.model.view, events) else {
+    let Some(regions) = places(app, area) else {
         let (width, height) = SMALLEST;
         let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
         frame.render_widget(Line::raw(text), Rect { height: area.height.min(1), ..area });
@@ -55,6 +54,12 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
     regions.charts.len()
+}
+
+/// Where the regions of a screen of this size are.
+pub fn places(app: &App, area: Rect) -> Option<Regions> {
+    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
+    regions(area, app.model.view, events)
 }
 
 /// The frame of a panel in the side column: what lies right of it and below has a frame of its own.

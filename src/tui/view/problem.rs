@@ -16,47 +16,73 @@ use ratatui::widgets::Paragraph;
 /// Parameters that are seen above the groups, unless one of these is selected.
 const ABOVE: usize = 5;
 
-/// Draws the parameters and the groups.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+/// How the panel is filled.
+struct Arranged {
+    /// Inside the frame, which takes the top line and the left column.
+    inner: Rect,
+    /// How many parameters there are, the groups behind them not counted.
+    parameters: usize,
+    /// The first one shown: the list scrolls so that the selected line is seen.
+    first: usize,
+    /// So many lines have parameters.
+    rows: usize,
+    /// The lines below.
+    groups: Vec<Line<'static>>,
+}
+
+fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let (model, theme) = (&app.model, app.theme);
     let selected = is_selected(app, Panel::Problem);
-    // The frame takes the top line and the left column.
     let inner = Rect {
         x: area.x + 1,
         y: area.y + 1,
         width: area.width.saturating_sub(1),
         height: area.height.saturating_sub(1),
     };
-    let all = model.knobs();
     // The groups that can be set stand behind the parameters, among those that cannot.
-    let (knobs, groups) =
-        all.split_at(all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count());
+    let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
     let chosen = model.selected_knob().filter(|_| selected).map(|(row, _)| row.key.clone());
-    let in_groups = model.parameter >= knobs.len() && selected;
-    let groups = group_lines(theme, model, groups, chosen.as_deref(), inner.width);
+    let in_groups = model.parameter >= parameters && selected;
+    let mut groups = group_lines(theme, model, &all[parameters..], chosen.as_deref(), inner.width);
     let height = usize::from(inner.height);
     // Both are seen in part where they have no room; what is selected, whole.
     let above = if in_groups { 2 } else { ABOVE };
-    let shown_groups = groups.len().min(height.saturating_sub(knobs.len().min(above)));
-    let rows = height - shown_groups;
-    let title = if rows < knobs.len() {
+    groups.truncate(height.saturating_sub(parameters.min(above)));
+    let rows = height - groups.len();
+    let first = (model.parameter + 1).saturating_sub(rows).min(parameters.saturating_sub(rows));
+    Arranged { inner, parameters, first, rows, groups }
+}
+
+/// Draws the parameters and the groups.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, app.theme);
+    let selected = is_selected(app, Panel::Problem);
+    let all = model.knobs();
+    let Arranged { inner, parameters, first, rows, groups } = arrange(app, area, &all);
+    let title = if rows < parameters {
         format!("Problem {}/{}", model.parameter + 1, all.len())
     } else {
         "Problem".to_owned()
     };
     frame.render_widget(side_panel(theme, &title, selected), area);
-    // The list scrolls so that the selected line is seen.
-    let first = (model.parameter + 1).saturating_sub(rows).min(knobs.len().saturating_sub(rows));
     let units = &model.preset.units;
-    let shown = knobs.iter().enumerate().skip(first).take(rows);
+    let shown = all[..parameters].iter().enumerate().skip(first).take(rows);
     let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
             knob_line(theme, units, row, value.as_ref(), i == model.parameter && selected, inner.width)
         })
         .collect();
     lines.resize(rows, Line::default());
-    lines.extend(groups.into_iter().take(shown_groups));
+    lines.extend(groups);
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The parameter in this row of the screen, in the panel `area`.
+pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
+    let Arranged { inner, parameters, first, rows, .. } = arrange(app, area, &app.model.knobs());
+    let below = usize::from(row.checked_sub(inner.y)?);
+    let line = first + below;
+    (below < rows && line < parameters).then_some(line)
 }
 
 fn knob_line(

@@ -2,6 +2,7 @@
 
 use crate::explorer::{Command, Id, Inline, Panel, View, update};
 mod looks;
+mod reach;
 
 use crate::preset::Store;
 use crate::tui::app::App;
@@ -19,7 +20,7 @@ const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, asci
 struct Screen {
     app: App,
     driver: Inline,
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
 }
 
 impl Screen {
@@ -28,7 +29,7 @@ impl Screen {
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
         let (app, effects) = App::new(loaded, Theme::default());
-        (Self { app, driver: Inline::new(store), _folder: folder }, effects)
+        (Self { app, driver: Inline::new(store), folder }, effects)
     }
 
     fn new(preset: &str) -> Self {
