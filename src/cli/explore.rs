@@ -8,7 +8,7 @@ use std::process::ExitCode;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Explorer")]
 pub struct Flags {
-    /// Colours for a dark or a light background, or none; NO_COLOR means mono
+    /// Colours for a dark or a light background, or none; the variable `NO_COLOR` means mono
     #[arg(long, value_enum)]
     theme: Option<crate::tui::theme::Palette>,
     /// What curves are drawn with, for fonts without braille or without blocks

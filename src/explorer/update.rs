@@ -171,8 +171,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins => {}
-        Id::Copy | Id::Mouse | Id::Help => {}
+        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Copy | Id::Mouse | Id::Help => {}
     }
     Vec::new()
 }

@@ -180,7 +180,7 @@ impl Chart {
         let lost: Vec<(f64, f64)> =
             self.areas.iter().flat_map(|outline| hatch(outline, &self.bounds, plot, hatching)).collect();
         self.canvas(buffer, plot, hatching, |context| {
-            context.draw(&Points::new(&lost, color(theme.styles().lost)))
+            context.draw(&Points::new(&lost, color(theme.styles().lost)));
         });
         let (broken, lines): (Vec<&Series>, Vec<&Series>) =
             self.series.iter().partition(|series| !series.stroke.is_line());

@@ -111,7 +111,7 @@ fn quantities(node: &Node) -> String {
     lines.push(("δ held", word(Control::Displacement).to_owned()));
     lines.push(("P held", word(Control::Force).to_owned()));
     lines.push(("step", node.step.to_string()));
-    lines.into_iter().map(|(name, value)| format!("{name}\t{value}\n")).collect()
+    lines.into_iter().map(|(name, value)| [name, "\t", &value, "\n"].concat()).collect()
 }
 
 /// The screen, or its first chart; what was asked with a list has closed it before.

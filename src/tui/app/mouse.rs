@@ -21,6 +21,9 @@ use ratatui::layout::{Position, Rect};
 /// A click goes to a state of the curve within so many character widths, a row counting twice.
 const NEAR: f64 = 6.0;
 
+/// A plot, and a place on it in shares of its window.
+type Place = (Rect, (f64, f64));
+
 impl App {
     /// Takes the mouse, or leaves it to the terminal.
     pub(super) fn switch_mouse(&mut self) {
@@ -119,7 +122,7 @@ impl App {
     }
 
     /// The chart at a place of the screen, and if it is on the plot, the plot and the place in shares of the window.
-    fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<(Rect, (f64, f64))>)> {
+    fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<Place>)> {
         let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
         let subject = Subject::of(&self.model);
         let plot = subject.and_then(|subject| {

@@ -4,7 +4,7 @@ use super::charts::{letter, look};
 use crate::contact::Control;
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
-use crate::tui::theme::Theme;
+use crate::tui::theme::{Palette, Theme};
 
 /// The legends of a figure, each shorter than the one before: the least wanted words go first.
 pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
@@ -17,10 +17,10 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
     let mut lines: Vec<_> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
     // Stable first, overlays behind, pins last.
     lines.sort_by_key(|line| std::cmp::Reverse(line.role));
-    lines.sort_by_key(|line| rank(line.role) == 0);
+    lines.sort_by_key(|line| rank(line.role, theme) == 0);
     for line in lines {
         let (stroke, _) = look(line.role, theme.styles());
-        add(rank(line.role), format!("{} {}", stroke.glyph(theme), theme.symbols(&line.name)));
+        add(rank(line.role, theme), format!("{} {}", stroke.glyph(theme), theme.symbols(&line.name)));
     }
     for mark in &figure.marks {
         if let Some((rank, word)) = meaning(mark.sign) {
@@ -37,8 +37,10 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
 }
 
 /// How much a line's name is wanted, 0 the most.
-fn rank(role: Role) -> u8 {
+fn rank(role: Role, theme: Theme) -> u8 {
     match role {
+        // What colour would tell needs a word without it.
+        Role::Stable | Role::Unstable if theme.palette == Palette::Mono => 1,
         Role::Pin(_) => 0,
         Role::Inadmissible
         | Role::Exact
