@@ -119,7 +119,10 @@ fn every_screen_is_ascii_in_an_ascii_terminal() {
     for preset in presets {
         let mut screen = Screen::new(preset);
         screen.app.theme = plain;
-        for keys in ["", "n", "x", "?", "\x1bP\x1be\x1b\r", "\x1bc", "\x1ba", "\t\r\x1bi", "v"] {
+        // Walks take long: one is enough.
+        let walk: &[&str] = if preset == "wavy-sphere" { &["n", "x", "c", "i"] } else { &[] };
+        let all = ["", "?", "\x1bP\x1be\x1b\r", "\x1ba", "\t\r\x1b", "v"];
+        for keys in all.iter().chain(walk) {
             screen.keys(keys);
             for (width, height) in [(80, 24), (200, 60)] {
                 let text = screen.text(width, height);
