@@ -198,9 +198,10 @@ impl Case {
         loop {
             let unloading = unload_while(curve, control, &mut go_on).map_err(|e| match e {
                 UnloadError::Cancelled => CaseError::Cancelled,
-                other @ UnloadError::UnstableStart { .. } => {
-                    CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
-                }
+                other @ UnloadError::UnstableStart { .. } => CaseError::Unload {
+                    error: other.in_units(self.units()),
+                    shown: Box::new(self.shown.clone()),
+                },
             })?;
             let Some(finer) = self.finer(curve, &unloading)? else { return Ok(unloading) };
             *curve = Curve::swept(self.reduced.clone(), finer, self.start, self.end, &mut go_on)

@@ -66,7 +66,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Inadmissible => stroke(PURPLE, 3.0, "0.8 2.4"),
         Role::Body => stroke(BLUE, 1.4, ""),
         Role::Contact => stroke(BLACK, 2.0, ""),
-        Role::Barrier => stroke(VERMILLION, 0.8, "2 2"),
+        Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
         Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
         Role::Walk => stroke(BLACK, 0.8, ""),
         Role::Jump => stroke(VERMILLION, 0.8, ""),

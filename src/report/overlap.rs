@@ -34,9 +34,9 @@ impl OverlapReport {
         overlaps.iter().map(report).collect()
     }
 
-    /// The interval in words, with its lengths as `units` show them.
-    pub fn text(&self, units: &UnitSystem) -> String {
-        let length = |x| with_unit(units, Quantity::Length, x, true, |x| significant(x, 4));
+    /// The interval in words, with its lengths as `units` show them, in ASCII where the terminal has no more.
+    pub fn text(&self, units: &UnitSystem, ascii: bool) -> String {
+        let length = |x| with_unit(units, Quantity::Length, x, ascii, |x| significant(x, 4));
         let fault = self.crest_radius.map_or_else(
             || "where the disc would have to pull".to_owned(),
             |radius| format!("at the crest r = {}", length(radius)),
@@ -51,7 +51,7 @@ pub fn warning(passes: &str, overlaps: &[OverlapReport], units: &UnitSystem) -> 
     if overlaps.is_empty() {
         return None;
     }
-    let mut told: Vec<String> = overlaps.iter().take(TOLD).map(|overlap| overlap.text(units)).collect();
+    let mut told: Vec<String> = overlaps.iter().take(TOLD).map(|overlap| overlap.text(units, true)).collect();
     if let Some(more) = overlaps.len().checked_sub(TOLD).filter(|more| *more > 0) {
         told.push(format!("and {more} more"));
     }
@@ -83,6 +83,9 @@ mod tests {
         );
         assert_eq!(many.lines().count(), 1);
         let si = UnitSystem::Si(DisplayUnits::default());
-        assert_eq!(overlap(Some(0.5e-3)).text(&si), "s = 474120 um to 463000 um at the crest r = 500.0 um");
+        assert_eq!(
+            overlap(Some(0.5e-3)).text(&si, true),
+            "s = 474120 um to 463000 um at the crest r = 500.0 um"
+        );
     }
 }

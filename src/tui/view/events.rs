@@ -49,7 +49,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         text
     });
     let mut lines: Vec<Line> = texts
-        .chain(parts.iter().map(|found| part(found, &model.preset.units)))
+        .chain(parts.iter().map(|found| part(found, &model.preset.units, theme.ascii)))
         .enumerate()
         .skip(first)
         .take(rows)
@@ -89,10 +89,10 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
 }
 
 /// An inadmissible part of the curve: no event, so it has no number.
-fn part(part: &Inadmissible, units: &UnitSystem) -> String {
+fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
     let OverlapReport { crest_wave, .. } = part.report;
     let wave = crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
-    format!(" ! inadmissible {}{wave}", part.report.text(units))
+    format!(" ! inadmissible {}{wave}", part.report.text(units, ascii))
 }
 
 /// The event of the limit point on which the walker stands.
