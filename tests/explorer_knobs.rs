@@ -66,8 +66,8 @@ fn in_si_what_a_group_changed_and_a_pin_have_units() {
     session.set("path.start_force", "-40 mN");
     let (level, text) = session.model.status();
     assert_eq!(level, Level::Error);
-    assert!(text.contains("no contact has the force -40000 µN; the smallest"), "{text}");
-    assert_eq!(text.matches(" µN").count(), 2, "{text}");
+    assert!(text.contains("no contact has the force -40000 uN; the smallest"), "{text}");
+    assert_eq!(text.matches(" uN").count(), 2, "{text}");
 }
 
 #[test]
