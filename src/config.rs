@@ -4,6 +4,9 @@
 //! [keys]
 //! next-limit = "n"
 //! step = ["Space", "F2"]
+//!
+//! [look]
+//! theme = "light"
 //! ```
 //!
 //! The names are those of the [command table](crate::explorer::command::ROWS); what is not named keeps its keys. A table
@@ -34,7 +37,17 @@ pub struct Config {
     pub name: String,
     /// Keys of commands, in the order of the file.
     pub keys: Vec<Binding>,
+    /// How the screen is to look: rows of [`LOOK`] with one of their words, in the order of the file.
+    pub look: Vec<(&'static str, &'static str)>,
 }
+
+/// The rows of `[look]` with the words each takes; `true` and `false` stand there without quotes.
+pub const LOOK: [(&str, &[&str]); 4] = [
+    ("theme", &["dark", "light", "mono"]),
+    ("charts", &["braille", "block", "ascii"]),
+    ("ascii", &["true", "false"]),
+    ("mouse", &["true", "false"]),
+];
 
 /// The keys of one command.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,7 +105,7 @@ impl fmt::Display for Listed<'_> {
 type Reader = fn(&mut Config, &DeTable<'_>, &mut Sheet<'_>);
 
 /// The tables of the file.
-const TABLES: [(&str, Reader); 1] = [("keys", keys)];
+const TABLES: [(&str, Reader); 2] = [("keys", keys), ("look", look)];
 
 /// The file of this person, which need not exist; `None` where there is no home.
 #[must_use]
@@ -130,7 +143,7 @@ pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
 /// # Errors
 /// Every line that is wrong.
 pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
-    let mut config = Config { name: name.to_owned(), keys: Vec::new() };
+    let mut config = Config { name: name.to_owned(), ..Config::default() };
     let mut sheet = Sheet { text, mistakes: Vec::new() };
     match DeTable::parse(text) {
         Err(error) => {
@@ -210,6 +223,26 @@ fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
     }
 }
 
+/// `[look]`: how the screen looks.
+fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
+    for (name, value) in table {
+        let at = name.span().start;
+        let Some((row, words)) = LOOK.iter().find(|(row, _)| *row == &**name.get_ref()) else {
+            sheet.unknown(at, "part of [look]", name.get_ref(), &LOOK.map(|(row, _)| row));
+            continue;
+        };
+        let word = match value.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            DeValue::Boolean(yes) => Some(yes.to_string()),
+            _ => None,
+        };
+        match words.iter().find(|known| word.as_deref() == Some(**known)) {
+            Some(word) => config.look.push((row, word)),
+            None => sheet.wrong(at, format!("{row} is one of {}", words.join(", "))),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -233,12 +266,19 @@ mod tests {
             [binding(Id::Step, &["Space", "F2"], 3), binding(Id::Jump, &[], 4), binding(Id::Undo, &["z"], 5)];
         assert_eq!(bindings, expected);
         assert_eq!(read("c", "").unwrap().keys, []);
+        let look = read("c", "[look]\ntheme = \"light\"\nmouse = true").unwrap().look;
+        assert!(look.contains(&("theme", "light")) && look.contains(&("mouse", "true")), "{look:?}");
     }
 
     #[test]
     fn what_is_wrong_is_said_with_its_line_and_the_nearest_name() {
         for (text, expected) in [
             ("[keys]\nstepp = \"x\"", "config.toml:2: no command is called \"stepp\"; did you mean step?"),
+            ("[look]\ntheme = \"drak\"", "config.toml:2: theme is one of dark, light, mono"),
+            (
+                "[look]\nthemes = 3",
+                "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",
+            ),
             ("[kys]", "config.toml:1: no table is called \"kys\"; did you mean keys?"),
             ("\nkeys = 3", "config.toml:2: keys is a table: [keys]"),
             ("[keys]\nstep = 3", "config.toml:2: step takes a key in quotes"),

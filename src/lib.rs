@@ -64,6 +64,7 @@ pub mod continuation;
 pub mod explorer;
 pub mod expression;
 pub mod figure;
+pub mod plot;
 pub mod preset;
 pub mod quasistatic;
 pub mod report;

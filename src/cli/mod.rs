@@ -13,8 +13,10 @@
 mod completions;
 mod explore;
 mod failure;
+mod figures;
 mod man;
 mod output;
+mod plot;
 mod presets;
 mod run;
 mod trace;
@@ -42,6 +44,8 @@ struct Cli {
     /// Take the settings of the explorer from this file; pulloff/config.toml in the configuration folder when left out
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    #[command(flatten)]
+    flags: explore::Flags,
 }
 
 #[derive(Debug, Subcommand)]
@@ -50,6 +54,10 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Draw a view as a figure for print
+    Plot(plot::Arguments),
+    /// Compute the figures of the paper again: pictures, numbers and captions
+    Figures(figures::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
     /// Run a script of the explorer's commands
@@ -107,9 +115,11 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem, cli.config.as_deref()),
+        None => explore::run(&cli.problem, cli.config.as_deref(), &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Plot(arguments)) => plot::run(arguments),
+        Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Run(arguments)) => run::run(arguments),
         Some(Command::Completions(arguments)) => completions::run(arguments),

@@ -4,7 +4,7 @@
 //! each id its keys.
 
 use super::model::{Model, Panel};
-use super::view::{Overlay, Window};
+use super::view::{Overlay, View, Window};
 use crate::preset::Key;
 use std::path::PathBuf;
 
@@ -21,6 +21,8 @@ pub enum Id {
     PreviousLimit,
     /// Let the edge run at constant control.
     Jump,
+    /// The state of a contact radius.
+    MoveTo,
     /// Walk the other way.
     Reverse,
     /// Halve the step length.
@@ -31,6 +33,8 @@ pub enum Id {
     StepLength,
     /// Back to the node before.
     Undo,
+    /// Back to where the last command began.
+    UndoCommand,
     /// Forward again.
     Redo,
     /// Back to the start state.
@@ -95,6 +99,10 @@ pub enum Id {
     SaveAs,
     /// Write the curve, the walk, the events or a script to a file.
     Export,
+    /// Put something into the clipboard.
+    Copy,
+    /// Take the mouse, or leave it to the terminal.
+    Mouse,
     /// Type a command.
     CommandLine,
     /// The help screen.
@@ -163,8 +171,19 @@ pub enum Command {
     TakeBack,
     /// List the profiles in this folder; without one, in that of the preset's own profile.
     Browse(Option<PathBuf>),
-    /// Closer to a place of the first view, or further away.
+    /// Select a panel, and a line of it.
+    Pick {
+        /// The panel.
+        panel: Panel,
+        /// The line.
+        line: Option<usize>,
+    },
+    /// Go to the state of this contact radius, in the user's units.
+    MoveTo(f64),
+    /// Closer to a place of a view, or further away.
     Zoom {
+        /// The view.
+        view: View,
         /// Whether closer.
         closer: bool,
         /// The place that stays where it is, in shares of the window.
@@ -183,6 +202,8 @@ pub enum Command {
         /// The values, as on a command line.
         assignments: Vec<Assignment>,
     },
+    /// Delete the person's own preset of this name, for good.
+    Delete(String),
     /// Save under this name.
     SaveAs {
         /// The name.
@@ -194,6 +215,15 @@ pub enum Command {
     },
     /// Save although the file was changed by somebody else meanwhile.
     SaveAnyway,
+    /// Write a text, such as the screen, to a file ending in `.txt`.
+    ExportText {
+        /// The text.
+        text: String,
+        /// The path.
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         /// The document.
@@ -220,17 +250,19 @@ impl Command {
             Self::RunOf(_) => Id::Run,
             Self::StepLength(_) => Id::StepLength,
             Self::SelectEvent(_) => Id::SelectEvent,
+            Self::MoveTo(_) => Id::MoveTo,
             Self::Assign(_) => Id::Assign,
             Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
+            Self::Pick { .. } => Id::NextPanel,
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
             Self::Unpin(_) => Id::Pins,
-            Self::Open(_) | Self::OpenWith { .. } => Id::Open,
+            Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportText { .. } => Id::Export,
         }
     }
 }
@@ -331,6 +363,17 @@ pub static ROWS: &[Row] = &[
         can_jump,
     ),
     taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", walking)),
+    taking(
+        "contact radius",
+        row(
+            Id::MoveTo,
+            "move-to",
+            WALK,
+            "move to",
+            "the walker to the state of a contact radius on the curve",
+            has_curve,
+        ),
+    ),
     row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", walking),
     row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
     row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
@@ -346,6 +389,14 @@ pub static ROWS: &[Row] = &[
         ),
     ),
     row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
+    row(
+        Id::UndoCommand,
+        "undo-command",
+        WALK,
+        "undo all",
+        "back to where the last command began: a run, a count of steps",
+        can_undo,
+    ),
     row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
     row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
     taking(
@@ -381,7 +432,7 @@ pub static ROWS: &[Row] = &[
             "edit",
             VALUES,
             "type value",
-            "type the selected value, or choose it; in Events: go to the selected event",
+            "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there",
             always,
         ),
     ),
@@ -441,7 +492,10 @@ pub static ROWS: &[Row] = &[
     ),
     row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", has_curve),
     taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", has_pins)),
-    taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
+    taking(
+        "preset",
+        row(Id::Open, "open", FILES, "open", "open a preset; D in the list deletes one of your own", always),
+    ),
     row(Id::Save, "save", FILES, "save", "save the preset", always),
     taking(
         "name",
@@ -454,9 +508,17 @@ pub static ROWS: &[Row] = &[
             "export",
             FILES,
             "export",
-            "write curve, walk or events as CSV or JSON, or the session as a script",
+            "write curve, walk or events as CSV or JSON, the session as a script, the screen as text",
             always,
         ),
+    ),
+    row(
+        Id::Copy,
+        "copy",
+        FILES,
+        "copy",
+        "the state, the events, the chart or the screen into the terminal's clipboard",
+        always,
     ),
     row(
         Id::CommandLine,
@@ -464,6 +526,14 @@ pub static ROWS: &[Row] = &[
         PROGRAM,
         "command",
         "type a command by its name; Tab completes, up and down bring lines back",
+        always,
+    ),
+    row(
+        Id::Mouse,
+        "mouse",
+        PROGRAM,
+        "mouse",
+        "take the mouse (click, wheel), or leave it to the terminal to select text",
         always,
     ),
     row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", always),

@@ -10,7 +10,7 @@ use crate::contact::Control;
 use crate::contact::shapes::Rows;
 use crate::preset::changes::{changes, differences};
 use crate::preset::measured;
-use crate::preset::text::quote;
+use crate::preset::text::{quote, show_path};
 use crate::preset::{
     Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
 };
@@ -96,6 +96,8 @@ pub enum Job {
         /// Other values for some of its keys.
         assignments: Vec<Assignment>,
     },
+    /// Delete a preset of the person's own.
+    Delete(String),
     /// Give some keys other values, that of a file among them.
     Assign {
         /// The preset.
@@ -137,6 +139,15 @@ pub enum Job {
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
     },
+    /// Write a text.
+    Write {
+        /// The text.
+        text: String,
+        /// The path as typed.
+        path: String,
+        /// Whether a file there may be replaced.
+        replace: bool,
+    },
     /// Export a document.
     Export {
         /// Which, and what is in it.
@@ -163,6 +174,8 @@ pub enum Done {
     Read(Arc<Rows>),
     /// A preset was opened.
     Opened(Box<Loaded>),
+    /// A preset was deleted: its file, safe to show, and what is left.
+    Deleted(String, Box<Listing>),
     /// The preset was saved.
     Saved {
         /// Where.
@@ -180,6 +193,8 @@ pub enum Done {
     Exported(String),
     /// A file of this name exists: not written.
     FileExists(Document, String),
+    /// The same of this text, at this path.
+    TextExists(String, String),
     /// It failed, in words; nothing was changed.
     Failed(String),
 }
@@ -201,6 +216,10 @@ pub fn run(store: &Store, job: Job) -> Done {
             let loaded = store.resolve(&name).and_then(|source| store.load(&source, &assignments));
             loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
         }
+        Job::Delete(name) => match store.delete(&name) {
+            Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
+            Err(error) => Done::Failed(format!("not deleted: {error}")),
+        },
         Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
             Ok(folder) => Done::Browsed(Box::new(folder)),
             Err(reason) => Done::Failed(reason),
@@ -238,6 +257,10 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }
+        Job::Write { text, path, replace } => match put(&path, &text, replace) {
+            Err(WriteError::Exists { .. }) => Done::TextExists(text, path),
+            result => exported(path, result),
+        },
         Job::Export { content, path, replace } => {
             let as_json =
                 Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
@@ -249,13 +272,23 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Ok(text) => text,
                 Err(error) => return Done::Failed(format!("not exported: {error}")),
             };
-            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-            match write_atomically(&target(&path), text.as_bytes(), overwrite) {
-                Ok(_) => Done::Exported(path),
+            match put(&path, &text, replace) {
                 Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
-                Err(error) => Done::Failed(format!("not exported: {error}")),
+                result => exported(path, result),
             }
         }
+    }
+}
+
+fn put(path: &str, text: &str, replace: bool) -> Result<Fingerprint, WriteError> {
+    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+    write_atomically(&target(path), text.as_bytes(), overwrite)
+}
+
+fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
+    match result {
+        Ok(_) => Done::Exported(path),
+        Err(error) => Done::Failed(format!("not exported: {error}")),
     }
 }
 

@@ -74,6 +74,8 @@ pub struct Node {
     pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
+    /// The number of the walk request that made it: what one command made has one number.
+    pub request: u64,
 }
 
 impl Node {

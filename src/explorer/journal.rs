@@ -148,10 +148,15 @@ impl Journal {
                 self.sync(preset, way, false);
                 self.write(&Id::Jump.into());
             }
-            Action::MoveTo(_) => {
+            Action::MoveTo(s) => {
+                let case = &walking.curve.setting.case;
                 self.sync(preset, None, false);
-                self.write(&Id::Restart.into());
-                self.turned_inward();
+                if s.total_cmp(&case.start).is_eq() {
+                    self.write(&Id::Restart.into());
+                    self.turned_inward();
+                } else {
+                    self.write(&Command::MoveTo(product(s, case.units().length)));
+                }
             }
             Action::MoveToEvent { event, .. } => {
                 self.sync(preset, None, false);
@@ -235,6 +240,13 @@ impl Journal {
         self.bytes += line.len();
         self.lines.push(line);
     }
+}
+
+/// The number that is `x` again when it is divided by `unit`, where rounding leaves one.
+fn product(x: f64, unit: f64) -> f64 {
+    let near = x * unit;
+    let all = [near, near.next_up(), near.next_down()];
+    all.into_iter().find(|y| (y / unit).total_cmp(&x).is_eq()).unwrap_or(near)
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
+//! | [`progress`] | how far a curve that is computed has come |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
@@ -40,6 +41,7 @@ pub mod model;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
+pub mod progress;
 pub mod script;
 pub mod theory;
 pub mod update;
@@ -52,5 +54,6 @@ pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
 pub use journal::Journal;
 pub use model::{Axes, EventSource, Level, Model, Panel};
+pub use progress::Progress;
 pub use update::{answer, open, update};
 pub use view::{Overlay, Overlays, View, Window};

@@ -6,9 +6,11 @@ use super::history::{History, Mark, Node, NodeKind};
 use super::journal::Journal;
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
+use super::progress::Progress;
 use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
+use crate::preset::groups::GROUPS;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
 use std::collections::VecDeque;
@@ -59,6 +61,19 @@ pub enum Question {
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::files::Document, String),
+    /// Replace the file by this text; its path.
+    ReplaceText(String, String),
+}
+
+/// A walk request that is running.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Walking {
+    /// Its number.
+    pub id: u64,
+    /// The states it has made.
+    pub made: usize,
+    /// Those it was asked for; a run goes on until something happens.
+    pub wanted: Option<usize>,
 }
 
 /// How much a message matters.
@@ -91,6 +106,8 @@ pub struct Model {
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
+    /// How far the curve is that is being computed, once that takes long.
+    pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<u64>,
     /// The last stiffness of the device, in the user's units.
@@ -106,7 +123,7 @@ pub struct Model {
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
     /// The walk request that is running.
-    pub walking: Option<u64>,
+    pub walking: Option<Walking>,
     /// What is to be walked after it.
     pub queue: VecDeque<Action>,
     /// The panel selected.
@@ -191,6 +208,7 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
+            progress: None,
             checking: None,
             stiffness: None,
             device: None,
@@ -241,13 +259,15 @@ impl Model {
         self.curve_shown < self.curve_wanted
     }
 
-    /// The parameters with a knob, in the table's order, and their values; no value follows from others.
+    /// The parameters with a knob, in the table's order, and their values, of which none follows from others; behind
+    /// them the dimensionless groups that can be set.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
-        // The title last: the numbers are what is turned.
+        // The title behind the numbers, which are what is turned.
         let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
+            .chain(GROUPS.iter().map(Row::Borrowed))
             .map(|row| (row.clone(), self.preset.get(&row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()

@@ -76,7 +76,7 @@ fn typed(row: &Parameter, value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::model::tests::any_preset;
+    use crate::preset::examples::any_preset;
     use crate::preset::{read, shipped};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;

@@ -3,7 +3,9 @@
 mod gap;
 mod help;
 mod line;
+mod mouse;
 
+use super::copy::{self, Content};
 use super::keymap::Keymap;
 use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
@@ -14,17 +16,25 @@ use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
 use crate::preset::schema::Kind;
-use crate::preset::text::sanitize;
+use crate::preset::text::{sanitize, show_path};
 use crate::preset::{Loaded, Source, Value};
 use crate::report::number::with_unit;
 use crate::units::Quantity;
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
+use ratatui::layout::Rect;
 use tui_input::backend::crossterm::EventHandler;
 
 /// Longest count typed before a command.
 const COUNT: usize = 9999;
 /// Longest line typed or pasted.
 const LINE: usize = 4096;
+
+/// The question before the deletion of a preset of one's own; what ships with the program stays.
+fn deletion(source: &Source) -> Option<Box<Confirm>> {
+    let Source::User { name, path } = source else { return None };
+    let question = format!("Delete {} for good? y deletes it, Esc goes back.", show_path(path));
+    Some(Box::new(Confirm { question, yes: Command::Delete(name.clone()) }))
+}
 
 /// The explorer as a person sees it.
 #[derive(Debug)]
@@ -41,6 +51,12 @@ pub struct App {
     pub keymap: Keymap,
     /// The commands typed so far.
     pub typed: line::Typed,
+    /// Whether the mouse is taken from the terminal.
+    pub mouse: bool,
+    /// What is to be put into the clipboard.
+    pub clipboard: Option<String>,
+    /// The screen as last drawn.
+    pub screen: Rect,
 }
 
 impl App {
@@ -55,6 +71,9 @@ impl App {
                 theme,
                 keymap: Keymap::default(),
                 typed: line::Typed::default(),
+                mouse: false,
+                clipboard: None,
+                screen: Rect::ZERO,
             },
             effects,
         )
@@ -97,8 +116,9 @@ impl App {
         effects
     }
 
-    /// The screen has room for so many views.
-    pub fn make_room(&mut self, views: usize) -> Vec<Effect> {
+    /// The screen is so large, and has room for so many views.
+    pub fn make_room(&mut self, screen: Rect, views: usize) -> Vec<Effect> {
+        self.screen = screen;
         make_room(&mut self.model, views)
     }
 
@@ -137,11 +157,12 @@ impl App {
                 .map(|entry| Item {
                     text: format!("{:<14} {}", entry.name, sanitize(&shown(&entry.title), 90)),
                     action: Action::Command(Command::Open(entry.name.clone())),
+                    delete: deletion(&entry.source),
                 })
                 .collect();
             let note = "a path with a / or ending in .toml";
             let prompt = Prompt::new("Open a file", note, String::new(), Purpose::Path);
-            items.push(Item { text: "a file ...".to_owned(), action: Action::Prompt(Box::new(prompt)) });
+            items.push(Item::new("a file ...", Action::Prompt(Box::new(prompt))));
             self.choose("Open a preset", items, 0);
             return;
         }
@@ -158,6 +179,10 @@ impl App {
             Some(Question::ReplaceFile(what, path)) => {
                 let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
                 self.ask(question, Command::Export { what, path, replace: true });
+            }
+            Some(Question::ReplaceText(text, path)) => {
+                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+                self.ask(question, Command::ExportText { text, path, replace: true });
             }
         }
     }
@@ -201,12 +226,18 @@ impl App {
             Id::Save if matches!(self.model.source, Source::Shipped(_)) => self.ask_name(),
             Id::SaveAs => self.ask_name(),
             Id::Export => self.ask_export(),
+            Id::Copy => self.ask_copy(),
             Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
             Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
             Id::ZoomIn | Id::ZoomOut => {
                 let about = self.walker_place();
-                self.run(Command::Zoom { closer: id == Id::ZoomIn, about })
+                self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
             }
+            Id::Mouse => {
+                self.switch_mouse();
+                Vec::new()
+            }
+            Id::Edit if self.model.panel == Panel::Charts => self.go_to_cross_hair(),
             Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
             id => self.run(id.into()),
         }
@@ -223,10 +254,7 @@ impl App {
             Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
         };
         if self.has_data() {
-            let item = |text: &str, with_data| Item {
-                text: text.to_owned(),
-                action: Action::Prompt(Box::new(prompt(with_data))),
-            };
+            let item = |text: &str, with_data| Item::new(text, Action::Prompt(Box::new(prompt(with_data))));
             let items = vec![
                 item("the preset       the data stay where they are", false),
                 item("save with data   the data are copied beside the preset", true),
@@ -257,15 +285,48 @@ impl App {
                 Document::Events => "events  the instabilities listed",
                 Document::Script => "script  what was done, for pulloff run",
             };
-            Item { text: text.to_owned(), action: Action::Prompt(Box::new(prompt)) }
+            Item::new(text, Action::Prompt(Box::new(prompt)))
         });
-        self.choose("Export", items.to_vec(), 0);
+        let text = copy::text(self, Content::Screen);
+        let file = format!("{}-screen.txt", sanitize(&base, 60));
+        let prompt = Prompt::new("Export the screen to", "a file ending in .txt", file, Purpose::Text(text));
+        let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
+        self.choose("Export", items.into_iter().chain([screen]).collect(), 0);
         Vec::new()
     }
 
-    /// Where the walker stands in the window of the first view, or its middle.
+    fn ask_copy(&mut self) -> Vec<Effect> {
+        let items = Content::ALL.map(|content| {
+            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Action::Copy(content))
+        });
+        self.choose("Copy", items.to_vec(), 0);
+        Vec::new()
+    }
+
+    /// Text for the clipboard, if it is not too long for it.
+    fn copy(&mut self, content: Content) {
+        let text = copy::text(self, content);
+        let (level, told) = if text.len() > copy::LONGEST {
+            let told = format!("{} bytes are more than terminals take: e exports to a file", text.len());
+            (Level::Error, told)
+        } else {
+            let told = format!(
+                "{} of {} bytes sent to the terminal's clipboard; if it takes none, e exports to a file",
+                content.name(),
+                text.len()
+            );
+            self.clipboard = Some(text);
+            (Level::Info, told)
+        };
+        self.model.message = Some((level, told));
+    }
+
+    /// The cross-hair, or where the walker stands in the window of the first view, or its middle.
     fn walker_place(&self) -> (f64, f64) {
         let view = self.model.view;
+        if let Some(cross) = self.model.cross {
+            return cross;
+        }
         let place = Subject::of(&self.model).and_then(|subject| {
             let figure = subject.figure(view);
             figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
@@ -284,7 +345,7 @@ impl App {
                 (Overlay::Envelope, None) => "envelope of small waves: needs waves and adhesion".to_owned(),
             };
             let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
-            Item { text: format!("[{on}] {name}"), action: Action::Command(Command::Overlay(overlay)) }
+            Item::new(format!("[{on}] {name}"), Action::Command(Command::Overlay(overlay)))
         });
         self.choose("Theory over the curve", items.to_vec(), selected);
         Vec::new()
@@ -293,12 +354,13 @@ impl App {
     fn ask_pins(&mut self) -> Vec<Effect> {
         let pins = self.model.pins.all().iter();
         let mut items: Vec<Item> = pins
-            .map(|pin| Item {
-                text: format!("{}  {}", pin.number, self.theme.symbols(&pin.name(&self.model.preset))),
-                action: Action::Command(Command::Unpin(Some(pin.number))),
+            .map(|pin| {
+                let name = self.theme.symbols(&pin.name(&self.model.preset));
+                let text = format!("{}  {name}", pin.number);
+                Item::new(text, Action::Command(Command::Unpin(Some(pin.number))))
             })
             .collect();
-        items.push(Item { text: "all".to_owned(), action: Action::Command(Command::Unpin(None)) });
+        items.push(Item::new("all", Action::Command(Command::Unpin(None))));
         self.choose("Take a pinned curve away", items, 0);
         Vec::new()
     }
@@ -406,8 +468,19 @@ impl App {
                         self.overlay = Some(Over::Prompt(*prompt));
                         Vec::new()
                     }
+                    Some(Action::Copy(content)) => {
+                        self.copy(content);
+                        Vec::new()
+                    }
                     None => Vec::new(),
                 };
+            }
+            _ if matches!(key.code, KeyCode::Char('D') | KeyCode::Delete) => {
+                if let Some(confirm) = choose.items.get(choose.selected).and_then(|item| item.delete.clone())
+                {
+                    self.overlay = Some(Over::Confirm(*confirm));
+                    return Vec::new();
+                }
             }
             _ => {}
         }

@@ -5,6 +5,7 @@ use crate::explorer::Command;
 use crate::explorer::files::Document;
 use crate::figure::Figure;
 use crate::preset::Key;
+use crate::tui::copy::Content;
 use tui_input::Input;
 
 /// What lies over the screen.
@@ -53,6 +54,8 @@ pub enum Purpose {
     },
     /// The file to export to.
     File(Document),
+    /// The file for this text.
+    Text(String),
     /// The path of a preset to open.
     Path,
     /// A command of the script grammar.
@@ -100,6 +103,7 @@ impl Purpose {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
             Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
+            Self::Text(content) => Command::ExportText { text: content, path: text, replace: false },
             Self::Path => Command::Open(text),
             Self::Line => return None,
         })
@@ -126,6 +130,15 @@ pub struct Item {
     pub text: String,
     /// What it does.
     pub action: Action,
+    /// What is asked before it is deleted, and what does it; nothing where it cannot be.
+    pub delete: Option<Box<Confirm>>,
+}
+
+impl Item {
+    /// A line that cannot be deleted.
+    pub fn new(text: impl Into<String>, action: Action) -> Self {
+        Self { text: text.into(), action, delete: None }
+    }
 }
 
 /// What choosing a line does.
@@ -135,6 +148,8 @@ pub enum Action {
     Command(Command),
     /// Asks for a line.
     Prompt(Box<Prompt>),
+    /// Puts something into the clipboard.
+    Copy(Content),
 }
 
 /// A question.

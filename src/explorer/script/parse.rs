@@ -84,6 +84,8 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Device
             | Id::Overlays
             | Id::CommandLine
+            | Id::Copy
+            | Id::Mouse
             | Id::Help
             | Id::Cancel
     )
@@ -157,6 +159,7 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         Id::Run if !bare => Command::RunOf(count(rest.need("a number of states")?, MOST_STEPS)?),
         Id::StepLength => Command::StepLength(length(rest.need("a length")?)?),
         Id::SelectEvent => Command::SelectEvent(count(rest.need("the number of an event")?, MOST_STEPS)?),
+        Id::MoveTo => Command::MoveTo(radius(rest.need("a contact radius")?)?),
         Id::Assign => {
             let first = assignment(rest.need("KEY=VALUE")?)?;
             Command::Assign(assignments(vec![first], &mut rest)?)
@@ -205,6 +208,17 @@ fn count(word: &Word, most: usize) -> Result<usize, Fault> {
     let found = word.text.parse().ok().filter(|count| (1..=most).contains(count));
     found.ok_or_else(|| {
         Fault::new(word.column, format!("\"{}\" is no number from 1 to {most}", quote(&word.text)))
+    })
+}
+
+fn radius(word: &Word) -> Result<f64, Fault> {
+    let found = word.text.parse().ok().filter(|radius: &f64| radius.is_finite() && *radius > 0.0);
+    found.ok_or_else(|| {
+        let quoted = quote(&word.text);
+        Fault::new(
+            word.column,
+            format!("\"{quoted}\" is no contact radius: a positive number in the preset's units"),
+        )
     })
 }
 

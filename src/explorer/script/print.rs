@@ -11,7 +11,7 @@ pub fn line(command: &Command) -> Option<String> {
     let rest = match command {
         Command::Plain(_) => String::new(),
         Command::Steps(count) | Command::RunOf(count) | Command::SelectEvent(count) => format!(" {count}"),
-        Command::StepLength(length) => format!(" {length:?}"),
+        Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
         Command::Assign(all) => assignments(all)?,
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
         Command::Unpin(None) => " all".to_owned(),
@@ -30,6 +30,9 @@ pub fn line(command: &Command) -> Option<String> {
         | Command::Try { .. }
         | Command::TakeBack
         | Command::Browse(_)
+        | Command::Pick { .. }
+        | Command::Delete(_)
+        | Command::ExportText { .. }
         | Command::Zoom { .. } => return None,
     };
     Some(format!("{name}{rest}"))

@@ -53,10 +53,27 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
     vec![file(Job::Export { content, path, replace })]
 }
 
+pub(super) fn export_text(model: &mut Model, text: String, path: String, replace: bool) -> Vec<Effect> {
+    if ends_in(&path, &["txt"]) {
+        return vec![file(Job::Write { text, path, replace })];
+    }
+    tell(model, Level::Error, "the file must end in .txt");
+    Vec::new()
+}
+
+fn ends_in(path: &str, endings: &[&str]) -> bool {
+    let ending = std::path::Path::new(path).extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+}
+
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
         Done::Listed(listing) => model.listing = Some(*listing),
         Done::Named(names) => model.preset_names = names,
+        Done::Deleted(path, listing) => {
+            tell(model, Level::Info, format!("deleted {path}; what is on the screen stays"));
+            model.listing = Some(*listing);
+        }
         Done::Browsed(folder) => model.folder = Some(*folder),
         Done::Assigned(preset) => {
             model.untried = None;
@@ -92,6 +109,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::FileExists(what, path) => {
             tell(model, Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
+        }
+        Done::TextExists(text, path) => {
+            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.question = Some(Question::ReplaceText(text, path));
         }
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }

@@ -12,16 +12,18 @@ use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
 use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
+use crate::explorer::pins::labelled;
 use crate::explorer::walk::Action;
 use crate::preset::schema::Kind;
-use crate::preset::text::{show_name, show_path};
-use crate::preset::{Preset, Value};
+use crate::preset::text::{greek, show_name, show_path};
+use crate::preset::{Preset, Value, groups};
 use std::path::Path;
 use std::sync::Arc;
 
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
+    model.progress = None;
     // The curve does not know what is controlled: under another control it need not be swept again.
     let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
     let sweep = known.map(Arc::clone);
@@ -173,11 +175,25 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     let Some((row, _)) = model.selected_knob() else { return Vec::new() };
     let contact = contact_stiffness(model);
     match nudge(&model.preset, &row, up, amount, contact) {
-        Ok(preset) => change(model, preset),
+        Ok(preset) => {
+            tell_effect(model, &row.key, &preset);
+            change(model, preset)
+        }
         Err(reason) => {
             tell(model, Level::Error, reason);
             Vec::new()
         }
+    }
+}
+
+/// A group is not stored: what it changed instead is said, with the new values.
+fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
+    let Some([_, held]) = groups::effect(key) else { return };
+    let moved = changed.rows().filter(|row| model.preset.get(&row.key) != changed.get(&row.key));
+    let values: Vec<String> =
+        moved.filter_map(|row| Some(labelled(&row, &changed.get(&row.key)?, &changed.units))).collect();
+    if !values.is_empty() {
+        tell(model, Level::Info, greek(&format!("changed: {}; {held} held", values.join(", "))));
     }
 }
 
@@ -193,6 +209,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     match result {
         Ok(()) => {
             model.untried = None;
+            tell_effect(model, &row.key, &preset);
             change(model, preset)
         }
         Err(invalid) => {

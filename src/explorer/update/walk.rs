@@ -6,7 +6,7 @@ use crate::explorer::command::Id;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::Effect;
 use crate::explorer::history::{Node, NodeKind};
-use crate::explorer::model::{LENGTHS, Level, Model};
+use crate::explorer::model::{LENGTHS, Level, Model, Walking};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use std::sync::Arc;
 
@@ -53,7 +53,8 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let from = node.map(|node| node.point.clone());
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = number(model);
-    model.walking = Some(id);
+    let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
+    model.walking = Some(Walking { id, made: 0, wanted });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
@@ -62,12 +63,11 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
 }
 
 pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
-    if model.walking != Some(id) {
-        return Vec::new();
-    }
+    let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else { return Vec::new() };
+    walking.made += made.len();
     model.journal.made(made.len());
     for state in made {
-        append(model, state);
+        append(model, id, state);
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
@@ -81,7 +81,10 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         // The end of a run is no error, but nothing follows from it either.
         Outcome::Paused => {
             model.queue.clear();
-            tell(model, Level::Info, "paused");
+            // Otherwise another value ended it, whose curve is to be told of.
+            if !model.is_computing() {
+                tell(model, Level::Info, "paused; Space steps, r runs on");
+            }
         }
         Outcome::Ended(reason) => {
             model.queue.clear();
@@ -91,7 +94,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             model.queue.clear();
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
             if unsolved {
-                mark_stale(model, &reason);
+                mark_stale(model, id, &reason);
             }
             tell(model, Level::Error, reason);
         }
@@ -116,7 +119,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     }
 }
 
-fn append(model: &mut Model, state: Made) {
+fn append(model: &mut Model, request: u64, state: Made) {
     let current = model.history.current();
     let again = current.is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
     let beside = state.kind == NodeKind::Solved && again;
@@ -137,23 +140,25 @@ fn append(model: &mut Model, state: Made) {
         digits: state.digits,
         from_exact: state.from_exact,
         begins: state.begins,
+        request,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.
     if beside { model.history.push_beside(node) } else { model.history.push(node) }
 }
 
 /// A state that could not be solved for the new values stays, marked, with the reason.
-fn mark_stale(model: &mut Model, reason: &str) {
+fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     let Some(node) = model.history.current().cloned() else { return };
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
     let step = node.step + usize::from(!again);
-    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step, begins: false, ..node };
+    let kind = NodeKind::Stale(reason.to_owned());
+    let stale = Node { kind, step, begins: false, request, ..node };
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
-    model.walking.map(Effect::StopWalk).into_iter().collect()
+    model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
@@ -167,12 +172,20 @@ pub(super) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 
-/// Undo and redo: the parameters of the node come back with it.
+/// Undo, undo of a whole command, and redo: the parameters of the node come back with it.
 pub(super) fn travel(model: &mut Model, id: Id) -> Vec<Effect> {
     let mut effects = abandon(model);
-    let has_gone = if id == Id::Redo { model.history.redo() } else { model.history.undo() };
+    let request = model.history.current().map(|node| node.request);
+    let mut has_gone = false;
+    while if id == Id::Redo { model.history.redo() } else { model.history.undo() } {
+        has_gone = true;
+        // One by one: a replay makes its states by other commands.
+        model.journal.travelled(if id == Id::Redo { id } else { Id::Undo }, model.history.current());
+        if id != Id::UndoCommand || model.history.current().map(|node| node.request) != request {
+            break;
+        }
+    }
     if has_gone {
-        model.journal.travelled(id, model.history.current());
         effects.extend(adopt_parameters(model));
     }
     effects
@@ -216,5 +229,6 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         digits: curve.sweep.digits,
         from_exact: from_exact(&curve.setting.case, &state),
         begins: true,
+        request: 0,
     });
 }

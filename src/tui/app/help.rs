@@ -32,7 +32,7 @@ impl App {
             (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
             _ => {}
         }
-        help.line = help.line.min(plain(self.theme, &self.keymap).len());
+        help.line = help.line.min(plain(self).len());
         self.overlay = Some(Overlay::Help(help));
     }
 
@@ -60,7 +60,7 @@ impl App {
     /// The next place of the pattern, or the one before, round and round; the first one not above what is shown.
     fn look(&self, help: &mut Help, down: bool) {
         let wanted = help.pattern.to_lowercase();
-        let lines = plain(self.theme, &self.keymap);
+        let lines = plain(self);
         let places: Vec<usize> = (0..lines.len())
             .filter(|line| !wanted.is_empty() && lines[*line].to_lowercase().contains(&wanted))
             .collect();

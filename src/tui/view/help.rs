@@ -1,13 +1,14 @@
 //! The help, read from the one table of commands.
 
 use super::panel;
+use crate::explorer::Model;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;
-use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
@@ -21,13 +22,27 @@ const READING: &[&str] = &[
     "Views follow each other with t: three of the curve, then the pressure in the disc, the gap outside it and the",
     "potential over the radius at the walker's state, and the unloading with its losses hatched. In the potential",
     "m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the crests.",
+    "Along the curve w marks the states walked and j a jump; letters and dashes tell lines apart without colour.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
-fn text(theme: Theme, keymap: &Keymap) -> Vec<Line<'static>> {
-    let mut lines = Vec::new();
+/// What narrow screens cut elsewhere, whole: the status, warnings, notes.
+fn now(theme: Theme, model: &Model) -> Vec<Line<'static>> {
+    let mut lines = vec![Line::default(), Line::styled("Now", theme.strong())];
+    lines.push(Line::raw(format!("  {}", theme.text(&model.status().1))));
+    if let Some(curve) = &model.curve {
+        let line = |text: &String, style| Line::styled(format!("  {}", theme.text(text)), style);
+        lines.extend(curve.sweep.warnings.iter().map(|text| line(&format!("! {text}"), theme.error())));
+        lines.extend(curve.sweep.notes.iter().map(|text| line(text, Style::new())));
+    }
+    lines
+}
+
+fn text(app: &App) -> Vec<Line<'static>> {
+    let (theme, keymap) = (app.theme, &app.keymap);
+    let mut lines = now(theme, &app.model);
     let mut section = "";
     for row in ROWS {
         if row.section != section {
@@ -52,8 +67,8 @@ fn text(theme: Theme, keymap: &Keymap) -> Vec<Line<'static>> {
 }
 
 /// The lines as they are searched.
-pub fn plain(theme: Theme, keymap: &Keymap) -> Vec<String> {
-    text(theme, keymap).iter().map(Line::to_string).collect()
+pub fn plain(app: &App) -> Vec<String> {
+    text(app).iter().map(Line::to_string).collect()
 }
 
 fn title(help: &Help) -> String {
@@ -70,7 +85,7 @@ fn title(help: &Help) -> String {
 /// Draws the help over the screen, from its first line shown on.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
-    let mut lines = text(theme, &app.keymap);
+    let mut lines = text(app);
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
     let block = panel(theme, &title(help), true);
     let inner = block.inner(area);

@@ -1,5 +1,6 @@
 //! What the state is and which key is next; and the keys.
 
+use super::fitted;
 use super::legend::reading;
 use crate::explorer::Id;
 use crate::explorer::command::row_of;
@@ -40,13 +41,17 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let theme = app.theme;
     // The cross-hair is read while nothing else is to be told.
     let reading = if app.model.message.is_none() { reading(&app.model) } else { None };
+    let is_reading = reading.is_some();
     let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
-    let count = app.count.map_or_else(String::new, |count| format!("{count} "));
-    let line = Line::from(vec![
-        Span::styled(format!(" {count}"), theme.key()),
-        Span::styled(theme.text(&text), style),
-    ]);
+    let count = app.count.map_or_else(|| " ".to_owned(), |count| format!(" {count} "));
+    let room = usize::from(status.width).saturating_sub(count.len());
+    // The help has the status whole, and can be opened while nothing else is open.
+    let text = match theme.text(&text) {
+        text if app.overlay.is_some() || is_reading => text,
+        text => fitted(&app.keymap, &text, "", room),
+    };
+    let line = Line::from(vec![Span::styled(count, theme.key()), Span::styled(text, style)]);
     frame.render_widget(line, status);
 
     let mut spans = vec![Span::raw(" ")];
