@@ -10,10 +10,15 @@
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
 
+mod completions;
 mod explore;
 mod failure;
+mod figures;
+mod man;
 mod output;
+mod plot;
 mod presets;
+mod run;
 mod sessions;
 mod trace;
 mod unload;
@@ -26,6 +31,7 @@ use crate::report::OverlapReport;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
@@ -40,6 +46,11 @@ struct Cli {
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["preset", "assignments"])]
     resume: Option<String>,
+    /// Take the settings of the explorer from this file; pulloff/config.toml in the configuration folder when left out
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    flags: explore::Flags,
 }
 
 #[derive(Debug, Subcommand)]
@@ -48,14 +59,24 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Draw a view as a figure for print
+    Plot(plot::Arguments),
+    /// Compute the figures of the paper again: pictures, numbers and captions
+    Figures(figures::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
+    /// Run a script of the explorer's commands
+    Run(run::Arguments),
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
     /// List, show and delete sessions of the explorer
     #[command(subcommand)]
     Sessions(sessions::Command),
+    /// Write the completions of a shell to standard output
+    Completions(completions::Arguments),
+    /// Write the manual page to standard output
+    Man,
 }
 
 /// Which problem, as the explorer and every computing command take it.
@@ -102,10 +123,15 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem, cli.resume.as_deref()),
+        None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Plot(arguments)) => plot::run(arguments),
+        Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
+        Some(Command::Run(arguments)) => run::run(arguments),
+        Some(Command::Completions(arguments)) => completions::run(arguments),
+        Some(Command::Man) => man::run(),
         Some(Command::Presets(command)) => presets::run(command),
         Some(Command::Sessions(command)) => sessions::run(command),
     };

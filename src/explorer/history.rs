@@ -98,6 +98,8 @@ pub struct Node {
     pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
+    /// The number of the walk request that made it: what one command made has one number.
+    pub request: u64,
 }
 
 impl Node {
@@ -126,6 +128,14 @@ struct Entry {
     node: Node,
     /// The child last gone to.
     forward: Option<usize>,
+}
+
+/// A place to come back to: a node, and the child last gone to from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mark {
+    cursor: Option<usize>,
+    forward: Option<usize>,
+    numbering: u64,
 }
 
 /// The tree. A clone is cheap however long the walk: what is not changed afterwards stays shared.
@@ -208,7 +218,7 @@ impl History {
 
     /// A tree of the same revision without its nodes: to see later whether anything has changed, not to hold them.
     #[must_use]
-    pub fn mark(&self) -> Self {
+    pub fn stamp(&self) -> Self {
         Self { revision: self.revision, ..Self::default() }
     }
 
@@ -227,10 +237,14 @@ impl History {
     }
 
     fn set_forward(&mut self, number: usize, child: usize) {
+        self.set_forward_to(number, Some(child));
+    }
+
+    fn set_forward_to(&mut self, number: usize, child: Option<usize>) {
         if let Some(chunk) = self.chunks.get_mut(number / CHUNK)
-            && chunk.get(number % CHUNK).is_some_and(|entry| entry.forward != Some(child))
+            && chunk.get(number % CHUNK).is_some_and(|entry| entry.forward != child)
         {
-            Arc::make_mut(chunk)[number % CHUNK].forward = Some(child);
+            Arc::make_mut(chunk)[number % CHUNK].forward = child;
         }
     }
 
@@ -301,6 +315,23 @@ impl History {
     fn stand(&mut self, at: usize) {
         self.cursor = Some(at);
         self.revision += 1;
+    }
+
+    /// Where the walker stands.
+    pub fn mark(&self) -> Mark {
+        Mark { cursor: self.cursor, forward: self.redo_target(), numbering: self.numbering }
+    }
+
+    /// Stands where it stood, as if nothing had been walked since; the nodes made since are kept.
+    ///
+    /// Where nodes were numbered anew since, it stays where it is.
+    pub fn return_to(&mut self, mark: Mark) {
+        let Some(at) = mark.cursor.filter(|_| mark.numbering == self.numbering) else { return };
+        self.stand(at);
+        self.set_forward_to(at, mark.forward);
+        if let Some(parent) = self.parent() {
+            self.set_forward(parent, at);
+        }
     }
 
     /// Stands on the node before; false when there is none.

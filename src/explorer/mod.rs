@@ -18,6 +18,7 @@
 //! | [`branches`] | its branches: what each ended with |
 //! | `thin` | which states of a long walk may be forgotten |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
+//! | [`progress`] | how far a curve that is computed has come |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
@@ -25,6 +26,8 @@
 //! | [`files`] | opening, saving and exporting |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions kept on disk |
+//! | [`journal`] | what was done, as the lines of a script |
+//! | [`script`] | commands as text, and scripts driven through a model |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
@@ -38,11 +41,14 @@ pub mod device;
 pub mod driver;
 pub mod files;
 pub mod history;
+pub mod journal;
 pub mod look;
 pub mod model;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
+pub mod progress;
+pub mod script;
 pub mod session;
 pub mod theory;
 mod thin;
@@ -54,6 +60,8 @@ pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, Sweep};
 pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
+pub use journal::Journal;
 pub use model::{Axes, EventSource, Level, Model, Panel};
+pub use progress::Progress;
 pub use update::{answer, open, update};
 pub use view::{Overlay, Overlays, View, Window};

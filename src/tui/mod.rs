@@ -7,17 +7,21 @@
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
-//! | [`theme`] | colours and glyphs, Unicode or ASCII |
+//! | [`look`] | theme, charts and mouse from flags, configuration and environment |
+//! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
 //! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
+//! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
 //! | [`hatch`] | areas filled with slanting lines |
 //! | [`view`] | one file per screen region |
 
 pub mod app;
 pub mod chart;
+pub mod copy;
 pub mod hatch;
 pub mod keymap;
 pub mod layout;
+pub mod look;
 pub mod overlay;
 pub mod stroke;
 pub mod terminal;
@@ -33,11 +37,24 @@ use crate::explorer::{Reply, Workers};
 use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Store};
 use app::App;
+use keymap::Keymap;
+use look::Look;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
 use terminal::Incoming;
-use theme::Theme;
+use theme::{Palette, Theme};
+
+/// What a person has set, ready to be used.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// The keys of the commands.
+    pub keymap: Keymap,
+    /// How the screen is to look.
+    pub look: look::LookFile,
+    /// What is to be told when the screen comes up.
+    pub notice: Option<String>,
+}
 
 /// What the explorer begins with.
 #[derive(Debug)]
@@ -61,8 +78,11 @@ fn told(held: &Held) -> String {
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(start: Start, keeper: &Keeper) -> (App, Vec<crate::explorer::Effect>, Option<Box<Held>>) {
-    let theme = Theme::of_environment();
+fn begin(
+    start: Start,
+    theme: Theme,
+    keeper: &Keeper,
+) -> (App, Vec<crate::explorer::Effect>, Option<Box<Held>>) {
     match start {
         Start::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
@@ -89,7 +109,15 @@ fn begin(start: Start, keeper: &Keeper) -> (App, Vec<crate::explorer::Effect>, O
 ///
 /// # Errors
 /// When the terminal cannot be taken, or the system gives no thread.
-pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode> {
+pub fn run(
+    store: Store,
+    archive: Archive,
+    start: Start,
+    look: Look,
+    settings: Settings,
+) -> io::Result<ExitCode> {
+    // A theme asked for by name holds against NO_COLOR, which the backend would obey by itself.
+    crossterm::style::force_color_output(look.theme != Palette::Mono);
     let keeper = Keeper::new(archive);
     let last = keeper.clone();
     // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
@@ -105,7 +133,12 @@ pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode>
         // Refused only when the screen is gone, and the process with it.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects, mut offered) = begin(start, &keeper);
+    let (mut app, effects, mut offered) = begin(start, look.theme(), &keeper);
+    app.mouse = look.mouse;
+    app.keymap = settings.keymap;
+    if let Some(notice) = settings.notice {
+        app.model.message = Some((Level::Error, notice));
+    }
     workers.submit_all(effects);
     let mut dirty = true;
     while !app.model.quit {
@@ -118,6 +151,7 @@ pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode>
                     Vec::new()
                 }
                 Incoming::Key(key) => app.key(key),
+                Incoming::Mouse(mouse) => app.mouse(mouse),
                 Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
                     display.repaint();
@@ -135,11 +169,18 @@ pub fn run(store: Store, archive: Archive, start: Start) -> io::Result<ExitCode>
             }
         }
         keeper.offer(Snapshot::of(&app.model));
+        display.take_mouse(app.mouse);
+        if let Some(text) = app.clipboard.take() {
+            display.copy(&text);
+        }
         if dirty && display.is_due() {
-            let mut views = 0;
-            display.draw(|frame| views = view::draw(frame, &app));
+            let (mut views, mut screen) = (0, app.screen);
+            display.draw(|frame| {
+                screen = frame.area();
+                views = view::draw(frame, &app);
+            });
             dirty = false;
-            workers.submit_all(app.make_room(views));
+            workers.submit_all(app.make_room(screen, views));
         }
     }
     drop(guard);

@@ -6,8 +6,10 @@ use super::number::{Real, floats, reals};
 use super::problems::{Collector, Place, Problems};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
-use crate::preset::{Fingerprint, Source, shipped};
+use crate::explorer::journal::{Kept, Replay, Start};
+use crate::preset::{Fingerprint, Preset, Source, shipped};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// The version of the format. A larger one is refused; what is added without a new version has a default.
@@ -97,12 +99,50 @@ pub struct Document {
     saved: usize,
     look: Look,
     pins: Vec<(usize, usize)>,
-    #[serde(default)]
-    journal: Vec<String>,
+    journal: Lines,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
     nodes: Vec<Saved>,
+}
+
+/// The script that leads to where the session is.
+#[derive(Debug, Serialize, Deserialize)]
+struct Lines {
+    lines: Vec<String>,
+    /// Where the walk began: the source of its preset, and the number of the preset.
+    start: Option<(Origin, usize)>,
+    /// What a replay has at the end: the number of the preset, the direction, the step length.
+    replay: Option<(usize, bool, Real)>,
+    steps: Option<usize>,
+    broken: Option<String>,
+}
+
+impl Lines {
+    fn of(kept: &Kept, problems: &mut Collector) -> Self {
+        let start = kept.start.as_ref();
+        let replay = kept.replay.as_ref();
+        Self {
+            lines: kept.lines.to_vec(),
+            start: start.map(|start| (Origin::of(&start.source), problems.preset(&start.preset))),
+            replay: replay.map(|at| (problems.preset(&at.preset), at.inward, Real(at.length))),
+            steps: kept.steps,
+            broken: kept.broken.clone(),
+        }
+    }
+
+    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<Kept, Unreadable> {
+        let start = self.start.map(|(source, at)| Ok(Start { source: source.back()?, preset: preset(at)? }));
+        let replay =
+            self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
+        Ok(Kept {
+            lines: Arc::new(self.lines),
+            start: start.transpose()?,
+            replay: replay.transpose()?,
+            steps: self.steps,
+            broken: self.broken,
+        })
+    }
 }
 
 /// Where a preset came from.
@@ -143,6 +183,7 @@ impl Document {
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
+        let journal = Lines::of(&snapshot.journal, &mut problems);
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
         let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
         Self {
@@ -161,7 +202,7 @@ impl Document {
             saved,
             look: snapshot.look.clone(),
             pins,
-            journal: snapshot.journal.clone(),
+            journal,
             problems: problems.finish(),
             settled: snapshot.settled,
             cursor: snapshot.history.cursor(),
@@ -221,7 +262,7 @@ impl Document {
             settled: self.settled,
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
-            journal: self.journal,
+            journal: self.journal.back(preset)?,
         })
     }
 }

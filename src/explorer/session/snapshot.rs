@@ -3,6 +3,7 @@
 use crate::contact::Control;
 use crate::explorer::driver::Effect;
 use crate::explorer::history::History;
+use crate::explorer::journal::{Journal, Kept};
 use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Model, Panel};
 use crate::explorer::pins::Pins;
 use crate::explorer::update::want_curve;
@@ -31,8 +32,8 @@ pub struct Snapshot {
     pub pins: Vec<(usize, Preset)>,
     /// How it is looked at and walked.
     pub look: Look,
-    /// The lines of a script that led here.
-    pub journal: Vec<String>,
+    /// The script that leads here.
+    pub journal: Kept,
 }
 
 /// How a session is looked at and walked.
@@ -108,7 +109,7 @@ impl Snapshot {
         let shown = model.pins.all().iter().map(|pin| (pin.number, pin.preset().clone()));
         Self {
             session: model.session,
-            preset: model.untried.as_deref().unwrap_or(&model.preset).clone(),
+            preset: model.untried.as_ref().map_or(&model.preset, |before| &before.preset).clone(),
             saved: model.saved.clone(),
             source: model.source.clone(),
             fingerprint: model.fingerprint,
@@ -116,14 +117,14 @@ impl Snapshot {
             settled: model.is_settled() || model.is_tried,
             pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
             look: Look::of(model),
-            journal: Vec::new(),
+            journal: model.journal.kept(),
         }
     }
 
     /// What [`is_like`](Self::is_like) needs of it, without the walk.
     #[must_use]
     pub fn mark(&self) -> Self {
-        Self { history: self.history.mark(), ..self.clone() }
+        Self { history: self.history.stamp(), ..self.clone() }
     }
 
     /// Whether both say the same.
@@ -158,6 +159,7 @@ impl Snapshot {
         let mut model = Model::new(loaded);
         model.preset = self.preset;
         model.history = self.history;
+        model.journal = Journal::of(self.journal);
         model.is_tried = self.settled;
         self.look.lay_over(&mut model);
         if let Control::Stiffness(k) = model.preset.path.control {

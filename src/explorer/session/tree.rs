@@ -44,6 +44,7 @@ pub(super) struct Saved {
     from_exact: Real,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     begins: bool,
+    request: u64,
 }
 
 /// How a node came about.
@@ -152,6 +153,7 @@ impl Saved {
             digits: Real(node.digits),
             from_exact: Real(node.from_exact),
             begins: node.begins,
+            request: node.request,
         }
     }
 
@@ -193,6 +195,7 @@ impl Saved {
             digits: self.digits.0,
             from_exact: self.from_exact.0,
             begins: self.begins,
+            request: self.request,
         };
         Some((node, self.forward))
     }

@@ -14,7 +14,7 @@ impl App {
     /// Goes on with a session.
     pub fn resumed(snapshot: Snapshot, theme: Theme) -> (Self, Vec<Effect>) {
         let (model, effects) = snapshot.resume(None);
-        (Self { model, overlay: None, count: None, theme }, effects)
+        (Self::on(model, theme), effects)
     }
 
     /// Offers a session.
@@ -67,7 +67,7 @@ impl App {
             let mark = if branch.is_here { "here" } else { "" };
             let text = format!("{mark:<4} step {:<5} {place}  {differs}", node.step);
             let action = Action::Command(Command::GoTo { node: branch.end, numbering });
-            items.push(Item { text: self.theme.symbols(&text), action });
+            items.push(Item::new(self.theme.symbols(&text), action));
         }
         self.choose("Branches of the walk", items, here);
         Vec::new()
