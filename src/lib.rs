@@ -25,6 +25,7 @@
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
 //! | 1 | [`units`] | dimensions, unit names, values with units read and shown |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
+//! | 0 | `fault` | panics on demand, in test builds only (feature `fault-injection`) |
 //! | 0 | [`expression`] | the one grammar of gap formulas and of values |
 //!
 //! # Where the equations are
@@ -61,6 +62,7 @@ pub mod contact;
 pub mod continuation;
 pub mod explorer;
 pub mod expression;
+mod fault;
 pub mod figure;
 pub mod preset;
 pub mod quasistatic;

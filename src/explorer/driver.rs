@@ -12,6 +12,7 @@ use super::profile::{Ask, Inside};
 use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
+use crate::fault;
 use crate::preset::{Preset, Store};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -259,7 +260,10 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
     let mut last: Option<Arc<Sweep>> = None;
     loop {
         let mut wish = match slot.take() {
-            Task::Curve(wish) => wish,
+            Task::Curve(wish) => {
+                fault::point(fault::WORKER);
+                wish
+            }
             Task::Check(check) => {
                 // Without patience: a knob that is turned further is not slowed.
                 if let Some(answer) = check.run(|| !slot.waiting.load(Ordering::Acquire)) {

@@ -27,6 +27,7 @@ pub mod view;
 pub use terminal::refuse_reason;
 
 use crate::explorer::{Reply, Workers};
+use crate::fault;
 use crate::preset::{Loaded, Store};
 use app::App;
 use std::io;
@@ -57,7 +58,10 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
                     terminal::suspend();
                     Vec::new()
                 }
-                Incoming::Key(key) => app.key(key),
+                Incoming::Key(key) => {
+                    fault::point(fault::UI);
+                    app.key(key)
+                }
                 Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
                     display.repaint();

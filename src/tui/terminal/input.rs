@@ -17,6 +17,7 @@ use super::{
     end::{HUNG_UP, end},
     line::Line,
 };
+use crate::fault;
 
 /// Messages that may wait. More keys than this wait in the terminal, more replies in the worker.
 const CAPACITY: usize = 256;
@@ -132,6 +133,7 @@ impl<T: Send + 'static> Inbox<T> {
                     Ok(_) => continue,
                     Err(_) => end(HUNG_UP),
                 };
+                fault::point(fault::INPUT);
                 if sender.send(Post::Message(message)).is_err() {
                     return;
                 }
