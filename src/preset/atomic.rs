@@ -2,22 +2,20 @@
 //!
 //! Links are followed; a temporary file is made beside the target with its permissions, written, synced and read
 //! back; the target is looked at once more; then the rename, and the folder is synced. At every moment the name
-//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched.
+//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched. A
+//! temporary left by a kill is removed by the next save in the folder.
 
 use super::file::{Fingerprint, kind_of, read_bytes};
+use super::temporary;
 use super::text::show_path;
-use rustix::fs::{Gid, Uid, fchown};
-use std::fs::{File, Metadata, Permissions};
+use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, Write};
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// How many links in a row are followed; the kernel's own limit.
 const LINKS: usize = 40;
-/// The mode of a new file, before the umask.
-const NEW: u32 = 0o666;
 
 /// What to do about a file that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,8 +107,9 @@ pub fn write_verified(
     let old = guard(path, &target, overwrite)?;
     // Opened while an error still leaves everything as it was.
     let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
+    let _writing = temporary::begin();
     let mut temporary =
-        temporary_beside(&target, old.as_ref()).map_err(failed("make a file in its folder"))?;
+        temporary::beside(folder_of(&target), old.as_ref()).map_err(failed("make a file in its folder"))?;
     temporary.as_file_mut().write_all(bytes).map_err(failed("write"))?;
     temporary.as_file_mut().flush().map_err(failed("write"))?;
     temporary.as_file().sync_all().map_err(failed("write"))?;
@@ -199,29 +198,6 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
     Ok(Some(metadata))
 }
 
-/// A new, exclusive file beside the target, with its owner and permissions.
-fn temporary_beside(target: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".pulloff-").suffix(".tmp");
-    let Some(old) = old else {
-        return builder.permissions(Permissions::from_mode(NEW)).tempfile_in(folder_of(target));
-    };
-    let temporary = builder.tempfile_in(folder_of(target))?;
-    let new = temporary.as_file().metadata()?;
-    let mut mode = old.mode() & 0o777;
-    if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
-        let owner =
-            fchown(temporary.as_file(), Some(Uid::from_raw(old.uid())), Some(Gid::from_raw(old.gid())));
-        // Only root gives files away. Then the file becomes ours, and a group that is not the old one gets no
-        // more than everybody.
-        if owner.is_err() && fchown(temporary.as_file(), None, Some(Gid::from_raw(old.gid()))).is_err() {
-            mode = (mode & 0o707) | ((mode & 0o007) << 3 & mode);
-        }
-    }
-    temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
-    Ok(temporary)
-}
-
 /// Makes the rename last. File systems that cannot sync a folder have their own ways.
 fn sync_folder(folder: &File) -> io::Result<()> {
     match folder.sync_all() {
@@ -236,8 +212,8 @@ fn sync_folder(folder: &File) -> io::Result<()> {
 mod tests {
     use super::*;
     use rustix::fs::{CWD, FileType, Mode, mknodat};
-    use std::fs;
-    use std::os::unix::fs::symlink;
+    use std::fs::{self, Permissions};
+    use std::os::unix::fs::{PermissionsExt, symlink};
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =

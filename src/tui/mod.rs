@@ -24,16 +24,23 @@ pub mod terminal;
 pub mod theme;
 pub mod view;
 
+#[cfg(test)]
+mod budget;
+
 pub use terminal::refuse_reason;
 
-use crate::explorer::{Reply, Workers};
+use crate::explorer::{Effect, Reply, Workers};
 use crate::fault;
-use crate::preset::{Loaded, Store};
+use crate::preset::{Loaded, Store, temporary};
 use app::App;
 use std::io;
 use std::process::ExitCode;
-use terminal::Incoming;
+use std::time::Duration;
+use terminal::{Display, Inbox, Incoming, Sink};
 use theme::Theme;
+
+/// How long quitting waits for a file that is being written: the shell waits too.
+const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// Runs the explorer until the person quits.
 ///
@@ -48,6 +55,23 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
     })?;
     let (mut app, effects) = App::new(loaded, Theme::of_environment());
     workers.submit_all(effects);
+    converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects));
+    drop(guard);
+    // A file still being written would be cut off.
+    temporary::finish(SAVE_PATIENCE);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Keys and replies in, frames out, until the person quits.
+///
+/// All that has happened is taken in before a frame, and a frame is written before the next thing is looked at: a held
+/// key on a slow line makes one frame for many keys.
+fn converse<S: Sink>(
+    app: &mut App,
+    display: &mut Display<S>,
+    inbox: &Inbox<Reply>,
+    submit: &dyn Fn(Vec<Effect>),
+) {
     let mut dirty = true;
     while !app.model.quit {
         // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
@@ -69,16 +93,14 @@ pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
                 }
                 Incoming::App(reply) => app.reply(reply),
             };
-            workers.submit_all(effects);
+            submit(effects);
             dirty = true;
         }
         if dirty && display.is_due() {
             let mut views = 0;
-            display.draw(|frame| views = view::draw(frame, &app));
+            display.draw(|frame| views = view::draw(frame, app));
             dirty = false;
-            workers.submit_all(app.make_room(views));
+            submit(app.make_room(views));
         }
     }
-    drop(guard);
-    Ok(ExitCode::SUCCESS)
 }

@@ -17,6 +17,7 @@ use std::{
 };
 
 use super::{line::Line, report};
+use crate::preset::temporary;
 
 /// The status after a hang-up, the same as after SIGHUP.
 pub(super) const HUNG_UP: i32 = 129;
@@ -26,6 +27,9 @@ const PANICKED: i32 = 101;
 
 /// How long the last words may take.
 const LIMIT: Duration = Duration::from_secs(1);
+
+/// How long a file that is being written may take: a save cut off would leave a temporary file behind.
+const SAVE_PATIENCE: Duration = Duration::from_millis(500);
 
 /// How long a panic message may wait for room on the terminal.
 const MESSAGE_PATIENCE: Duration = Duration::from_millis(200);
@@ -52,6 +56,7 @@ pub(super) fn end(status: i32) -> ! {
     claim(status);
     speak();
     restore();
+    temporary::finish(SAVE_PATIENCE);
     process::exit(status)
 }
 
@@ -79,6 +84,7 @@ pub(super) fn install_panic_hook() {
             say(&report::visible(&trace.to_string()));
         }
         join(words);
+        temporary::finish(SAVE_PATIENCE);
         process::exit(PANICKED)
     }));
 }

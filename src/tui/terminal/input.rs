@@ -61,7 +61,7 @@ pub struct Inbox<T> {
 }
 
 impl<T: Send + 'static> Inbox<T> {
-    pub(super) fn new() -> Self {
+    pub(in crate::tui) fn new() -> Self {
         let (sender, receiver) = sync_channel(CAPACITY);
         Self { receiver, sender, notices: Arc::default() }
     }
@@ -106,6 +106,13 @@ impl<T: Send + 'static> Inbox<T> {
     #[must_use]
     pub fn sender(&self) -> Sender<T> {
         Sender(self.sender.clone())
+    }
+
+    /// What stands for the thread that reads the terminal in a test.
+    #[cfg(test)]
+    pub(in crate::tui) fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
+        let sender = self.sender.clone();
+        move |incoming| sender.send(Post::Message(incoming)).unwrap()
     }
 
     /// A sending end for the thread that answers signals.

@@ -27,6 +27,8 @@ use rustix::{
     },
 };
 
+use super::screen::Sink;
+
 /// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
 
@@ -113,31 +115,6 @@ impl Line {
         let _ = self.send(GIVE_BACK, PATIENCE);
     }
 
-    /// Writes a whole frame, waiting for room as long as it takes.
-    ///
-    /// If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
-    pub(super) fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
-        let hands = self.hands.load(Ordering::SeqCst);
-        let mut rest = frame;
-        while !rest.is_empty() {
-            {
-                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
-                    return Ok(());
-                }
-                match rustix::io::write(&self.fd, rest) {
-                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
-                    Err(Errno::AGAIN | Errno::INTR) => {}
-                    Err(error) => return Err(error.into()),
-                }
-            }
-            if !rest.is_empty() {
-                self.wait(PollFlags::OUT, None)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Writes outside of a frame, for at most `patience`; what does not fit by then is dropped.
     pub(super) fn send(&self, bytes: &[u8], patience: Duration) -> io::Result<()> {
         let until = Instant::now() + patience;
@@ -183,12 +160,6 @@ impl Line {
         }
     }
 
-    /// Columns and rows.
-    pub(super) fn size(&self) -> io::Result<(u16, u16)> {
-        let size = tcgetwinsize(&self.fd)?;
-        Ok(if (size.ws_col, size.ws_row) == (0, 0) { USUAL_SIZE } else { (size.ws_col, size.ws_row) })
-    }
-
     /// Whether the modes are ours at the moment.
     pub(super) fn is_taken(&self) -> bool {
         is_ours(self.hands.load(Ordering::SeqCst))
@@ -224,6 +195,36 @@ impl Line {
                 Err(TryLockError::WouldBlock) => return None,
             }
         }
+    }
+}
+
+impl Sink for Line {
+    // If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
+    fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
+        let hands = self.hands.load(Ordering::SeqCst);
+        let mut rest = frame;
+        while !rest.is_empty() {
+            {
+                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
+                    return Ok(());
+                }
+                match rustix::io::write(&self.fd, rest) {
+                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
+                    Err(Errno::AGAIN | Errno::INTR) => {}
+                    Err(error) => return Err(error.into()),
+                }
+            }
+            if !rest.is_empty() {
+                self.wait(PollFlags::OUT, None)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn size(&self) -> io::Result<(u16, u16)> {
+        let size = tcgetwinsize(&self.fd)?;
+        Ok(if (size.ws_col, size.ws_row) == (0, 0) { USUAL_SIZE } else { (size.ws_col, size.ws_row) })
     }
 }
 

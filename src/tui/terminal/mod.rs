@@ -68,5 +68,5 @@ pub use end::set_last_words;
 pub use guard::{Guard, enter, restore};
 pub use input::{Inbox, Incoming, Sender};
 pub use refuse::{refuse_reason, utf8_locale};
-pub use screen::Screen;
+pub use screen::{Screen, Sink};
 pub use signals::suspend;
