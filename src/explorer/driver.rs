@@ -9,6 +9,7 @@ use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};
 use super::model::Model;
 use super::profile::{Ask, Inside};
+use super::saves::Saves;
 use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
@@ -313,7 +314,8 @@ fn walk_lane(requests: &Receiver<Box<Request>>, stopped: &AtomicU64, reply: &dyn
 }
 
 fn file_lane(store: &Store, jobs: &Receiver<Box<Job>>, reply: &dyn Fn(Reply)) {
+    let mut saves = Saves::default();
     while let Ok(job) = jobs.recv() {
-        reply(Reply::File(Box::new(files::run(store, *job))));
+        reply(Reply::File(Box::new(saves.run(store, *job))));
     }
 }

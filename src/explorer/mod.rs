@@ -21,6 +21,7 @@
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`files`] | opening, saving and exporting |
+//! | `saves` | saves that follow each other faster than they are answered |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
@@ -37,6 +38,7 @@ pub mod model;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
+mod saves;
 pub mod theory;
 pub mod update;
 pub mod view;
