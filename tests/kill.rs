@@ -20,7 +20,8 @@ const WINDOW: Duration = Duration::from_millis(60);
 /// The one preset of the folder, which must be whole: reading and writing it again gives every byte.
 fn whole(path: &Path) -> Preset {
     let text = fs::read_to_string(path).expect("a preset");
-    let preset = read("mine", &text).unwrap_or_else(|error| panic!("torn: {error}\n{text}"));
+    let preset =
+        read("mine", &text).map_err(|error| format!("torn: {error}\n{text}")).expect("a whole preset");
     assert_eq!(write(&preset), text, "not as it was written");
     preset
 }
