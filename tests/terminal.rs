@@ -238,8 +238,8 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
     let folder = home.path().join("data");
     fs::create_dir_all(&presets).expect("a folder");
     fs::create_dir_all(&folder).expect("a folder");
-    let rows: String =
-        (0..13).map(|i| format!("{},{}\n", f64::from(i) / 4.0, f64::from(i * i) / 32.0)).collect();
+    let row = |i: i32| format!("{},{}", f64::from(i) / 4.0, f64::from(i * i) / 32.0);
+    let rows = (0..13).map(row).collect::<Vec<_>>().join("\n") + "\n";
     for (number, sequence) in HOSTILE.iter().enumerate() {
         fs::write(presets.join(format!("bad{number}.toml")), format!("{sequence} = {sequence}"))
             .expect("a file");
