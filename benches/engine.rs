@@ -124,7 +124,7 @@ fn spectral_dense_curve_floor(bencher: Bencher) {
     bencher.bench_local(|| {
         for &s in black_box(&radii) {
             let nodes = rules.nodes(gap, s);
-            gap.values(s, nodes, &mut values[..nodes.len()]);
+            gap.values(s, &nodes, &mut values[..nodes.len()]);
             black_box(&mut values);
         }
     });

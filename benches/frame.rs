@@ -19,11 +19,11 @@ fn session(view: View, views: usize) -> App {
     // A folder that need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
-    let (mut app, effects) = App::new(loaded, Theme { ascii: false });
+    let (mut app, effects) = App::new(loaded, Theme::default());
     let driver = Inline::new(store);
     driver.settle(&mut app.model, effects);
     app.model.view = view;
-    let effects = app.make_room(views);
+    let effects = app.make_room(app.screen, views);
     driver.settle(&mut app.model, effects);
     app
 }

@@ -4,15 +4,18 @@
 //! they all see the same numbers.
 
 use crate::contact::groups::LARGE_TABOR;
-use crate::contact::{Control, Groups, Problem, Reduced, Start, Units};
+use crate::contact::{Control, Gap, Groups, Problem, Reduced, Start, Units};
 use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::admissible::falls;
+use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
 use crate::theory::jkr::Jkr;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::sync::Arc;
 
 /// Points of an arc-length trace before it stops.
@@ -27,6 +30,8 @@ pub struct Case {
     pub reduced: Reduced,
     /// The discretization.
     pub basis: Arc<dyn Basis>,
+    /// Whether the number of functions follows from the contact.
+    pub automatic: bool,
     /// What is controlled, in reduced units.
     pub control: Control,
     /// The contact radius at the start, reduced.
@@ -35,6 +40,8 @@ pub struct Case {
     pub end: f64,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
+    /// How numbers are shown to the user.
+    pub shown: UnitSystem,
 }
 
 /// Why a preset could not be computed.
@@ -44,21 +51,34 @@ pub enum CaseError {
     #[error(transparent)]
     Basis(#[from] BasisError),
     /// The start state does not exist.
-    #[error(transparent)]
-    Start(#[from] StartError),
+    #[error("{}", error.words(shown))]
+    Start {
+        /// Why, in the user's units.
+        error: StartError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
     /// The end lies outside the start.
     #[error(
-        "path.end_contact_radius = {end:e} must be smaller than the contact radius at the start, which is {start:e}"
+        "path.end_contact_radius = {} must be smaller than the contact radius at the start, which is {}",
+        said(shown, Quantity::Length, *.end), said(shown, Quantity::Length, *.start)
     )]
     EndOutsideStart {
         /// The end, in the user's units.
         end: f64,
         /// The start, in the user's units.
         start: f64,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
     },
     /// The unloading could not start.
-    #[error(transparent)]
-    Unload(#[from] UnloadError),
+    #[error("{}", error.words(shown))]
+    Unload {
+        /// Why, in the user's units.
+        error: UnloadError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
     /// It was no longer wanted.
     #[error("cancelled")]
     Cancelled,
@@ -87,14 +107,17 @@ impl Case {
             Start::Approach(delta) => Start::Approach(delta / units.length),
             Start::Force(p) => Start::Force(p / units.force),
         };
-        let (basis, start) = start(&reduced, preset.basis, wanted, progress)?;
+        let shown = preset.units.clone();
+        let (basis, start) = start(&reduced, preset.basis, wanted, progress, &shown)?;
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
-            return Err(CaseError::EndOutsideStart { end: end * units.length, start: start * units.length });
+            let (end, start) = (end * units.length, start * units.length);
+            return Err(CaseError::EndOutsideStart { end, start, shown: Box::new(shown) });
         }
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
-        Ok(Self { problem, reduced, basis, control, start, end, tabor })
+        let automatic = matches!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+        Ok(Self { problem, reduced, basis, automatic, control, start, end, tabor, shown })
     }
 
     /// The factors to the user's units.
@@ -148,7 +171,13 @@ impl Case {
         curve.ok_or_else(|| self.no_start())
     }
 
-    /// The quasi-static unloading along `curve`, which is extended where a landing needs it.
+    /// The points of [`Case::sweep`], where there is an equilibrium at each.
+    pub fn sweep_points(&self) -> usize {
+        radii(self.start, self.end, self.reduced.gap.feature_length(), SWEEP_STEPS_PER_WAVE).len()
+    }
+
+    /// The quasi-static unloading along `curve`, which is extended where a landing needs it, and made anew where an
+    /// automatic number of functions does not resolve how far an unstable start runs outward.
     ///
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
@@ -164,12 +193,33 @@ impl Case {
         &self,
         curve: &mut Curve,
         control: Control,
-        go_on: impl FnMut() -> bool,
+        mut go_on: impl FnMut() -> bool,
     ) -> Result<Unloading, CaseError> {
-        unload_while(curve, control, go_on).map_err(|e| match e {
-            UnloadError::Cancelled => CaseError::Cancelled,
-            other @ UnloadError::UnstableStart { .. } => CaseError::Unload(other.in_units(self.units())),
-        })
+        loop {
+            let unloading = unload_while(curve, control, &mut go_on).map_err(|e| match e {
+                UnloadError::Cancelled => CaseError::Cancelled,
+                other @ UnloadError::UnstableStart { .. } => CaseError::Unload {
+                    error: other.in_units(self.units()),
+                    shown: Box::new(self.shown.clone()),
+                },
+            })?;
+            let Some(finer) = self.finer(curve, &unloading)? else { return Ok(unloading) };
+            *curve = Curve::swept(self.reduced.clone(), finer, self.start, self.end, &mut go_on)
+                .ok_or_else(|| self.no_start())?;
+        }
+    }
+
+    /// The basis for a path whose start ran outward beyond the wave more that an automatic number of functions allows for;
+    /// none where that of `curve` will do.
+    fn finer(&self, curve: &Curve, unloading: &Unloading) -> Result<Option<Arc<dyn Basis>>, CaseError> {
+        let largest = unloading.start.contact_radius;
+        let allowed = self.start + self.reduced.gap.feature_length().unwrap_or(0.0);
+        if !self.automatic || largest <= allowed {
+            return Ok(None);
+        }
+        let finer = Spectral::resolving(&self.reduced, largest).map_err(BasisError::from)?;
+        // The second time its size is the same: where the path starts has moved by rounding at most.
+        Ok((finer.size() > curve.equilibrium.basis.size()).then(|| Arc::new(finer) as Arc<dyn Basis>))
     }
 
     /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
@@ -188,8 +238,11 @@ impl Case {
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings = self.problem.shape.notes();
-        warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        let mut warnings = self.problem.shape.notes(&self.shown);
+        // An automatic number of functions follows the contact.
+        if !self.automatic {
+            warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
+        }
         if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
             warnings.push(format!(
                 "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \
@@ -207,7 +260,8 @@ impl Case {
     }
 
     fn no_start(&self) -> CaseError {
-        StartError::NoEquilibrium(self.start).in_units(self.units()).into()
+        let error = StartError::NoEquilibrium(self.start).in_units(self.units());
+        CaseError::Start { error, shown: Box::new(self.shown.clone()) }
     }
 }
 
@@ -220,9 +274,13 @@ fn start(
     spec: BasisSpec,
     wanted: Start,
     progress: Progress<'_>,
+    shown: &UnitSystem,
 ) -> Result<(Arc<dyn Basis>, f64), CaseError> {
     let radius = |basis: &Arc<dyn Basis>| {
-        contact_radius(reduced, basis, wanted).map_err(|e| e.in_units(&reduced.units))
+        contact_radius(reduced, basis, wanted).map_err(|e| CaseError::Start {
+            error: e.in_units(&reduced.units),
+            shown: Box::new(shown.clone()),
+        })
     };
     let basis: Arc<dyn Basis> = match spec {
         BasisSpec::Rings { rings, grading } => {

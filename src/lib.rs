@@ -13,6 +13,7 @@
 //! |---|---|---|
 //! | 6 | [`cli`] | the door: command line, one file per subcommand, exit codes |
 //! | 5 | `tui` | the terminal: guard, keys, layout, charts, one file per screen region (feature `tui`) |
+//! | 5 | [`config`] | the person's settings: keys of commands |
 //! | 4 | [`figure`] | figures of a curve, a walk and a state for any renderer: lines, marks, areas with roles |
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers |
 //! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |
@@ -58,12 +59,14 @@
 
 pub mod case;
 pub mod cli;
+pub mod config;
 pub mod contact;
 pub mod continuation;
 pub mod explorer;
 pub mod expression;
 mod fault;
 pub mod figure;
+pub mod plot;
 pub mod preset;
 pub mod quasistatic;
 pub mod report;

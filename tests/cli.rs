@@ -916,3 +916,19 @@ fn help_and_version_are_no_errors() {
         assert!(home.quiet(arguments).contains("Usage"), "{arguments:?}");
     }
 }
+
+#[test]
+fn a_preset_of_ones_own_is_deleted_and_no_other() {
+    let home = Home::new();
+    let file = home.file("config/pulloff/presets/mine.toml", FILE);
+    // Without a terminal nobody can answer.
+    home.refused(&["presets", "delete", "mine"], &["--yes"]);
+    home.refused(&["presets", "delete", "fig-9", "--yes"], &["fig-9 comes with the program"]);
+    home.refused(&["presets", "delete", "mime", "--yes"], &["did you mean mine?"]);
+    home.refused(&["presets", "delete", "./mine.toml", "--yes"], &["is no preset name"]);
+    assert!(Path::new(&file).exists());
+    let ended = home.run(&["presets", "delete", "mine", "--yes"]);
+    assert_eq!((ended.status, ended.out.as_str()), (0, ""));
+    assert!(ended.err.contains("deleted") && ended.err.contains("mine.toml"), "{}", ended.err);
+    assert!(!Path::new(&file).exists());
+}

@@ -27,7 +27,7 @@ fn radii(curve: &CurveData) -> Vec<f64> {
 
 /// What belongs to the control is as if the whole curve had been computed for it.
 fn assert_as_computed_afresh(session: &Session) {
-    let fresh = CurveData::compute(&session.model.preset, || true).expect("a curve");
+    let fresh = CurveData::compute(&session.model.preset, |_| true).expect("a curve");
     let (ours, fresh) = (curve(session), fresh.checked(&mut || true).expect("not stopped"));
     assert_eq!(ours.setting.case.control, fresh.setting.case.control);
     assert_eq!(radii(&ours), radii(&fresh));

@@ -130,9 +130,9 @@ fn every_view_a_closer_look_and_a_pin() {
     pty.keys("++");
     pty.wait_for(|screen| screen.contains("zoom 4x"), "a closer look");
     pty.keys("i");
-    pty.wait_for(|screen| screen.contains("; * δ "), "the cross-hair");
+    pty.wait_for(|screen| screen.contains("* δ "), "the cross-hair");
     pty.keys("\x1bf");
-    pty.wait_for(|screen| !screen.contains("zoom") && !screen.contains("; * δ "), "all of it");
+    pty.wait_for(|screen| !screen.contains("zoom") && !screen.contains("* δ "), "all of it");
 
     // Back to the Problem panel, where > turns the amplitude.
     pty.keys("\t\t");
@@ -211,7 +211,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("from 4 to 2000"), "the prompt");
     pty.keys("\x152000\r");
-    pty.wait_for(|screen| screen.contains("computing"), "the new curve under way");
+    pty.wait_for(|screen| screen.contains("computing point "), "how many points of the curve are known");
     pty.keys("\x1b");
     pty.wait_for(|screen| screen.contains("cancelled: the curve shown is of the values before"), "given up");
     assert!(pty.screen().contains("Events on the curve: 8") && pty.screen().contains("unsaved"));
@@ -337,4 +337,108 @@ fn a_shape_is_chosen_and_a_profile_loaded() {
     assert!(config.join("pulloff/presets/scan.csv").is_file());
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
+}
+
+/// Where a text stands on the screen, as a mouse report counts: from 1.
+fn place(pty: &Pty, text: &str) -> (usize, usize) {
+    let screen = pty.screen();
+    let found = screen.lines().enumerate().find_map(|(row, line)| Some((line.find(text)?, row, line)));
+    let (at, row, line) = found.unwrap_or((0, 0, ""));
+    assert!(!line.is_empty(), "no {text} in\n{screen}");
+    (line[..at].chars().count() + 1, row + 1)
+}
+
+fn ready(pty: &Pty) {
+    pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve and its events");
+}
+
+#[test]
+fn the_mouse_is_taken_and_given_back_in_every_way() {
+    let mut pty = Pty::spawn_in_shell(program(), &["--mouse"], &[], 100, 30);
+    ready(&pty);
+    pty.wait_until(|pty| pty.modes_left().contains(&1000), "the mouse taken");
+    // Coordinates that are none, in both notations, and far ones.
+    for report in ["\x1b[<0;0;0M", "\x1b[M   ", "\x1b[<0;65535;65535M", "\x1b[<64;0;9M"] {
+        pty.keys(report);
+    }
+    let (column, row) = place(&pty, "Walker, step");
+    pty.keys(&format!("\x1b[<0;{column};{row}M\x1b[<0;{column};{row}m"));
+    pty.keys("\r ");
+    pty.wait_for(|screen| screen.contains("Walker, step 1"), "a step after all that");
+    let (column, row) = place(&pty, "  2 ");
+    pty.keys(&format!("\x1b[<0;{column};{row}M"));
+    pty.wait_for(|screen| screen.contains(">  2 "), "the event selected");
+    // At run time.
+    pty.keys("m");
+    pty.wait_until(|pty| !pty.modes_left().contains(&1000), "the mouse left");
+    pty.keys("m");
+    pty.wait_until(|pty| pty.modes_left().contains(&1000), "the mouse taken again");
+    // Stopped and continued.
+    pty.keys("\x1a");
+    pty.wait_for(|screen| screen.contains("[stopped]"), "stopped");
+    assert_eq!(pty.modes_left(), [] as [u16; 0]);
+    pty.keys("\n");
+    pty.wait_until(|pty| pty.modes_left().contains(&1000), "the mouse taken after the stop");
+    pty.keys("q");
+    pty.wait_for(|screen| screen.contains("[ended 0]"), "the end");
+    assert_eq!(pty.modes_left(), [] as [u16; 0]);
+    pty.keys("\n");
+    pty.exit_code();
+
+    let mut pty = Pty::spawn(program(), &["--mouse"], &[], 100, 30);
+    pty.wait_until(|pty| pty.modes_left().contains(&1000), "the mouse taken");
+    pty.signal(rustix::process::Signal::TERM);
+    assert_eq!(pty.exit_code(), 143);
+    pty.assert_restored();
+}
+
+#[test]
+fn no_color_means_none_unless_a_theme_is_asked_for() {
+    let colour = b"\x1b[38;5;";
+    for (args, env, coloured) in [
+        ([].as_slice(), [("NO_COLOR", "1")], false),
+        (&["--theme", "mono"], [("NO_COLOR", "")], false),
+        (&["--theme", "light"], [("NO_COLOR", "1")], true),
+        (&[], [("NO_COLOR", "")], true),
+        (&[], [("TERM", "vt220")], false),
+    ] {
+        let mut pty = Pty::spawn(program(), args, &env, 80, 24);
+        ready(&pty);
+        assert_eq!(pty.wrote(colour), coloured, "{args:?} {env:?}");
+        pty.keys("q");
+        pty.exit_code();
+    }
+}
+
+#[test]
+fn terminals_without_unicode_get_ascii_and_the_console_blocks() {
+    for (args, env, ascii, blocks) in [
+        ([].as_slice(), ("LANG", "C"), true, false),
+        (&[], ("TERM", "vt100"), true, false),
+        (&["--ascii"], ("TERM", "xterm"), true, false),
+        (&[], ("TERM", "linux"), false, true),
+        (&["--charts", "block"], ("TERM", "xterm"), false, true),
+        (&["--ascii=false"], ("LANG", "C"), false, false),
+    ] {
+        let mut pty = Pty::spawn(program(), args, &[env], 100, 30);
+        ready(&pty);
+        let screen = pty.screen();
+        assert_eq!(screen.is_ascii(), ascii, "{args:?} {env:?}\n{screen}");
+        assert_eq!(screen.contains('▀') || screen.contains('▄'), blocks, "{args:?} {env:?}\n{screen}");
+        pty.keys("q");
+        pty.exit_code();
+    }
+}
+
+#[test]
+fn what_is_copied_goes_through_the_terminal() {
+    let mut pty = Pty::spawn(program(), &[], &[], 100, 30);
+    ready(&pty);
+    pty.keys("Y\r");
+    pty.wait_for(|screen| screen.contains("sent to the terminal's clipboard"), "copied");
+    // "wavy-sphere" begins the text.
+    assert!(pty.wrote(b"\x1b]52;c;d2F2eS1zcGhlcm"));
+    pty.keys("q");
+    pty.exit_code();
+    pty.assert_restored();
 }

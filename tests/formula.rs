@@ -7,20 +7,91 @@ use proptest::test_runner::RngSeed;
 use pulloff::contact::Gap;
 use pulloff::contact::formula::Formula;
 use pulloff::expression::grammar::{DEPTH, LENGTH};
+use pulloff::preset::read_with;
 use pulloff::units::{DisplayUnits, Quantity, UnitSystem, parse_quantity};
 
 /// The words of the language and some that are none.
 const TOKENS: &[&str] = &[
-    "r", "R", "lambda", "pi", "e", "2", "0", "1e-3", "1e308", ".5", "5.", "0/0", "+", "-", "*", "/", "^",
-    "(", ")", ",", " ", "sin(", "cos(", "tan(", "exp(", "log(", "sqrt(", "abs(", "min(", "max(", "pow(",
-    "hypot(", "asin(", "step(", "sign", "²", "µ", "−", "\u{202e}", "\u{0}", "_", "1.2.3", "e5", "(r)", "^2",
-    "^-1", "^0.5",
+    "r",
+    "R",
+    "lambda",
+    "pi",
+    "e",
+    "2",
+    "0",
+    "1e-3",
+    "1e308",
+    ".5",
+    "5.",
+    "0/0",
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "(",
+    ")",
+    ",",
+    " ",
+    "sin(",
+    "cos(",
+    "tan(",
+    "exp(",
+    "log(",
+    "sqrt(",
+    "abs(",
+    "min(",
+    "max(",
+    "pow(",
+    "hypot(",
+    "asin(",
+    "step(",
+    "sign",
+    "²",
+    "µ",
+    "−",
+    "\u{202e}",
+    "\u{0}",
+    "_",
+    "1.2.3",
+    "e5",
+    "(r)",
+    "^2",
+    "^-1",
+    "^0.5",
+    "1/0",
+    "-1/0",
+    "NaN",
+    "nan",
+    "inf",
+    "1e999",
+    "5e-324",
+    "∞",
+    "π",
+    "λ",
+    "٣",
+    "½",
+    "𝟙",
+    "e\u{301}",
+    "\u{feff}",
+    "\u{2028}",
+    "🦀",
+    "log(0)",
+    "log(-r)",
+    "r^r",
+    "0^0",
+    "0^-1",
+    "1e308*1e308",
+    "sqrt(-1)",
+    "asin(2)",
+    "\n",
+    "\"",
 ];
 
 /// Pieces of units and some that are none.
 const UNIT_WORDS: &[&str] = &[
     "m", "um", "µm", "Å", "°", "J", "mJ", "N", "kPa", "/", "*", "·", " ", "^", "^2", "^-1", "²", "⁻¹", "⁻",
-    "^99", "x", "eV", "kg", "s", "(", "\u{202e}", "\u{7}",
+    "^99", "1/", "1", "⁹", "^-9", "x", "eV", "kg", "s", "(", "\u{202e}", "\u{7}",
 ];
 
 /// Everything a program does with a formula, in a text that may be anything.
@@ -131,6 +202,75 @@ proptest! {
         exercise(&format!("r+{}", token.repeat(times)));
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 300, rng_seed: RngSeed::Fixed(6), failure_persistence: None, ..ProptestConfig::default()
+    })]
+
+    /// In a preset: a gap that is finite where the path may go, or a mistake that names a key of the gap.
+    #[test]
+    fn hostile_formulas_in_a_preset(
+        tokens in prop::collection::vec(prop::sample::select(TOKENS), 0..8),
+        values in prop::collection::vec(prop::sample::select(VALUES), 2),
+        alone in any::<bool>(),
+        si in any::<bool>(),
+    ) {
+        let soup = tokens.concat();
+        let formula = if alone { soup } else { format!("r^2/(2*R) + A*({soup})") };
+        let text = format!(
+            "units = \"{}\"\n[material]\neffective_modulus = 1\nwork_of_adhesion = 0.01\n[gap]\n\
+             shape = \"formula\"\n[path]\nstart_contact_radius = 0.5\n",
+            if si { "SI" } else { "reduced" }
+        );
+        let sets = [
+            format!("gap.formula={formula}"),
+            format!("gap.parameters.R={}", values[0]),
+            format!("gap.parameters.A={}", values[1]),
+        ];
+        match read_with("p.toml", &text, &sets) {
+            Ok(preset) => {
+                prop_assert!(preset.check().is_ok(), "{formula}");
+                for radius in [1e-9, 0.1, 0.5] {
+                    let jet = preset.gap.jet(radius);
+                    prop_assert!(jet.value.is_finite() && jet.first.is_finite(), "{formula} at {radius}: {jet:?}");
+                }
+            }
+            Err(error) => {
+                for mistake in error.mistakes {
+                    let message = mistake.to_string();
+                    prop_assert!(message.contains("gap."), "{message}");
+                    prop_assert!(!message.chars().any(|c| c.is_control() || c == '\u{202e}'), "{message:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Values of parameters, and some that are none.
+const VALUES: &[&str] = &[
+    "1",
+    "0",
+    "-1",
+    "1e-30",
+    "1e30",
+    "1e999",
+    "nan",
+    "1/0",
+    "0/0",
+    "3 um",
+    "1 µm⁻¹",
+    "3 furlong",
+    "1e400 m",
+    "𝟙",
+    "\u{202e}",
+    "",
+    "((1",
+    "true",
+    "[1]",
+    "{value=2}",
+    "{ value = 1, max = 0 }",
+];
 
 /// A formula built as the grammar says.
 fn well_formed() -> impl Strategy<Value = String> {

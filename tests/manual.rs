@@ -41,7 +41,7 @@ fn screen() -> String {
     let folder = tempfile::tempdir().unwrap();
     let store = pulloff::preset::Store::at(folder.path(), &[]);
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
-    let (mut app, effects) = App::new(loaded, Theme { ascii: false });
+    let (mut app, effects) = App::new(loaded, Theme::default());
     let driver = Inline::new(store);
     driver.settle(&mut app.model, effects);
     for id in [Id::NextLimit, Id::Jump, Id::NextLimit] {

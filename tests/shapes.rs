@@ -22,9 +22,9 @@ struct Case {
     /// The largest contact, and the number of functions it takes.
     from: f64,
     functions: usize,
-    /// What these functions are good for: powers that are not whole converge like powers of their number.
+    /// What δ and P are good for, whatever the number of functions that resolve the waves.
     tolerance: f64,
-    /// The same for energies, for which odd powers too are not smooth.
+    /// The same for energies, whose terms fall as a power of their number where the gap is not even.
     energy: f64,
 }
 
@@ -69,9 +69,9 @@ fn cases(adhesive: bool) -> Vec<Case> {
     let ball = sphere::Sphere { effective_modulus: 1.0, work_of_adhesion: gamma(0.01), radius: 1.0 };
     vec![
         case("sphere", ExactSphere { radius: 1.0 }, ball, 0.9),
-        law("cone", 0.3, 1.0, gamma(0.005), [1e-11, 1e-7]),
-        law("n = 1.5", 0.4, 1.5, gamma(0.005), [1e-6, 1e-6]),
-        law("n = 2.7", 0.5, 2.7, gamma(0.01), [1e-9, 1e-8]),
+        law("cone", 0.3, 1.0, gamma(0.005), [1e-13, 1e-7]),
+        law("n = 1.5", 0.4, 1.5, gamma(0.005), [1e-13, 1e-8]),
+        law("n = 2.7", 0.5, 2.7, gamma(0.01), [1e-13, 1e-9]),
         law("n = 3", 0.5, 3.0, gamma(0.01), [1e-11, 1e-9]),
         law("n = 4", 0.7, 4.0, gamma(0.01), [1e-11, 1e-9]),
         law("n = 20", 0.7, 20.0, gamma(0.01), [1e-11, 1e-9]),
@@ -209,14 +209,10 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
     let truth = waves("source", &source, gamma, from).exact;
     let gap = rows(150);
     let (problem, own) = (reduced(&gap, gamma), sneddon(&gap, gamma));
-    // Jumps of h''' make convergence a power of the number of functions.
-    let [coarse, fine] = [250, 1000].map(|n| errors(&Spectral::new(n).unwrap(), &problem, &own, from));
-    println!("profile: spectral {coarse:?} {fine:?}");
-    assert!(fine.iter().all(|error| *error <= 1e-7), "{fine:?}");
-    assert!(
-        coarse.iter().zip(fine).all(|(coarse, fine)| fine <= 0.1 * coarse || fine <= 1e-11),
-        "{coarse:?} {fine:?}"
-    );
+    // Sums broken at the rows: δ and P are exact with any number of functions.
+    let few = errors(&Spectral::new(50).unwrap(), &problem, &own, from);
+    println!("profile: spectral {few:?}");
+    assert!(few.iter().all(|error| *error <= 1e-13), "{few:?}");
     let rings = errors(&*Rings::shared(400).unwrap(), &problem, &own, from);
     assert!(rings.iter().all(|error| *error <= 0.03), "{rings:?}");
     // Half the distance of the rows: an eighth to a sixteenth of the error.

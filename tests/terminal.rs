@@ -278,3 +278,38 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
         assert!(!pty.wrote(sequence.as_bytes()), "{sequence:?} reached the terminal");
     }
 }
+
+#[test]
+fn keys_come_from_the_settings_and_bad_settings_are_said_and_left_alone() {
+    let home = tempfile::tempdir().expect("a home");
+    let (folder, file) = (home.path().join("pulloff"), home.path().join("pulloff/config.toml"));
+    fs::create_dir(&folder).expect("a folder");
+    let env = [("XDG_CONFIG_HOME", home.path().to_str().expect("a path"))];
+    fs::write(&file, "[keys]\nquit = \"Z\"\n").expect("a file");
+    let mut pty = Pty::spawn(&program(), &[], &env, 80, 24);
+    pty.wait_for(|screen| screen.contains("Z quit"), "the person's key in the footer");
+    pty.keys("Z");
+    assert_eq!(pty.exit_code(), 0);
+    // A clash: the usual keys, said on the screen and before it; the file stays as it is.
+    let bad = "[keys]\nstep = \"x\"\n";
+    fs::write(&file, bad).expect("a file");
+    let mut pty = Pty::spawn(&program(), &[], &env, 160, 24);
+    pty.wait_for(
+        |screen| screen.contains("the settings are not used") && screen.contains("q quit"),
+        "the notice",
+    );
+    pty.keys("q");
+    assert_eq!(pty.exit_code(), 0);
+    assert!(String::from_utf8_lossy(&pty.raw()).contains("pulloff: the settings are not used: "));
+    assert_eq!(fs::read_to_string(&file).expect("the file"), bad);
+    // Asked for, it must be good.
+    for (path, said) in [
+        (file.as_path(), "config.toml:2: x would be the key of step and of jump"),
+        (&folder.join("none.toml"), "none.toml: cannot read: No such file"),
+    ] {
+        let mut pty = Pty::spawn(&program(), &["--config", path.to_str().expect("a path")], &env, 160, 24);
+        assert_eq!(pty.exit_code(), 2);
+        assert!(pty.screen().contains(said), "{}", pty.screen());
+        pty.assert_restored();
+    }
+}

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::shapes::{ExactSphere, PowerLaw};
-use pulloff::contact::{Control, Gap, Jet, Problem, Shape};
+use pulloff::contact::shapes::{ExactSphere, PowerLaw, Profile, Smoothing};
+use pulloff::contact::{Breaks, Control, Gap, Jet, Problem, Shape};
 use pulloff::theory::guduru::Guduru;
 use pulloff::theory::jkr::Jkr;
 use pulloff::theory::quadrature::integrate;
@@ -300,4 +300,83 @@ fn the_slopes_vanish_at_the_limit_points_of_the_reference() {
             }
         }
     }
+}
+
+/// A gap that does not say that it is a cubic: every integral between its knots is then refined until it is resolved.
+#[derive(Debug)]
+struct AnyPieces(Profile);
+
+impl Gap for AnyPieces {
+    fn jet(&self, r: f64) -> Jet {
+        self.0.jet(r)
+    }
+    fn feature_length(&self) -> Option<f64> {
+        self.0.feature_length()
+    }
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks { cubic: false, ..self.0.breaks() }
+    }
+    fn reference_length(&self) -> f64 {
+        self.0.reference_length()
+    }
+}
+
+fn rough_profile(rows: u16) -> Profile {
+    let radii: Vec<f64> = (0..rows).map(|i| f64::from(i) / f64::from(rows - 1)).collect();
+    let gaps: Vec<f64> = radii.iter().map(|r| 0.5 * r * r + 0.01 * (17.0 * r * r + 3.0 * r).sin()).collect();
+    Profile::new(&radii, &gaps, Smoothing::None).unwrap()
+}
+
+#[test]
+fn a_profile_between_its_rows_is_what_refining_finds() {
+    let (modulus, gamma) = (0.7, 0.004);
+    for rows in [8, 16, 60] {
+        let cubics = Exact::by_quadrature(modulus, gamma, Arc::new(rough_profile(rows)));
+        let pieces = Exact::by_quadrature(modulus, gamma, Arc::new(AnyPieces(rough_profile(rows))));
+        let radii = [0.004, 0.11, 4.0 / 7.0, 0.83, 1.0];
+        for (a, b) in cubics.curve(&radii).iter().zip(&pieces.curve(&radii)) {
+            let s = a.contact_radius;
+            let (g, h) = (cubics.transform(s), pieces.transform(s));
+            assert!(a.resolved && h.resolved, "{rows} {s}");
+            for (ours, theirs, size) in [
+                (g.value, h.value, h.value.abs() + s * s),
+                (g.slope, h.slope, h.slope.abs() + s),
+                (a.force, b.force, b.force_scale),
+                (a.energy, b.energy, b.force_scale * s),
+            ] {
+                assert!((ours - theirs).abs() <= 1e-12 * size, "{rows} {s}: {ours} {theirs} of {size}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_pressures_under_a_profile_carry_its_force() {
+    let (s, points) = (0.8_f64, 4000);
+    let exact = Exact::by_quadrature(0.7, 0.0, Arc::new(rough_profile(20)));
+    // r dr = −t dt, and the pressure is smooth in t but for the knots: midpoints.
+    let step = s / f64::from(points);
+    let depths: Vec<f64> = (0..points).map(|i| step * (f64::from(i) + 0.5)).collect();
+    let radii: Vec<f64> = depths.iter().map(|t| ((s - t) * (s + t)).sqrt()).collect();
+    let pressures = exact.pressures(s, &radii);
+    let force: f64 = pressures.iter().zip(&depths).map(|(p, t)| TAU * t * p * step).sum();
+    let scale = exact.equilibrium(s, 0.0).force_scale;
+    assert!((force - exact.force(s)).abs() <= 1e-6 * scale, "{force} {}", exact.force(s));
+    assert_eq!(exact.pressure(s, radii[7]).to_bits(), pressures[7].to_bits());
+}
+
+#[test]
+fn a_corner_of_a_formula_is_met() {
+    // h = max(r − c, 0)²/2: h' = r − c beyond c, g = a (cos θ a − c (π/2 − θ)) with sin θ = c/a.
+    let formula = pulloff::contact::formula::Formula::parse("max(r - 0.3, 0)^2/2").unwrap();
+    let gap = formula.bind(&[]).unwrap().over(1.0).unwrap();
+    assert!((gap.breaks().knots[0] - 0.3).abs() < 1e-15);
+    let exact = Exact::by_quadrature(1.0, 0.0, Arc::new(gap));
+    for a in [0.300_001_f64, 0.31, 0.5, 1.0] {
+        let theta = (0.3 / a).asin();
+        let g = a * (a * theta.cos() - 0.3 * (0.5 * PI - theta));
+        let ours = exact.transform(a);
+        assert!(ours.resolved && (ours.value - g).abs() <= 1e-14 * a * a, "{a}: {} {g}", ours.value);
+    }
+    assert_eq!(exact.transform(0.3).value.to_bits(), 0f64.to_bits());
 }

@@ -5,8 +5,11 @@
 use pulloff::case::Case;
 use pulloff::contact::{Control, Gap, Shape};
 use pulloff::preset::{Preset, Value, read, read_with, shipped, write};
-use pulloff::report::{UnloadReport, json, table};
-use pulloff::units::UnitSystem;
+use pulloff::quasistatic::unload::UnloadError;
+use pulloff::quasistatic::{CurveStop, PathStop};
+use pulloff::report::{ProblemReport, TraceReport, UnloadReport, json, table};
+use pulloff::units::number::said;
+use pulloff::units::{DisplayUnits, UnitSystem};
 
 const WAVY: &str = "units = \"SI\"
 [material]
@@ -96,7 +99,7 @@ fn what_has_another_dimension_or_no_units_is_refused() {
         ),
         (WAVY, &["gap.wavelength=3 furlong"], "unknown unit furlong"),
         (WAVY, &["display.length=kPa"], "display.length: expected a length such as um, got kPa, a stress"),
-        (WAVY, &["gap.wavelength=-3 um"], "gap.wavelength = -3e-6 is out of range"),
+        (WAVY, &["gap.wavelength=-3 um"], "gap.wavelength = -3.0 um is out of range"),
         (
             &reduced,
             &[],
@@ -225,4 +228,280 @@ fn tabor_is_known_in_si_and_warned_of_where_the_method_does_not_hold() {
         "{far:?}"
     );
     assert_eq!(Case::new(&shipped_preset("fig-9")).unwrap().tabor, None);
+}
+
+const POWER: &str = "units = \"SI\"
+[material]
+effective_modulus = \"40 kPa\"
+work_of_adhesion = \"50 mJ/m^2\"
+[gap]
+shape = \"power-law\"
+coefficient = \"2e3 m^-1\"
+exponent = 2
+[path]
+start_contact_radius = \"1 mm\"
+";
+
+#[test]
+fn the_coefficient_of_a_power_law_has_the_dimension_its_exponent_gives() {
+    for (exponent, coefficient, expected) in [
+        ("2", "2e3", 2e3),
+        ("2", "2 1/mm", 2e3),
+        ("2", "2/mm", 2e3),
+        ("2", "2e-3 um^-1", 2e3),
+        ("3", "3 1/mm^2", 3e6),
+        ("3", "(1+2) mm⁻²", 3e6),
+        ("4", "1/2/mm^3", 0.5e9),
+        ("1", "0.1", 0.1),
+        ("1", "90 deg", std::f64::consts::FRAC_PI_2),
+        ("2.5", "7", 7.0),
+    ] {
+        let sets = [format!("gap.exponent={exponent}"), format!("gap.coefficient={coefficient}")];
+        let preset = read_with("p", POWER, &sets).unwrap();
+        let got = number(&preset, "gap.coefficient");
+        assert!((got - expected).abs() <= 4.0 * f64::EPSILON * expected, "{sets:?}: {got}");
+        assert_eq!(read("p", &write(&preset)).unwrap(), preset, "{sets:?}");
+    }
+    for (exponent, coefficient, words) in [
+        ("2", "2 um", "gap.coefficient: expected an inverse length such as m^-1, got 2 um, a length"),
+        ("3", "2 1/um", "expected an inverse area such as m^-2, got 2 1/um, an inverse length"),
+        (
+            "5",
+            "2 um^-3",
+            "expected an inverse power of a length such as m^-4, got 2 um^-3, an inverse volume",
+        ),
+        ("1", "2 um", "expected a pure number, got 2 um, a length"),
+        ("2.5", "2 um^-1", "with n = 2.5 it is a length to the power -1.5, which no unit here is"),
+        ("20", "2 um^-9", "with n = 20.0 it is a length to the power -19, which no unit here is"),
+        ("2", "2 furlong^-1", "unknown unit furlong"),
+        ("2", "-2 um^-1", "gap.coefficient = -2.0 um^-1 is out of range"),
+    ] {
+        let sets = [format!("gap.exponent={exponent}"), format!("gap.coefficient={coefficient}")];
+        let message = read_with("p", POWER, &sets).unwrap_err().to_string();
+        assert!(message.contains(words), "{sets:?}: {message}");
+    }
+    let reduced = mistake(&POWER.replace("units = \"SI\"\n", ""), &[]);
+    assert!(reduced.contains("the problem is in reduced units"), "{reduced}");
+}
+
+#[test]
+fn the_coefficient_is_shown_and_typed_in_its_unit() {
+    let mut preset = read("p", POWER).unwrap();
+    for (key, text, shown, expected) in [
+        ("gap.coefficient", "0.001", "0.001 um^-1", 1e3),
+        ("gap.exponent", "4", "1e-15 um^-3", 1e3),
+        ("gap.coefficient", "2e-12", "2e-12 um^-3", 2e6),
+        ("gap.coefficient", "5 1/mm^3", "5e-9 um^-3", 5e9),
+        ("gap.exponent", "1.5", "5e9", 5e9),
+        ("gap.coefficient", "3", "3", 3.0),
+    ] {
+        let row = preset.row(key).unwrap();
+        let value = preset.typed(&row, text).unwrap();
+        preset.set(key, value).unwrap();
+        let got = number(&preset, "gap.coefficient");
+        assert!((got - expected).abs() <= 4.0 * f64::EPSILON * expected, "{key} = {text}: {got}");
+        let quantity = preset.row("gap.coefficient").unwrap().quantity;
+        assert_eq!(said(&preset.units, quantity, got), shown);
+    }
+    let text = write(&read("p", POWER).unwrap());
+    assert!(text.contains("coefficient = \"0.002 um^-1\""), "{text}");
+    // The same body in reduced units: c r² with r in units of 1/c.
+    let si = UnloadReport::compute(&read("p", POWER).unwrap()).unwrap();
+    let sphere = POWER
+        .replace("power-law", "sphere")
+        .replace("coefficient = \"2e3 m^-1\"\nexponent = 2", "radius_of_curvature = \"0.25 mm\"");
+    let same = UnloadReport::compute(&read("p", &sphere).unwrap()).unwrap();
+    assert!((si.min_force - same.min_force).abs() <= 1e-9 * same.min_force.abs());
+}
+
+#[test]
+fn a_parameter_takes_a_value_in_any_unit_of_its_dimension() {
+    let text = "units = \"SI\"
+[material]
+effective_modulus = \"40 kPa\"
+work_of_adhesion = \"50 mJ/m^2\"
+[gap]
+shape = \"formula\"
+formula = \"k*r^2 + A*(1 - cos(2*pi*r/lambda)) + 0*B\"
+[gap.parameters]
+k = { value = \"1/2/mm\", unit = \"m^-1\" }
+A = 1e-6
+lambda = { value = \"50 um\", min = \"0.01 mm\", max = \"100 um\", unit = \"nm\" }
+B = { value = \"3 mm^2\", unit = \"m^2\" }
+[path]
+start_contact_radius = \"1 mm\"
+";
+    let preset = read("p", text).unwrap();
+    for (key, expected) in [
+        ("gap.parameters.k", 500.0),
+        ("gap.parameters.A", 1e-6),
+        ("gap.parameters.lambda", 50e-6),
+        ("gap.parameters.lambda.min", 10e-6),
+        ("gap.parameters.lambda.max", 100e-6),
+        ("gap.parameters.B", 3e-6),
+    ] {
+        let got = number(&preset, key);
+        assert!((got - expected).abs() <= 2.0 * f64::EPSILON * expected, "{key} = {got}");
+    }
+    assert_eq!(read("p", &write(&preset)).unwrap(), preset, "{}", write(&preset));
+    // On the screen in the unit of its quantity, in a document in SI.
+    let row = preset.row("gap.parameters.lambda").unwrap();
+    assert_eq!(said(&preset.units, row.quantity, 50e-6), "50 um");
+    assert_eq!(preset.typed(&row, "20"), Ok(Value::Typed("20 um".to_owned())));
+    let case = Case::new(&preset).unwrap();
+    let document = json(&ProblemReport::new(&preset, &case)).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let parameters = &document["preset"]["gap"]["parameters"];
+    assert_eq!((&parameters["lambda"]["unit"], &parameters["lambda"]["value"]), (&"m".into(), &5e-5.into()));
+    assert_eq!((&parameters["k"]["unit"], &parameters["B"]["unit"]), (&"m^-1".into(), &"m^2".into()));
+    // The unit is a remark: a bare number stays in SI.
+    let bare = read_with("p", text, &["gap.parameters.lambda=6e-5"]).unwrap();
+    assert!((number(&bare, "gap.parameters.lambda") - 6e-5).abs() < 1e-20);
+    for (set, words) in [
+        (
+            "gap.parameters.lambda=50 mN",
+            "expected a length such as nm, the unit of the parameter, got 50 mN, a force",
+        ),
+        (
+            "gap.parameters.lambda.max=1 m^2",
+            "expected a length such as nm, the unit of the parameter, got 1 m^2, an area",
+        ),
+        (
+            "gap.parameters.B=3 mm",
+            "expected an area such as m^2, the unit of the parameter, got 3 mm, a length",
+        ),
+        ("gap.parameters.k=3 mm", "expected an inverse length such as m^-1"),
+        (
+            "gap.parameters.lambda=0.2 mm",
+            "= 200.0 um is out of range: it must be a number from 1e-5 to 0.0001 (in m)",
+        ),
+    ] {
+        let message = mistake(text, &[set]);
+        assert!(message.contains(words), "{set}: {message}");
+    }
+}
+
+/// What computing a preset says when it refuses.
+fn refusal(preset: &Preset) -> String {
+    let unloaded = Case::new(preset).and_then(|case| case.unload(&mut case.sweep(|| true)?, case.control));
+    unloaded.unwrap_err().to_string()
+}
+
+#[test]
+fn numbers_in_words_have_their_unit_in_si_and_none_in_reduced_units() {
+    let [si, reduced] = ["fig-9-si", "fig-9"].map(|name| shipped::find(name).unwrap().text);
+    // Refused before anything is computed.
+    for (sets, words, bare) in [
+        (
+            ["path.start_contact_radius=60 mm", "path.start_contact_radius=12"],
+            "path.start_contact_radius = 60000.0 um is out of range: it must be at most 10 x the radius of curvature \
+             5000.0 um",
+            "path.start_contact_radius = 12.0 is out of range: it must be at most 10 x the radius of curvature 1.0",
+        ),
+        (
+            ["path.end_contact_radius=3 mm", "path.end_contact_radius=0.6"],
+            "path.end_contact_radius = 3000.0 um is not below path.start_contact_radius = 2500.0 um",
+            "path.end_contact_radius = 0.6 is not below path.start_contact_radius = 0.5",
+        ),
+    ] {
+        let message = mistake(si, &sets[..1]);
+        assert!(message.ends_with(words), "{message}");
+        let message = mistake(reduced, &sets[1..]);
+        assert!(message.ends_with(bare), "{message}");
+    }
+    // Refused by the computation.
+    for (sets, parts, bare) in [
+        (
+            ["path.start_force=-1 N", "path.start_force=-5"],
+            ["no contact has the force -1e6 uN; the smallest on the curve is -", " uN"],
+            "no contact has the force -5; the smallest on the curve is -",
+        ),
+        (
+            ["path.start_approach=-1 mm", "path.start_approach=-0.2"],
+            ["no contact has the approach -1000 um; the smallest on the curve is -", " um"],
+            "no contact has the approach -0.2; the smallest on the curve is -",
+        ),
+    ] {
+        let fast = ["basis.kind=spectral", "path.start_contact_radius=1"];
+        let with = |text, set| read_with("p", text, &[fast[0], set]).unwrap();
+        let message = refusal(&with(si, sets[0]));
+        assert!(message.starts_with(parts[0]) && message.ends_with(parts[1]), "{message}");
+        let message = refusal(&with(reduced, sets[1]));
+        assert!(message.starts_with(bare) && message.ends_with(|c: char| c.is_ascii_digit()), "{message}");
+    }
+}
+
+/// The lines that two computations of one problem say, in SI and in reduced units.
+fn both(si: &[&str], reduced: &[&str], lines: impl Fn(&Preset) -> Vec<String>) -> [Vec<String>; 2] {
+    let of =
+        |name: &str, sets: &[&str]| lines(&read_with(name, shipped::find(name).unwrap().text, sets).unwrap());
+    [of("fig-9-si", si), of("fig-9", reduced)]
+}
+
+#[test]
+fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
+    let traced = |preset: &Preset| {
+        let report = TraceReport::compute(preset).unwrap();
+        [report.warnings, report.notes, vec![report.stop]].concat()
+    };
+    let unloaded = |preset: &Preset| {
+        let report = UnloadReport::compute(preset).unwrap();
+        let note = report.start.note.into_iter().collect();
+        [report.warnings, report.notes, note, vec![report.stop]].concat()
+    };
+    // Adhesion so weak that crests touch, none at all, and a start that is unstable.
+    let weak = ["material.work_of_adhesion=20 mJ/m^2", "basis.kind=spectral"];
+    let same = ["material.work_of_adhesion=1e-4", "basis.kind=spectral"];
+    let none = ["material.work_of_adhesion=0", "basis.kind=spectral"];
+    let starts = (["path.start_contact_radius=2.4 mm"], ["path.start_contact_radius=0.48"]);
+    for (lines, word) in [
+        (both(&weak, &same, traced), "s = "),
+        (both(&none, &none, unloaded), "s = "),
+        (both(&starts.0, &starts.1, unloaded), "contact radius "),
+    ] {
+        let [si, reduced] = &lines;
+        assert_eq!(si.len(), reduced.len(), "{lines:?}");
+        let told = |lines: &[String]| lines.iter().find(|line| line.contains(word)).cloned();
+        let (si, bare) = (told(si).unwrap(), told(reduced).unwrap());
+        // In reduced units every number with a decimal point is a length here, and each has its unit in SI.
+        let lengths = bare.split_whitespace().filter(|piece| piece.contains('.')).count();
+        assert!(lengths >= 2 && si.matches(" um").count() == lengths, "{si}\n{bare}");
+        assert!(!bare.contains(" um"), "{bare}");
+        assert!(reduced.iter().all(|line| !line.contains(" um")), "{reduced:?}");
+    }
+}
+
+#[test]
+fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
+    let si = UnitSystem::Si(DisplayUnits::default());
+    let stop = PathStop::Curve(CurveStop::NoEquilibrium(2e-5));
+    assert!(stop.words(&si).contains("below the contact radius 20 um (a finer"), "{}", stop.words(&si));
+    assert!(stop.to_string().contains("below the contact radius 2e-5 (a finer"), "{stop}");
+    let unstable =
+        UnloadError::UnstableStart { contact_radius: 2e-5, control: Control::Stiffness(5.0), searched: 1e-3 };
+    let words = unstable.words(&si);
+    assert!(words.contains("(contact radius 20 um)") && words.contains("stiffness=5 N/m control"), "{words}");
+    assert!(words.ends_with("up to the contact radius 1000 um"), "{words}");
+
+    let base = "units = \"SI\"\n[material]\neffective_modulus = 4e4\nwork_of_adhesion = 0.05\n[path]\n\
+                start_contact_radius = \"1 mm\"\n[gap]\n";
+    let mistake = |gap: &str| mistake(&format!("{base}{gap}"), &[]);
+    let formula = mistake("shape = \"formula\"\nformula = \"sqrt(5e-4 - r)\"");
+    assert!(formula.contains("not finite at r = 500 um (up to r = 1000 um it must be"), "{formula}");
+    let waves = mistake(
+        "shape = \"random-waves\"\nradius_of_curvature = 0.005\nrms = 0\nlongest_wavelength = \"1 um\"\n\
+         shortest_wavelength = \"2 um\"",
+    );
+    assert!(waves.contains("the shortest wavelength 2 um must be below the longest, 1 um"), "{waves}");
+    let cutoff = mistake("shape = \"profile\"\nfile = \"shipped:rough-sphere.csv\"\nsmoothing = \"1 m\"");
+    assert!(
+        cutoff.contains("the cutoff 1e6 um is out of range: it must be positive and at most "),
+        "{cutoff}"
+    );
+    assert!(cutoff.contains(" um, "), "{cutoff}");
+
+    let shifted = format!("{base}shape = \"formula\"\nformula = \"r^2/0.01 + 2e-6\"");
+    let case = Case::new(&read("p", &shifted).unwrap()).unwrap();
+    let warnings = case.warnings(case.start);
+    assert!(warnings.iter().any(|w| w.starts_with("the formula is 2 um on the axis")), "{warnings:?}");
 }

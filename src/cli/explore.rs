@@ -1,21 +1,76 @@
 //! `pulloff`: the explorer.
 
 use super::{Failure, Problem};
+use std::path::Path;
 use std::process::ExitCode;
 
+/// How the explorer looks.
 #[cfg(feature = "tui")]
-pub fn run(problem: &Problem) -> Result<ExitCode, Failure> {
-    // What is wrong with the preset is wrong on any terminal.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Explorer")]
+pub struct Flags {
+    /// Colours for a dark or a light background, or none; the variable `NO_COLOR` means mono
+    #[arg(long, value_enum)]
+    theme: Option<crate::tui::theme::Palette>,
+    /// What curves are drawn with, for fonts without braille or without blocks
+    #[arg(long, value_enum)]
+    charts: Option<crate::tui::theme::Charts>,
+    /// Only ASCII characters, as in a locale without UTF-8
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
+    ascii: Option<bool>,
+    /// Take the mouse from the start; m takes it and gives it back
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
+    mouse: Option<bool>,
+}
+
+/// A build without the explorer has nothing to look at.
+#[cfg(not(feature = "tui"))]
+#[derive(Debug, clap::Args)]
+pub struct Flags {}
+
+#[cfg(feature = "tui")]
+pub fn run(problem: &Problem, config: Option<&Path>, flags: &Flags) -> Result<ExitCode, Failure> {
+    use crate::tui::look::{Environment, Look, LookFile};
+    // What is wrong with the preset, or with settings asked for, is wrong on any terminal.
     let loaded = problem.load()?;
+    let settings = settings(config)?;
     if let Some(reason) = crate::tui::refuse_reason() {
         let reason = reason.strip_prefix("pulloff ").unwrap_or(&reason);
         return Err(Failure::Usage(format!("{reason} (`pulloff trace` and `pulloff unload` need none)")));
     }
-    crate::tui::run(super::store(), loaded).map_err(|error| Failure::Terminal(error.to_string()))
+    if let Some(notice) = &settings.notice {
+        let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("pulloff: {notice}\n"));
+    }
+    let Flags { theme, charts, ascii, mouse } = *flags;
+    let asked = LookFile { theme, charts, ascii, mouse };
+    let look = Look::resolve(asked, Some(settings.look), &Environment::of_process());
+    crate::tui::run(super::store(), loaded, look, settings)
+        .map_err(|error| Failure::Terminal(error.to_string()))
+}
+
+/// The settings of a file asked for, or of the usual one, whose faults leave the defaults and a notice.
+#[cfg(feature = "tui")]
+pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Failure> {
+    use crate::config::{self, ConfigError};
+    use crate::tui::{Settings, keymap::Keymap, look::LookFile};
+    let ready = |config: Result<config::Config, ConfigError>| {
+        config.and_then(|config| {
+            Ok(Settings { keymap: Keymap::of(&config)?, look: LookFile::of(&config), notice: None })
+        })
+    };
+    if let Some(path) = asked {
+        return ready(config::load(path)).map_err(|error| Failure::Usage(error.to_string()));
+    }
+    let usual =
+        config::path().map_or_else(|| Ok(config::Config::default()), |path| config::load_if_there(&path));
+    Ok(ready(usual).unwrap_or_else(|error| Settings {
+        notice: Some(format!("the settings are not used: {error}")),
+        ..Settings::default()
+    }))
 }
 
 #[cfg(not(feature = "tui"))]
-pub fn run(_problem: &Problem) -> Result<ExitCode, Failure> {
+pub fn run(_problem: &Problem, _config: Option<&Path>, _flags: &Flags) -> Result<ExitCode, Failure> {
     Err(Failure::Usage(
         "this build has no explorer (feature `tui` is off); use `pulloff trace` or `pulloff unload`"
             .to_owned(),

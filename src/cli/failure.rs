@@ -22,6 +22,16 @@ pub enum Failure {
     /// The result could not be written as CSV.
     #[error(transparent)]
     Rows(#[from] RowsError),
+    /// The data of a figure could not be written as CSV.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A figure of the paper could not be computed.
+    #[error(transparent)]
+    Paper(#[from] crate::plot::paper::PaperError),
+    /// A figure could not be drawn as pixels.
+    #[cfg(feature = "png")]
+    #[error(transparent)]
+    Png(#[from] crate::plot::png::PngError),
     /// The result could not be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
@@ -43,6 +53,9 @@ pub enum Failure {
     /// Inadmissible states where none are allowed; the result was written.
     #[error("{0}")]
     Inadmissible(String),
+    /// A line of a script failed; those before it were done.
+    #[error("{0}")]
+    Script(String),
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),
@@ -67,7 +80,9 @@ impl Failure {
             | Self::Case(
                 CaseError::EndOutsideStart { .. }
                 | CaseError::Basis(_)
-                | CaseError::Start(StartError::OutOfReach { .. } | StartError::NotReached { .. }),
+                | CaseError::Start {
+                    error: StartError::OutOfReach { .. } | StartError::NotReached { .. }, ..
+                },
             ) => 2,
             Self::Inadmissible(_) => 3,
             _ => 1,

@@ -10,10 +10,15 @@
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
 
+mod completions;
 mod explore;
 mod failure;
+mod figures;
+mod man;
 mod output;
+mod plot;
 mod presets;
+mod run;
 mod trace;
 mod unload;
 mod verify;
@@ -25,6 +30,7 @@ use crate::report::OverlapReport;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
@@ -35,6 +41,11 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     problem: Problem,
+    /// Take the settings of the explorer from this file; pulloff/config.toml in the configuration folder when left out
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    flags: explore::Flags,
 }
 
 #[derive(Debug, Subcommand)]
@@ -43,11 +54,21 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Draw a view as a figure for print
+    Plot(plot::Arguments),
+    /// Compute the figures of the paper again: pictures, numbers and captions
+    Figures(figures::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
+    /// Run a script of the explorer's commands
+    Run(run::Arguments),
     /// List and show presets
     #[command(subcommand)]
     Presets(presets::Command),
+    /// Write the completions of a shell to standard output
+    Completions(completions::Arguments),
+    /// Write the manual page to standard output
+    Man,
 }
 
 /// Which problem, as the explorer and every computing command take it.
@@ -94,10 +115,15 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem),
+        None => explore::run(&cli.problem, cli.config.as_deref(), &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Plot(arguments)) => plot::run(arguments),
+        Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
+        Some(Command::Run(arguments)) => run::run(arguments),
+        Some(Command::Completions(arguments)) => completions::run(arguments),
+        Some(Command::Man) => man::run(),
         Some(Command::Presets(command)) => presets::run(command),
     };
     match result {

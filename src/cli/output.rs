@@ -1,6 +1,7 @@
 //! Where a result goes: a file, whole or not at all, or standard output.
 
 use super::Failure;
+use crate::preset::text::sanitize;
 use crate::preset::{Overwrite, write_atomically};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -16,4 +17,9 @@ pub fn write(text: &str, file: Option<&Path>) -> Result<(), Failure> {
         ErrorKind::BrokenPipe => Failure::Closed,
         _ => Failure::Output(error),
     })
+}
+
+/// A path as it can be shown.
+pub fn shown(path: &Path) -> String {
+    sanitize(&path.to_string_lossy(), 200)
 }

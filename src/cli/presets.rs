@@ -1,4 +1,4 @@
-//! `pulloff presets`: list, show, and where they are kept.
+//! `pulloff presets`: list, show, delete, and where they are kept.
 
 use super::{Failure, output, store};
 use crate::preset::Source;
@@ -6,7 +6,7 @@ use crate::preset::text::{sanitize, show_path};
 use clap::Subcommand;
 use std::ffi::OsString;
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 /// The subcommands of `pulloff presets`.
@@ -18,6 +18,14 @@ pub enum Command {
     Show {
         /// Its name, or a preset file
         name: OsString,
+    },
+    /// Delete a preset of your own, after a question
+    Delete {
+        /// Its name
+        name: String,
+        /// Delete it without asking
+        #[arg(long, short)]
+        yes: bool,
     },
     /// Say where your own presets are kept
     Path,
@@ -53,10 +61,32 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             let loaded = store.load(&source, &[] as &[&str])?;
             output::write(&loaded.text, None)?;
         }
+        Command::Delete { name, yes } => {
+            let path = store.own(name)?;
+            if !yes {
+                ask(&format!("Delete {} for good?", show_path(&path)))?;
+            }
+            store.delete(name)?;
+            let _ = writeln!(std::io::stderr(), "pulloff: deleted {}", show_path(&path));
+        }
         Command::Path => match store.folder() {
             Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,
             None => return Err(Failure::Usage("no home folder is known: set XDG_CONFIG_HOME".to_owned())),
         },
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Asks on standard error; any answer but `y` or `yes` is no.
+fn ask(question: &str) -> Result<(), Failure> {
+    if !std::io::stdin().is_terminal() {
+        return Err(Failure::Usage("nobody can be asked: --yes deletes without a question".to_owned()));
+    }
+    let _ = write!(std::io::stderr(), "{question} [y/N] ");
+    let mut answer = String::new();
+    let read = std::io::stdin().read_line(&mut answer);
+    match answer.trim() {
+        "y" | "yes" if read.is_ok() => Ok(()),
+        _ => Err(Failure::Usage("not deleted".to_owned())),
+    }
 }

@@ -1,5 +1,6 @@
 //! What the numerics ask of a gap.
 
+use super::breaks::Breaks;
 use std::fmt::Debug;
 
 /// The gap and its exact derivatives at one radius.
@@ -49,11 +50,18 @@ pub trait Gap: Debug + Send + Sync {
     /// Step lengths, mesh warnings and the crest index are measured by it.
     fn feature_length(&self) -> Option<f64>;
 
-    /// The shortest wave of a gap that is smooth apart from its waves, or `None` where nothing is promised.
+    /// The shortest wave of a gap that is smooth in r apart from its waves, or `None` where nothing is promised.
     ///
     /// Sums over such a gap take no more nodes than its waves need.
     fn band_limit(&self) -> Option<f64> {
         None
+    }
+
+    /// Where the gap is not smooth.
+    ///
+    /// Sums over it, in a disc or along the curve, are broken there.
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks::default()
     }
 
     /// The length by which the problem is reduced (the radius of curvature, where there is one).
@@ -72,12 +80,14 @@ pub trait Gap: Debug + Send + Sync {
 pub struct Scaled<G> {
     gap: G,
     length: f64,
+    knots: Vec<f64>,
 }
 
 impl<G: Gap> Scaled<G> {
     /// The gap `gap`, lengths divided by `length`.
     pub fn new(gap: G, length: f64) -> Self {
-        Self { gap, length }
+        let knots = gap.breaks().knots.iter().map(|knot| knot / length).collect();
+        Self { gap, length, knots }
     }
 }
 
@@ -112,6 +122,10 @@ impl<G: Gap> Gap for Scaled<G> {
         self.gap.band_limit().map(|f| f / self.length)
     }
 
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks { knots: &self.knots, ..self.gap.breaks() }
+    }
+
     fn reference_length(&self) -> f64 {
         self.gap.reference_length() / self.length
     }
@@ -140,6 +154,10 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
 
     fn band_limit(&self) -> Option<f64> {
         (**self).band_limit()
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        (**self).breaks()
     }
 
     fn reference_length(&self) -> f64 {

@@ -3,6 +3,7 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`gap`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
+//! | [`breaks`] | where a gap is not smooth, and Gauss's rule broken there |
 //! | `lanes` | functions of many radii, four at a time |
 //! | [`shape`] | the gap shapes a person can choose |
 //! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
@@ -12,6 +13,7 @@
 //! | [`control`] | what the loading device prescribes |
 //! | [`start`] | how the start of a path is given |
 
+pub mod breaks;
 pub mod control;
 pub mod formula;
 pub mod gap;
@@ -22,6 +24,7 @@ pub mod shape;
 pub mod shapes;
 pub mod start;
 
+pub use breaks::{Axis, Breaks};
 pub use control::Control;
 pub use gap::{Gap, Jet};
 pub use groups::Groups;

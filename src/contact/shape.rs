@@ -1,11 +1,14 @@
 //! The gap shapes a person can choose.
 
+use super::breaks::Breaks;
 use super::formula::TypedGap;
 use super::gap::{Gap, Jet};
 use super::lanes::map_lanes;
 use super::shapes::power_law::NEARLY_A_CONE;
 use super::shapes::random_waves::RandomWavesError;
 use super::shapes::{ExactSphere, Harmonics, Measured, PowerLaw, RandomWaves};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use wide::f64x4;
@@ -110,12 +113,12 @@ impl Shape {
         }
     }
 
-    /// What was changed in the gap without being asked for, in words.
-    pub fn notes(&self) -> Vec<String> {
+    /// What was changed in the gap without being asked for, in words with numbers as `units` show them.
+    pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {
             Self::Formula(typed) if typed.offset() != 0.0 => vec![format!(
-                "the formula is {:e} on the axis: subtracted, since the gap is zero there",
-                typed.offset()
+                "the formula is {} on the axis: subtracted, since the gap is zero there",
+                said(units, Quantity::Length, typed.offset())
             )],
             Self::Profile(measured) => measured.rows().notes.clone(),
             _ => Vec::new(),
@@ -223,6 +226,18 @@ impl Gap for Shape {
             return other.gap().band_limit();
         }
         self.feature_length()
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        match self {
+            Self::Sphere { .. } | Self::WavySphere { .. } => Breaks::default(),
+            Self::ExactSphere(gap) => gap.breaks(),
+            Self::Cone { .. } => PowerLaw::CONE_BREAKS,
+            Self::PowerLaw(gap) => gap.breaks(),
+            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => gap.breaks(),
+            Self::Formula(typed) => typed.gap().breaks(),
+            Self::Profile(measured) => measured.profile().breaks(),
+        }
     }
 
     fn reference_length(&self) -> f64 {

@@ -4,7 +4,7 @@
 //! each id its keys.
 
 use super::model::{Model, Panel};
-use super::view::{Overlay, Window};
+use super::view::{Overlay, View, Window};
 use crate::preset::Key;
 use std::path::PathBuf;
 
@@ -21,14 +21,20 @@ pub enum Id {
     PreviousLimit,
     /// Let the edge run at constant control.
     Jump,
+    /// The state of a contact radius.
+    MoveTo,
     /// Walk the other way.
     Reverse,
     /// Halve the step length.
     Halve,
     /// Double the step length.
     Double,
+    /// The step length as a number.
+    StepLength,
     /// Back to the node before.
     Undo,
+    /// Back to where the last command began.
+    UndoCommand,
     /// Forward again.
     Redo,
     /// Back to the start state.
@@ -43,8 +49,12 @@ pub enum Id {
     MuchLess,
     /// Much more.
     MuchMore,
+    /// Other values for some keys, as one change.
+    Assign,
     /// Type the value of the selected parameter, or go to the selected event.
     Edit,
+    /// The walker to an event by its number.
+    SelectEvent,
     /// The parameter, event or line above.
     Up,
     /// The one below.
@@ -87,8 +97,14 @@ pub enum Id {
     Save,
     /// Save it under another name.
     SaveAs,
-    /// Write the curve, the walk or the events to a file.
+    /// Write the curve, the walk, the events or a script to a file.
     Export,
+    /// Put something into the clipboard.
+    Copy,
+    /// Take the mouse, or leave it to the terminal.
+    Mouse,
+    /// Type a command.
+    CommandLine,
     /// The help screen.
     Help,
     /// Take back, close, pause.
@@ -116,6 +132,12 @@ pub struct Row {
     pub enabled: fn(&Model) -> bool,
 }
 
+/// A key and the text of its value.
+pub type Assignment = (Key, String);
+
+/// Most steps that one command takes.
+pub const MOST_STEPS: usize = 9999;
+
 /// A command with its argument.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -123,6 +145,14 @@ pub enum Command {
     Plain(Id),
     /// So many steps.
     Steps(usize),
+    /// A run that ends after so many states, if it meets nothing before.
+    RunOf(usize),
+    /// The longest step by hand, in the scaled unknowns.
+    StepLength(f64),
+    /// The walker to the event of this number, from 1, among those shown.
+    SelectEvent(usize),
+    /// Other values for some keys, as one change; as on a command line a bare number is SI in an SI preset.
+    Assign(Vec<Assignment>),
     /// Another value for a key, as typed.
     Set {
         /// The dotted key.
@@ -141,8 +171,19 @@ pub enum Command {
     TakeBack,
     /// List the profiles in this folder; without one, in that of the preset's own profile.
     Browse(Option<PathBuf>),
-    /// Closer to a place of the first view, or further away.
+    /// Select a panel, and a line of it.
+    Pick {
+        /// The panel.
+        panel: Panel,
+        /// The line.
+        line: Option<usize>,
+    },
+    /// Go to the state of this contact radius, in the user's units.
+    MoveTo(f64),
+    /// Closer to a place of a view, or further away.
     Zoom {
+        /// The view.
+        view: View,
         /// Whether closer.
         closer: bool,
         /// The place that stays where it is, in shares of the window.
@@ -154,6 +195,15 @@ pub enum Command {
     Unpin(Option<usize>),
     /// Open this preset, by name or path.
     Open(String),
+    /// Open this preset with other values for some keys.
+    OpenWith {
+        /// Its name or path.
+        name: String,
+        /// The values, as on a command line.
+        assignments: Vec<Assignment>,
+    },
+    /// Delete the person's own preset of this name, for good.
+    Delete(String),
     /// Save under this name.
     SaveAs {
         /// The name.
@@ -165,6 +215,15 @@ pub enum Command {
     },
     /// Save although the file was changed by somebody else meanwhile.
     SaveAnyway,
+    /// Write a text, such as the screen, to a file ending in `.txt`.
+    ExportText {
+        /// The text.
+        text: String,
+        /// The path.
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         /// The document.
@@ -188,16 +247,22 @@ impl Command {
         match self {
             Self::Plain(id) => *id,
             Self::Steps(_) => Id::Step,
+            Self::RunOf(_) => Id::Run,
+            Self::StepLength(_) => Id::StepLength,
+            Self::SelectEvent(_) => Id::SelectEvent,
+            Self::MoveTo(_) => Id::MoveTo,
+            Self::Assign(_) => Id::Assign,
             Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
+            Self::Pick { .. } => Id::NextPanel,
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
             Self::Unpin(_) => Id::Pins,
-            Self::Open(_) => Id::Open,
+            Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportText { .. } => Id::Export,
         }
     }
 }
@@ -297,20 +362,64 @@ pub static ROWS: &[Row] = &[
         "let the edge run at constant control to the next stable state",
         can_jump,
     ),
-    row(Id::Run, "run", WALK, "run", "run and pause", walking),
+    taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", walking)),
+    taking(
+        "contact radius",
+        row(
+            Id::MoveTo,
+            "move-to",
+            WALK,
+            "move to",
+            "the walker to the state of a contact radius on the curve",
+            has_curve,
+        ),
+    ),
     row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", walking),
     row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
     row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
+    taking(
+        "length",
+        row(
+            Id::StepLength,
+            "step-length",
+            WALK,
+            "step length",
+            "the longest step, as a share of every quantity's range",
+            always,
+        ),
+    ),
     row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
+    row(
+        Id::UndoCommand,
+        "undo-command",
+        WALK,
+        "undo all",
+        "back to where the last command began: a run, a count of steps",
+        can_undo,
+    ),
     row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
     row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
-    row(
-        Id::Control,
+    taking(
         "control",
-        WALK,
-        "control",
-        "control the displacement, the force, or a spring's far end",
-        always,
+        row(
+            Id::Control,
+            "control",
+            WALK,
+            "control",
+            "control the displacement, the force, or a spring's far end",
+            always,
+        ),
+    ),
+    taking(
+        "number",
+        row(
+            Id::SelectEvent,
+            "select-event",
+            WALK,
+            "event",
+            "the walker to the event of this number in the list",
+            walking,
+        ),
     ),
     row(Id::Less, "less", VALUES, "less", "the selected value, a little less", knob),
     row(Id::More, "more", VALUES, "more", "the selected value, a little more", knob),
@@ -323,9 +432,13 @@ pub static ROWS: &[Row] = &[
             "edit",
             VALUES,
             "type value",
-            "type the selected value, or choose it; in Events: go to the selected event",
+            "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there",
             always,
         ),
+    ),
+    taking(
+        "KEY=VALUE ...",
+        row(Id::Assign, "set", VALUES, "set", "other values for some keys, as one change", always),
     ),
     row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", always),
     row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", always),
@@ -379,7 +492,10 @@ pub static ROWS: &[Row] = &[
     ),
     row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", has_curve),
     taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", has_pins)),
-    taking("preset", row(Id::Open, "open", FILES, "open", "open a preset", always)),
+    taking(
+        "preset",
+        row(Id::Open, "open", FILES, "open", "open a preset; D in the list deletes one of your own", always),
+    ),
     row(Id::Save, "save", FILES, "save", "save the preset", always),
     taking(
         "name",
@@ -392,11 +508,35 @@ pub static ROWS: &[Row] = &[
             "export",
             FILES,
             "export",
-            "write the curve, the walk or the events as CSV or JSON",
+            "write curve, walk or events as CSV or JSON, the session as a script, the screen as text",
             always,
         ),
     ),
-    row(Id::Help, "help", PROGRAM, "help", "this help", always),
+    row(
+        Id::Copy,
+        "copy",
+        FILES,
+        "copy",
+        "the state, the events, the chart or the screen into the terminal's clipboard",
+        always,
+    ),
+    row(
+        Id::CommandLine,
+        "command-line",
+        PROGRAM,
+        "command",
+        "type a command by its name; Tab completes, up and down bring lines back",
+        always,
+    ),
+    row(
+        Id::Mouse,
+        "mouse",
+        PROGRAM,
+        "mouse",
+        "take the mouse (click, wheel), or leave it to the terminal to select text",
+        always,
+    ),
+    row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", always),
     row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run or a curve", always),
     row(Id::Quit, "quit", PROGRAM, "quit", "quit; asks only if the preset has unsaved changes", always),
 ];

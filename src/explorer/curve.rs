@@ -8,6 +8,7 @@
 
 use super::history::Setting;
 use super::model::same_curve;
+use super::progress::Progress;
 use super::theory::Theory;
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
@@ -91,14 +92,22 @@ pub struct CurveData {
 }
 
 impl Sweep {
-    /// Sweeps the curve of `preset`; `go_on` is asked between the blocks of a basis and between points.
+    /// Sweeps the curve of `preset`; `go_on` is told how far it is and asked between the blocks of a basis and
+    /// between points.
     ///
     /// # Errors
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
-    pub fn compute(preset: &Preset, mut go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &mut |_| go_on())?;
-        let mut curve = case.sweep(go_on)?;
+    pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &mut |share| go_on(Progress::Basis(share)))?;
+        let (of, mut asked) = (case.sweep_points(), 0);
+        let mut curve = case.sweep(|| {
+            asked += 1;
+            go_on(Progress::Curve { done: asked - 1, of })
+        })?;
         for control in SHOWN {
+            if !go_on(Progress::Limits) {
+                return Err(CaseError::Cancelled);
+            }
             curve.hold(control);
         }
         let start = curve.branch.points.first().map(|point| curve.equilibrium.admissibility(point));
@@ -141,11 +150,11 @@ impl Sweep {
 }
 
 impl CurveData {
-    /// Computes `preset` whole; `go_on` is asked between points.
+    /// Computes `preset` whole; `go_on` is told how far it is and asked between points.
     ///
     /// # Errors
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
-    pub fn compute(preset: &Preset, mut go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+    pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         Self::under(Arc::new(Sweep::compute(preset, &mut go_on)?), preset, go_on)
     }
 
@@ -155,7 +164,11 @@ impl CurveData {
     ///
     /// # Errors
     /// [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn under(sweep: Arc<Sweep>, preset: &Preset, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+    pub fn under(
+        sweep: Arc<Sweep>,
+        preset: &Preset,
+        mut go_on: impl FnMut(Progress) -> bool,
+    ) -> Result<Self, CaseError> {
         // The unloading may extend its curve to find a landing; the one on the screen ends where asked.
         let mut longer = sweep.curve.clone();
         let curve = &sweep.curve;
@@ -180,15 +193,31 @@ impl CurveData {
             .flat_map(|other| curve.limit_points(other).into_iter().map(move |limit| (other, limit.point)))
             .map(|(other, point)| (other, shown(&point, other)))
             .collect();
-        let unloading = match case.unload_while(&mut longer, control, go_on) {
+        let mut asked = 0;
+        let next = || {
+            asked += 1;
+            go_on(Progress::Events(asked - 1))
+        };
+        let unloading = match case.unload_while(&mut longer, control, next) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
-            unloading => unloading.map_err(|e| e.to_string()),
+            unloading => unloading.map_err(|error| error.to_string()),
         };
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
         let equilibrium = curve.equilibrium.clone();
         let setting = Arc::new(Setting { preset: preset.clone(), equilibrium, case });
         Ok(Self { sweep, setting, points, limits, other_limits, unloading, report })
     }
+
+    /// δ, P and s of the limit points under the chosen control in the user's units, from the start inward.
+    pub fn shown_limits(&self) -> Vec<[f64; 3]> {
+        let (equilibrium, units) = (&self.sweep.curve.equilibrium, self.setting.case.units());
+        let shown = |point: &Point| {
+            let [delta, force, s] = equilibrium.quantities(&point.y);
+            [delta * units.length, force * units.force, s * units.length]
+        };
+        self.limits.iter().map(|limit| shown(&limit.point)).collect()
+    }
+
     /// Whether it is known which of its states, and of its path's, are admissible.
     pub fn is_checked(&self) -> bool {
         let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());

@@ -9,6 +9,7 @@ use super::curve::{CurveData, Sweep};
 use super::files::{self, Done, Job};
 use super::model::Model;
 use super::profile::{Ask, Inside};
+use super::progress::{Pace, Progress};
 use super::saves::Saves;
 use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
@@ -71,6 +72,13 @@ pub enum Reply {
         /// The curve.
         result: Result<Arc<CurveData>, String>,
     },
+    /// How far a curve is that takes long.
+    Progress {
+        /// The number of the curve.
+        id: u64,
+        /// How far.
+        progress: Progress,
+    },
     /// The same curve with what is not admissible on it.
     Checked {
         /// The number it was asked for under.
@@ -118,7 +126,7 @@ impl Inline {
     /// Does one effect; it is over when this returns, so there is nothing to stop.
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
-            Effect::Curve(wish) => compute(&wish, || true),
+            Effect::Curve(wish) => compute(&wish, |_| true),
             Effect::Check(check) => check.run(|| true),
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
@@ -142,14 +150,17 @@ impl Check {
     }
 }
 
-fn compute(wish: &Wish, go_on: impl FnMut() -> bool) -> Option<Reply> {
+fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
     let result = match &wish.sweep {
         Some(sweep) => CurveData::under(Arc::clone(sweep), &wish.preset, go_on),
         None => CurveData::compute(&wish.preset, go_on),
     };
     match result {
         Err(CaseError::Cancelled) => None,
-        result => Some(Reply::Curve { id: wish.id, result: result.map(Arc::new).map_err(|e| e.to_string()) }),
+        result => {
+            let result = result.map(Arc::new).map_err(|error| error.to_string());
+            Some(Reply::Curve { id: wish.id, result })
+        }
     }
 }
 
@@ -277,9 +288,14 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
         let known = last.take_if(|sweep| wish.sweep.is_none() && sweep.is_of(&wish.preset));
         wish.sweep = wish.sweep.or(known);
         let begun = Instant::now();
-        let go_on = || {
+        let mut pace = Pace::begin();
+        let id = wish.id;
+        let go_on = |progress| {
+            if pace.is_due(progress) {
+                reply(Reply::Progress { id, progress });
+            }
             let newest = !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
-            newest && given_up.load(Ordering::Acquire) < wish.id
+            newest && given_up.load(Ordering::Acquire) < id
         };
         if let Some(answer) = compute(&wish, go_on) {
             if let Reply::Curve { result: Ok(curve), .. } = &answer {

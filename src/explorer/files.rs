@@ -1,11 +1,16 @@
 //! Opening, saving, exporting, and reading profiles: what the driver does for the model.
 
+use super::command::{Assignment, Command};
 use super::curve::CurveData;
 use super::data::{self, Folder};
 use super::history::{Node, NodeKind};
+use super::journal::Start;
+use super::script;
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::preset::changes::{changes, differences};
 use crate::preset::measured;
+use crate::preset::text::{quote, show_path};
 use crate::preset::{
     Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
 };
@@ -25,11 +30,13 @@ pub enum Document {
     Walk,
     /// The instabilities, of the source shown.
     Events,
+    /// What was done, as a script.
+    Script,
 }
 
 impl Document {
     /// All, in the order they are offered.
-    pub const ALL: [Self; 3] = [Self::Curve, Self::Walk, Self::Events];
+    pub const ALL: [Self; 4] = [Self::Curve, Self::Walk, Self::Events, Self::Script];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -37,6 +44,40 @@ impl Document {
             Self::Curve => "curve",
             Self::Walk => "walk",
             Self::Events => "events",
+            Self::Script => "script",
+        }
+    }
+
+    /// The endings its file may have, the usual one first.
+    pub fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Curve | Self::Walk | Self::Events => &["csv", "json"],
+            Self::Script => &["pulloff", "txt"],
+        }
+    }
+}
+
+/// What is written into a document.
+#[derive(Debug, Clone)]
+pub enum Content {
+    /// The curve.
+    Curve(Arc<CurveData>),
+    /// The nodes walked, from where the walk began to the walker, and the curve.
+    Walk(Arc<CurveData>, Vec<Node>),
+    /// The events shown, and the curve.
+    Events(Arc<CurveData>, Vec<EventReport>),
+    /// Where the session began, and the lines that follow.
+    Script(Box<Start>, Vec<String>),
+}
+
+impl Content {
+    /// Its document.
+    pub fn document(&self) -> Document {
+        match self {
+            Self::Curve(_) => Document::Curve,
+            Self::Walk(..) => Document::Walk,
+            Self::Events(..) => Document::Events,
+            Self::Script(..) => Document::Script,
         }
     }
 }
@@ -46,8 +87,24 @@ impl Document {
 pub enum Job {
     /// List all presets.
     List,
-    /// Open a preset by name or path.
-    Open(String),
+    /// The names of all presets.
+    Names,
+    /// Open a preset.
+    Open {
+        /// Its name or path.
+        name: String,
+        /// Other values for some of its keys.
+        assignments: Vec<Assignment>,
+    },
+    /// Delete a preset of the person's own.
+    Delete(String),
+    /// Give some keys other values, that of a file among them.
+    Assign {
+        /// The preset.
+        preset: Box<Preset>,
+        /// The values.
+        assignments: Vec<Assignment>,
+    },
     /// List the profiles of a folder.
     Browse {
         /// The folder; without one, the profile's own.
@@ -82,16 +139,19 @@ pub enum Job {
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
     },
+    /// Write a text.
+    Write {
+        /// The text.
+        text: String,
+        /// The path as typed.
+        path: String,
+        /// Whether a file there may be replaced.
+        replace: bool,
+    },
     /// Export a document.
     Export {
-        /// Which.
-        what: Document,
-        /// The curve.
-        curve: Arc<CurveData>,
-        /// The nodes walked, from the root to the walker, with their numbers.
-        walk: Vec<Node>,
-        /// The events shown.
-        events: Vec<EventReport>,
+        /// Which, and what is in it.
+        content: Content,
         /// The path as typed.
         path: String,
         /// Whether a file there may be replaced.
@@ -104,12 +164,18 @@ pub enum Job {
 pub enum Done {
     /// The presets.
     Listed(Box<Listing>),
+    /// The names of the presets.
+    Named(Vec<String>),
     /// The profiles of a folder.
     Browsed(Box<Folder>),
+    /// A preset got other values.
+    Assigned(Box<Preset>),
     /// A profile was read.
     Read(Arc<Rows>),
     /// A preset was opened.
     Opened(Box<Loaded>),
+    /// A preset was deleted: its file, safe to show, and what is left.
+    Deleted(String, Box<Listing>),
     /// The preset was saved.
     Saved {
         /// Where.
@@ -127,6 +193,8 @@ pub enum Done {
     Exported(String),
     /// A file of this name exists: not written.
     FileExists(Document, String),
+    /// The same of this text, at this path.
+    TextExists(String, String),
     /// It failed, in words; nothing was changed.
     Failed(String),
 }
@@ -135,10 +203,23 @@ pub enum Done {
 pub fn run(store: &Store, job: Job) -> Done {
     match job {
         Job::List => Done::Listed(Box::new(store.list())),
-        Job::Open(argument) => {
-            let loaded = store.resolve(&argument).and_then(|source| store.load(&source, &[] as &[&str]));
+        Job::Names => Done::Named(store.known()),
+        Job::Assign { mut preset, assignments } => {
+            match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
+                Ok(()) => Done::Assigned(preset),
+                Err(invalid) => Done::Failed(invalid.to_string()),
+            }
+        }
+        Job::Open { name, assignments } => {
+            let assignments: Vec<String> =
+                assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
+            let loaded = store.resolve(&name).and_then(|source| store.load(&source, &assignments));
             loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
         }
+        Job::Delete(name) => match store.delete(&name) {
+            Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
+            Err(error) => Done::Failed(format!("not deleted: {error}")),
+        },
         Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
             Ok(folder) => Done::Browsed(Box::new(folder)),
             Err(reason) => Done::Failed(reason),
@@ -176,29 +257,43 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }
-        Job::Export { what, curve, walk, events, path, replace } => {
-            let text = match text(
-                what,
-                &curve,
-                &walk,
-                &events,
-                Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")),
-            ) {
+        Job::Write { text, path, replace } => match put(&path, &text, replace) {
+            Err(WriteError::Exists { .. }) => Done::TextExists(text, path),
+            result => exported(path, result),
+        },
+        Job::Export { content, path, replace } => {
+            let as_json =
+                Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+            let text = match &content {
+                Content::Script(start, lines) => script_text(store, start, lines),
+                numbers => text(numbers, as_json).map_err(|error| error.to_string()),
+            };
+            let text = match text {
                 Ok(text) => text,
                 Err(error) => return Done::Failed(format!("not exported: {error}")),
             };
-            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-            match write_atomically(&target(&path), text.as_bytes(), overwrite) {
-                Ok(_) => Done::Exported(path),
-                Err(WriteError::Exists { .. }) => Done::FileExists(what, path),
-                Err(error) => Done::Failed(format!("not exported: {error}")),
+            match put(&path, &text, replace) {
+                Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
+                result => exported(path, result),
             }
         }
     }
 }
 
+fn put(path: &str, text: &str, replace: bool) -> Result<Fingerprint, WriteError> {
+    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+    write_atomically(&target(path), text.as_bytes(), overwrite)
+}
+
+fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
+    match result {
+        Ok(_) => Done::Exported(path),
+        Err(error) => Done::Failed(format!("not exported: {error}")),
+    }
+}
+
 /// The path a person typed, `~/` meaning the home folder.
-fn target(path: &str) -> PathBuf {
+pub(super) fn target(path: &str) -> PathBuf {
     match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
         (Some(rest), Some(home)) => Path::new(&home).join(rest),
         _ => PathBuf::from(path),
@@ -331,16 +426,44 @@ struct Walked<'a, R> {
     events: &'a [EventReport],
 }
 
-/// The text of a document.
-fn text(
-    what: Document,
-    curve: &CurveData,
-    walk: &[Node],
-    events: &[EventReport],
-    as_json: bool,
-) -> Result<String, rows::RowsError> {
-    let setting = &curve.setting;
-    let walked = |points: &[WalkRow], events: &[EventReport]| {
+/// A session as a script: the preset it began with, as the file of that name is now with what was otherwise, and its
+/// lines.
+fn script_text(store: &Store, start: &Start, lines: &[String]) -> Result<String, String> {
+    let name = match &start.source {
+        Source::Shipped(shipped) => shipped.name.to_owned(),
+        Source::User { name, .. } => name.clone(),
+        // The script may be run from another folder.
+        Source::File(path) => {
+            std::path::absolute(path).unwrap_or_else(|_| path.clone()).display().to_string()
+        }
+    };
+    let none = &[] as &[&str];
+    let source = store.resolve(&name).map_err(|error| error.to_string())?;
+    let now = store.load(&source, none).map_err(|error| error.to_string())?.preset;
+    let lost = || format!("the walk did not begin with {}, and its values cannot be assigned", quote(&name));
+    // Laid over the file as a whole, as a replay does.
+    let leads_there = |assignments: &Vec<Assignment>| {
+        let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
+        store.load(&source, &laid).is_ok_and(|back| back.preset == start.preset)
+    };
+    let ways = [Some(differences(&now, &start.preset)), changes(&now, &start.preset)];
+    let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(lost)?;
+    let open = script::line(&Command::OpenWith { name: name.clone(), assignments }).ok_or_else(lost)?;
+    let head = "# A session of pulloff: `pulloff run` walks it again.";
+    Ok(std::iter::once(head).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(
+        String::new(),
+        |mut text, line| {
+            text.push_str(line);
+            text.push('\n');
+            text
+        },
+    ))
+}
+
+/// The text of a document; of a script its lines alone.
+fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
+    let walked = |curve: &CurveData, points: &[WalkRow], events: &[EventReport]| {
+        let setting = &curve.setting;
         json(&Walked {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
@@ -351,21 +474,23 @@ fn text(
             events,
         })
     };
-    Ok(match what {
-        Document::Curve => {
+    Ok(match content {
+        Content::Curve(curve) => {
+            let setting = &curve.setting;
             let report = TraceReport::new(&setting.preset, &setting.case, &curve.sweep.curve);
             if as_json { json(&report)? } else { report.csv()? }
         }
-        Document::Walk => {
+        Content::Walk(curve, walk) => {
             let points: Vec<WalkRow> = walk.iter().map(WalkRow::new).collect();
-            if as_json { walked(&points, &[])? } else { rows::csv(WALK_COLUMNS, &points)? }
+            if as_json { walked(curve, &points, &[])? } else { rows::csv(WALK_COLUMNS, &points)? }
         }
-        Document::Events => {
+        Content::Events(curve, events) => {
             if as_json {
-                walked(&[], events)?
+                walked(curve, &[], events)?
             } else {
                 rows::csv(crate::report::unload::COLUMNS, events)?
             }
         }
+        Content::Script(_, lines) => lines.join("\n"),
     })
 }

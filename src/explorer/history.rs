@@ -74,6 +74,8 @@ pub struct Node {
     pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
+    /// The number of the walk request that made it: what one command made has one number.
+    pub request: u64,
 }
 
 impl Node {
@@ -91,6 +93,13 @@ impl Node {
     pub fn is_limit(&self, control: Control) -> bool {
         self.kind == NodeKind::Limit && self.control == control
     }
+}
+
+/// A place to come back to: a node, and the child last gone to from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mark {
+    cursor: Option<usize>,
+    forward: Option<usize>,
 }
 
 /// The tree.
@@ -148,6 +157,22 @@ impl History {
         self.nodes.push(node);
         self.forward.push(None);
         self.cursor = Some(at);
+    }
+
+    /// Where the walker stands.
+    pub fn mark(&self) -> Mark {
+        Mark { cursor: self.cursor, forward: self.redo_target() }
+    }
+
+    /// Stands where it stood, as if nothing had been walked since; the nodes made since are kept.
+    pub fn return_to(&mut self, mark: Mark) {
+        self.cursor = mark.cursor;
+        if let Some(at) = mark.cursor {
+            self.forward[at] = mark.forward;
+            if let Some(parent) = self.parent() {
+                self.forward[parent] = Some(at);
+            }
+        }
     }
 
     /// Stands on the node before; false when there is none.

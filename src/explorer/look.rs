@@ -24,12 +24,11 @@ pub(super) fn turn_view(model: &mut Model, by: usize) {
     model.view = model.view.further(by);
 }
 
-/// Zooms the first view about a place of its window.
-pub(super) fn zoom(model: &mut Model, closer: bool, about: (f64, f64)) {
-    let about = model.cross.unwrap_or(about);
+/// Zooms a view about a place of its window.
+pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64)) {
     let times = if closer { CLOSER } else { 1.0 / CLOSER };
-    match model.window(model.view).zoomed(times, about) {
-        Some(window) => model.windows[model.view as usize] = window,
+    match model.window(view).zoomed(times, about) {
+        Some(window) => model.windows[view as usize] = window,
         None if closer => tell(model, Level::Info, "no closer: there is nothing more to tell apart"),
         None => tell(model, Level::Info, "no further away: f shows the whole chart"),
     }

@@ -16,12 +16,15 @@
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
+//! | [`progress`] | how far a curve that is computed has come |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | the inside of one state: pressure, gap, potential |
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`files`] | opening, saving and exporting |
 //! | `saves` | saves that follow each other faster than they are answered |
+//! | [`journal`] | what was done, as the lines of a script |
+//! | [`script`] | commands as text, and scripts driven through a model |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
@@ -33,12 +36,15 @@ pub mod device;
 pub mod driver;
 pub mod files;
 pub mod history;
+pub mod journal;
 pub mod look;
 pub mod model;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
+pub mod progress;
 mod saves;
+pub mod script;
 pub mod theory;
 pub mod update;
 pub mod view;
@@ -48,6 +54,8 @@ pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, Sweep};
 pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
 pub use history::{History, Node, NodeKind};
+pub use journal::Journal;
 pub use model::{Axes, EventSource, Level, Model, Panel};
+pub use progress::Progress;
 pub use update::{answer, open, update};
 pub use view::{Overlay, Overlays, View, Window};

@@ -2,12 +2,15 @@
 
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::history::{History, Node, NodeKind};
+use super::history::{History, Mark, Node, NodeKind};
+use super::journal::Journal;
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
+use super::progress::Progress;
 use super::view::{Overlays, View, Window};
 use super::walk::Action;
 use crate::contact::Control;
+use crate::preset::groups::GROUPS;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
 use std::collections::VecDeque;
@@ -58,6 +61,19 @@ pub enum Question {
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::files::Document, String),
+    /// Replace the file by this text; its path.
+    ReplaceText(String, String),
+}
+
+/// A walk request that is running.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Walking {
+    /// Its number.
+    pub id: u64,
+    /// The states it has made.
+    pub made: usize,
+    /// Those it was asked for; a run goes on until something happens.
+    pub wanted: Option<usize>,
 }
 
 /// How much a message matters.
@@ -76,8 +92,8 @@ pub struct Model {
     pub preset: Preset,
     /// The preset as loaded or last saved: what differs is unsaved.
     pub saved: Preset,
-    /// The preset before the value that is being typed, where such values are tried.
-    pub untried: Option<Box<Preset>>,
+    /// What was before the value that is being typed, where such values are tried.
+    pub untried: Option<Box<Untried>>,
     /// Where it came from or went to.
     pub source: Source,
     /// How its file was when last seen.
@@ -90,6 +106,8 @@ pub struct Model {
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
+    /// How far the curve is that is being computed, once that takes long.
+    pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<u64>,
     /// The last stiffness of the device, in the user's units.
@@ -98,12 +116,14 @@ pub struct Model {
     pub device: Option<bool>,
     /// The walk.
     pub history: History,
+    /// What was done, to do it again.
+    pub journal: Journal,
     /// Whether steps shrink the contact.
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
     /// The walk request that is running.
-    pub walking: Option<u64>,
+    pub walking: Option<Walking>,
     /// What is to be walked after it.
     pub queue: VecDeque<Action>,
     /// The panel selected.
@@ -136,6 +156,8 @@ pub struct Model {
     pub message: Option<(Level, String)>,
     /// The list of presets, once asked for.
     pub listing: Option<Listing>,
+    /// The names of the presets, once asked for.
+    pub preset_names: Vec<String>,
     /// The profiles of a folder, once asked for.
     pub folder: Option<Folder>,
     /// What a job on files wants to be asked before it goes on.
@@ -144,6 +166,17 @@ pub struct Model {
     pub next_request: u64,
     /// The session is over.
     pub quit: bool,
+}
+
+/// What there was before values were tried.
+#[derive(Debug, Clone)]
+pub struct Untried {
+    /// The preset.
+    pub preset: Preset,
+    /// Where the walker stood.
+    pub mark: Mark,
+    /// What had been done.
+    pub journal: Journal,
 }
 
 /// The first step length: a fiftieth of the range of every quantity.
@@ -175,10 +208,12 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
+            progress: None,
             checking: None,
             stiffness: None,
             device: None,
             history: History::default(),
+            journal: Journal::default(),
             inward: true,
             length: FIRST_LENGTH,
             walking: None,
@@ -198,6 +233,7 @@ impl Model {
             profile_wanted: None,
             message: None,
             listing: None,
+            preset_names: Vec::new(),
             folder: None,
             question: None,
             next_request: 1,
@@ -223,13 +259,15 @@ impl Model {
         self.curve_shown < self.curve_wanted
     }
 
-    /// The parameters with a knob, in the table's order, and their values; no value follows from others.
+    /// The parameters with a knob, in the table's order, and their values, of which none follows from others; behind
+    /// them the dimensionless groups that can be set.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
-        // The title last: the numbers are what is turned.
+        // The title behind the numbers, which are what is turned.
         let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
         numbers
             .into_iter()
             .chain(texts)
+            .chain(GROUPS.iter().map(Row::Borrowed))
             .map(|row| (row.clone(), self.preset.get(&row.key)))
             .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
             .collect()

@@ -3,9 +3,9 @@
 //! A pin is named by the values in which it differs from the preset as it is now, so its name changes with the preset.
 
 use super::curve::CurveData;
-use crate::preset::{Preset, Value};
-use crate::report::number::short;
-use std::borrow::Cow;
+use crate::preset::{Preset, Row, Value};
+use crate::report::number::{short, with_unit};
+use crate::units::UnitSystem;
 use std::sync::Arc;
 
 /// Most curves pinned: each has a digit and a colour of its own.
@@ -80,7 +80,7 @@ impl Pins {
 }
 
 /// The values of `pinned` that `now` has not, in the order of the table.
-fn differences(pinned: &Preset, now: &Preset) -> Vec<(Cow<'static, str>, Value)> {
+fn differences(pinned: &Preset, now: &Preset) -> Vec<(Row, Value)> {
     pinned
         .rows()
         .filter(|row| !matches!(&*row.key, "format" | "title"))
@@ -88,8 +88,16 @@ fn differences(pinned: &Preset, now: &Preset) -> Vec<(Cow<'static, str>, Value)>
         .filter(|(row, value)| now.get(&row.key).as_ref() != Some(value))
         // The stiffness has a row of its own and says that the device is a spring.
         .filter(|(row, _)| row.key != "path.control" || pinned.get("path.control.stiffness").is_none())
-        .map(|(row, value)| (row.label.clone(), value))
         .collect()
+}
+
+/// The label of a row and a value of it, short and in its unit.
+pub(super) fn labelled(row: &Row, value: &Value, units: &UnitSystem) -> String {
+    let shown = match value {
+        Value::Number(x) => with_unit(units, row.quantity, *x, false, |x| short(x, 4)),
+        other => other.to_string(),
+    };
+    format!("{} {shown}", row.label)
 }
 
 fn name(pinned: &Preset, now: &Preset) -> String {
@@ -98,12 +106,8 @@ fn name(pinned: &Preset, now: &Preset) -> String {
         // An end that is given up differs only in what the other has.
         return "as now".to_owned();
     }
-    let shown = |value: &Value| match value {
-        Value::Number(x) => short(*x, 4),
-        other => other.to_string(),
-    };
     let named: Vec<String> =
-        differences.iter().take(NAMED).map(|(label, value)| format!("{label} {}", shown(value))).collect();
+        differences.iter().take(NAMED).map(|(row, value)| labelled(row, value, &now.units)).collect();
     let more = differences.len().saturating_sub(NAMED);
     let rest = if more > 0 { format!(" +{more}") } else { String::new() };
     format!("{}{rest}", named.join(", "))
@@ -155,7 +159,7 @@ mod tests {
     fn numbers_stay_and_free_ones_are_taken_again() {
         let curve = |amplitude: &str| {
             let preset = preset(&[("gap.amplitude", amplitude), ("path.end_contact_radius", "0.35")]);
-            Arc::new(CurveData::compute(&preset, || true).unwrap())
+            Arc::new(CurveData::compute(&preset, |_| true).unwrap())
         };
         let mut pins = Pins::default();
         let first = curve("0.001");

@@ -98,11 +98,10 @@ fn exact_pressure(ask: &Ask) -> Vec<(f64, f64)> {
     let case = &ask.setting.case;
     let (exact, units) = (Exact::of(&case.problem), case.units());
     let s = ask.state.contact_radius;
-    (0..EXACT_POINTS)
-        .map(|i| {
-            // r = s sin θ, the last point just inside the edge.
-            let r = s * (FRAC_PI_2 * f64::from(i) / f64::from(EXACT_POINTS)).sin();
-            (r, exact.pressure(s * units.length, r * units.length) / units.pressure)
-        })
-        .collect()
+    // r = s sin θ, the last point just inside the edge.
+    let radii: Vec<f64> =
+        (0..EXACT_POINTS).map(|i| s * (FRAC_PI_2 * f64::from(i) / f64::from(EXACT_POINTS)).sin()).collect();
+    let shown: Vec<f64> = radii.iter().map(|r| r * units.length).collect();
+    let pressures = exact.pressures(s * units.length, &shown);
+    radii.into_iter().zip(pressures.iter().map(|p| p / units.pressure)).collect()
 }

@@ -20,8 +20,7 @@ pub struct Theory {
     pub smooth: Vec<Place>,
     /// Its name: Hertz or JKR; without a sphere what is missing.
     pub smooth_name: &'static str,
-    /// The exact solution of the gap, over the radii of the curve and as fine; empty for a profile, whose integrals run
-    /// over every row for every state.
+    /// The exact solution of the gap, over the radii of the curve and as fine.
     pub exact: Vec<Place>,
     /// Its name.
     pub exact_name: &'static str,
@@ -56,11 +55,10 @@ impl Theory {
             .collect();
         let fine = radii(from, to, case.problem.shape.feature_length(), SWEEP_STEPS_PER_WAVE);
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
-        let is_slow = matches!(case.problem.shape, Shape::Profile(_));
         Self {
             smooth: jkr.map_or_else(Vec::new, |jkr| along(&jkr, &smooth)),
             smooth_name: jkr.as_ref().map_or("no radius", Disc::name),
-            exact: if is_slow { Vec::new() } else { along(&*exact, &fine) },
+            exact: along(&*exact, &fine),
             exact_name: exact.name(),
             envelope: envelope(case, &smooth),
         }
@@ -68,7 +66,12 @@ impl Theory {
 }
 
 fn along(disc: &dyn Disc, radii: &[f64]) -> Vec<Place> {
-    radii.iter().map(|&s| [disc.approach(s), disc.force(s), s]).collect()
+    // Without its energy a state costs one transform of the gap.
+    let place = |&s: &f64| {
+        let state = disc.equilibrium(s, 0.0);
+        [state.approach, state.force, s]
+    };
+    radii.iter().map(place).collect()
 }
 
 fn envelope(case: &Case, radii: &[f64]) -> Option<Envelope> {

@@ -15,22 +15,22 @@ mod words;
 
 pub use words::hint;
 
-use super::History;
 use super::command::{Command, Id, row_of};
 use super::driver::{Effect, Reply};
 use super::files::Job;
 use super::look;
-use super::model::{Axes, EventSource, Level, Model, Panel};
+use super::model::{Axes, EventSource, LENGTHS, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
-use crate::preset::{Loaded, Overwrite};
-use files::{browse, export, file, file_done, save, save_back};
+use crate::preset::text::{greek, show_name};
+use crate::preset::{Loaded, Overwrite, Value, groups};
+use files::{browse, export, export_text, file, file_done, save, save_back};
 use values::{
-    adopt_parameters, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry,
-    want_check, want_curve,
+    assign, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry, want_check,
+    want_curve,
 };
-use walk::{restart, scale_length, stop, travel, walk, walked};
+use walk::{restart, scale_length, stop, travel, travel_to, walk, walked};
 use words::unavailable;
 
 /// Begins a session on a preset: its curve is asked for.
@@ -58,12 +58,24 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
+        Command::RunOf(count) => walk(model, Action::Run(count)),
+        Command::StepLength(length) => {
+            model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end());
+            Vec::new()
+        }
+        Command::SelectEvent(number) => select_event(model, number),
+        Command::Assign(assignments) => assign(model, assignments),
         Command::Set { key, text } => set(model, &key, &text),
         Command::Try { key, text } => try_out(model, &key, &text),
         Command::TakeBack => untry(model),
         Command::Browse(folder) => vec![browse(model, folder)],
-        Command::Zoom { closer, about } => {
-            look::zoom(model, closer, about);
+        Command::Pick { panel, line } => {
+            pick(model, panel, line);
+            Vec::new()
+        }
+        Command::MoveTo(radius) => move_to(model, radius),
+        Command::Zoom { view, closer, about } => {
+            look::zoom(model, view, closer, about);
             Vec::new()
         }
         Command::Overlay(overlay) => {
@@ -74,13 +86,16 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             look::unpin(model, number);
             Vec::new()
         }
-        Command::Open(name) => vec![file(Job::Open(name))],
+        Command::Open(name) => vec![file(Job::Open { name, assignments: Vec::new() })],
+        Command::OpenWith { name, assignments } => vec![file(Job::Open { name, assignments })],
+        Command::Delete(name) => vec![file(Job::Delete(name))],
         Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
             vec![file(Job::SaveAs { name, preset, replace, with_data })]
         }
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
+        Command::ExportText { text, path, replace } => export_text(model, text, path, replace),
     }
 }
 
@@ -88,6 +103,12 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result),
+        Reply::Progress { id, progress } => {
+            if id == model.curve_wanted && model.is_computing() {
+                model.progress = Some(progress);
+            }
+            return Vec::new();
+        }
         Reply::Walked { id, made, outcome } => walked(model, id, made, outcome),
         Reply::Checked { id, curve } => {
             checked(model, id, curve);
@@ -118,9 +139,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),
         Id::Double => scale_length(model, 2.0),
-        Id::Undo if model.is_ahead() => return take_back(model),
-        Id::Undo => return travel(model, History::undo),
-        Id::Redo => return travel(model, History::redo),
+        Id::Undo | Id::UndoCommand if model.is_ahead() => return take_back(model),
+        Id::Undo | Id::UndoCommand | Id::Redo => return travel(model, id),
         Id::Control => return change_control(model),
         Id::Less => return turn(model, false, Amount::Fine),
         Id::More => return turn(model, true, Amount::Fine),
@@ -137,8 +157,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
         Id::NextView => look::turn_view(model, 1),
         Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
-        Id::ZoomIn => look::zoom(model, true, look::MIDDLE),
-        Id::ZoomOut => look::zoom(model, false, look::MIDDLE),
+        Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
+        Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Fit => look::fit(model),
         Id::CrossHair => look::cross_hair(model),
         Id::Pin => look::pin(model),
@@ -150,13 +170,15 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         }
         Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
+        Id::CommandLine => return vec![file(Job::Names)],
         Id::Save => return save_back(model),
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),
         Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Help => {}
+        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Copy | Id::Mouse | Id::Help => {}
+        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo => {}
     }
     Vec::new()
 }
@@ -182,7 +204,12 @@ fn move_selection(model: &mut Model, down: bool) {
         if down { (at + 1).min(last) } else { at.saturating_sub(1).min(last) }
     };
     match model.panel {
-        Panel::Problem => model.parameter = moved(model.parameter, model.knobs().len()),
+        Panel::Problem => {
+            model.parameter = moved(model.parameter, model.knobs().len());
+            if let Some(text) = group_effect(model).or_else(|| long_text(model)) {
+                tell(model, Level::Info, text);
+            }
+        }
         Panel::Events => {
             let lines = model.shown_events().len() + model.shown_inadmissible().len();
             model.event = moved(model.event, lines);
@@ -191,18 +218,73 @@ fn move_selection(model: &mut Model, down: bool) {
     }
 }
 
-/// Enter on an event: the walker goes to its limit point.
-fn select(model: &mut Model) -> Vec<Effect> {
-    if model.panel != Panel::Events {
+/// What the selected group changes, if it is one.
+fn group_effect(model: &Model) -> Option<String> {
+    let (row, _) = model.selected_knob()?;
+    let [changed, held] = groups::effect(&row.key)?;
+    Some(greek(&format!("{} follows from others: to turn it changes {changed}, {held} held", row.label)))
+}
+
+/// A selected text that is longer than its place beside the label may be, whole.
+fn long_text(model: &Model) -> Option<String> {
+    /// Characters that fit on every screen.
+    const FITTING: usize = 11;
+    match model.selected_knob()? {
+        (row, Some(Value::Text(text))) if text.chars().count() > FITTING => {
+            Some(format!("{}: {text}", row.label))
+        }
+        (row, Some(Value::Profile(rows))) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
+        _ => None,
+    }
+}
+
+/// A panel is selected, and a line of it, the last at most.
+fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
+    model.panel = panel;
+    let lines = match panel {
+        Panel::Problem => model.knobs().len(),
+        Panel::Events => model.shown_events().len() + model.shown_inadmissible().len(),
+        Panel::Walker | Panel::Charts => 0,
+    };
+    let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
+    match panel {
+        Panel::Problem => model.parameter = line,
+        Panel::Events => model.event = line,
+        Panel::Walker | Panel::Charts => {}
+    }
+}
+
+/// The walker goes to the state of this contact radius, in the user's units.
+fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
+    let Some(curve) = &model.curve else { return Vec::new() };
+    let reduced = radius / curve.setting.case.units().length;
+    walk(model, Action::MoveTo(reduced))
+}
+
+/// The event of a number, where the list has it.
+fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
+    let count = model.shown_events().len();
+    if !(1..=count).contains(&number) {
+        tell(model, Level::Error, format!("there is no event {number}: the list has {count}"));
         return Vec::new();
     }
+    model.event = number - 1;
+    go_to_event(model)
+}
+
+/// Enter on an event.
+fn select(model: &mut Model) -> Vec<Effect> {
+    if model.panel == Panel::Events { go_to_event(model) } else { Vec::new() }
+}
+
+/// The walker goes to the limit point of the selected event.
+fn go_to_event(model: &mut Model) -> Vec<Effect> {
     if model.events == EventSource::Walked {
         let events = model.walked_events();
         let Some((node, _)) = events.get(model.event) else { return Vec::new() };
         let Some(parent) = model.history.nodes().get(*node).and_then(|n| n.parent) else { return Vec::new() };
         // The state before the jump, as it was walked.
-        while model.history.cursor() != Some(parent) && model.history.undo() {}
-        return adopt_parameters(model);
+        return travel_to(model, parent);
     }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
@@ -216,5 +298,6 @@ fn select(model: &mut Model) -> Vec<Effect> {
     let radius = |i: &usize| curve.sweep.curve.equilibrium.contact_radius(&curve.limits[*i].point);
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
     model.inward = true;
-    nearest.map_or_else(Vec::new, |number| walk(model, Action::MoveToLimit(number)))
+    let event = model.event;
+    nearest.map_or_else(Vec::new, |limit| walk(model, Action::MoveToEvent { event, limit }))
 }

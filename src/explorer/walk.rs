@@ -32,12 +32,19 @@ pub enum Action {
     Steps(usize),
     /// Steps to the next limit point of the control.
     ToLimit,
+    /// The same, and no further than so many states.
+    Run(usize),
     /// The edge runs at constant control to the next stable state.
     Jump,
     /// The state of this contact radius (reduced), on the explicit curve.
     MoveTo(f64),
-    /// The limit point of this number on the curve.
-    MoveToLimit(usize),
+    /// The limit point of this event.
+    MoveToEvent {
+        /// The number of the event, from 0, among those of the curve.
+        event: usize,
+        /// The number of its limit point on the curve.
+        limit: usize,
+    },
     /// The state of the problem as it is now, at the control value and near the radius of the old one.
     Solve {
         /// The state before the change, in the user's units.
@@ -98,6 +105,10 @@ pub enum Outcome {
     Done,
     /// A limit point of the control was reached.
     AtLimit,
+    /// It was paused.
+    Paused,
+    /// The end of what can be walked was reached, in words.
+    Ended(String),
     /// It cannot go on, in words.
     Stopped(String),
 }
@@ -106,7 +117,11 @@ pub enum Outcome {
 pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     match &request.action {
         Action::Steps(count) => steps(request, *count, false, emit),
-        Action::ToLimit => steps(request, RUN_POINTS, true, emit),
+        Action::ToLimit => match steps(request, RUN_POINTS, true, emit) {
+            Outcome::Done => Outcome::Ended(format!("no limit point within {RUN_POINTS} steps")),
+            outcome => outcome,
+        },
+        Action::Run(count) => steps(request, *count, true, emit),
         Action::Jump => jump(request, emit),
         Action::MoveTo(s) => match request.equilibrium().explicit(*s) {
             Some(point) => {
@@ -115,7 +130,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             }
             None => Outcome::Stopped("there is no equilibrium at that contact radius".to_owned()),
         },
-        Action::MoveToLimit(number) => match request.curve.limits.get(*number) {
+        Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => {
                 emit(Made { begins: true, ..made(request, NodeKind::Limit, limit.point.clone()) });
                 Outcome::AtLimit
@@ -208,18 +223,18 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
         let s = equilibrium.contact_radius(&next);
         here = next.clone();
         if !emit(made(request, NodeKind::Step, next)) {
-            return Outcome::Stopped("paused".to_owned());
+            return Outcome::Paused;
         }
         if request.inward && s < case.end {
-            return Outcome::Stopped("the end contact radius is reached; b turns round".to_owned());
+            return Outcome::Ended("the end contact radius is reached; b turns round".to_owned());
         }
         if !request.inward && s > ROOM * case.start {
-            return Outcome::Stopped(
+            return Outcome::Ended(
                 "nothing found up to three times the start radius; b turns round".to_owned(),
             );
         }
     }
-    if run { Outcome::Stopped(format!("no limit point within {RUN_POINTS} steps")) } else { Outcome::Done }
+    Outcome::Done
 }
 
 fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {

@@ -7,6 +7,7 @@ use super::scale::Scale;
 use super::walk::{events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
+use crate::explorer::pins::Pin;
 use crate::report::number::{fixed, significant};
 
 /// Builds a view of the curve.
@@ -104,12 +105,16 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     }
 }
 
+/// The divisors of a pinned curve, on the axes of the one that is not pinned.
+pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &'a Pin) -> Scale<'a> {
+    Scale { units: subject.scale().units, ..Scale::of(&pin.curve, subject.axes) }
+}
+
 /// The pinned curves, each over its own divisors; their points are given back for the bounds.
 fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for pin in subject.pins {
-        // On the axes of the curve that is not pinned.
-        let scale = Scale { units: subject.scale().units, ..Scale::of(&pin.curve, subject.axes) };
+        let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(figure.view, place(point))).collect();
         all.extend(points.iter().copied());
@@ -121,7 +126,6 @@ fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
 /// The limit points of the control and of the others, and the pull-off.
 fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let curve = subject.curve;
-    let (equilibrium, units) = (&curve.sweep.curve.equilibrium, curve.setting.case.units());
     let view = figure.view;
     figure.marks.extend(
         curve
@@ -129,11 +133,8 @@ fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
             .iter()
             .map(|(control, p)| Mark { sign: Sign::OtherLimit(*control), at: scale.place(view, place(p)) }),
     );
-    figure.marks.extend(curve.limits.iter().map(|limit| {
-        let [delta, force, s] = equilibrium.quantities(&limit.point.y);
-        let at = scale.place(view, [delta * units.length, force * units.force, s * units.length]);
-        Mark { sign: Sign::Limit, at }
-    }));
+    let own = curve.shown_limits().into_iter();
+    figure.marks.extend(own.map(|at| Mark { sign: Sign::Limit, at: scale.place(view, at) }));
     let pull_off = events_before(subject, scale, view).filter(|mark| mark.sign == Sign::PullOff);
     figure.marks.extend(pull_off.collect::<Vec<_>>());
 }

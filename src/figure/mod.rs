@@ -13,7 +13,7 @@
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
-//! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the nearest state of the curve |
+//! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
 pub mod bounds;
 pub mod curves;

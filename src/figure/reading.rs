@@ -1,26 +1,61 @@
-//! What a point of a figure means: its coordinates, and on a view of the curve the state nearest to it.
+//! What a point of a figure means: its coordinates, and on a view of the curve the state near to it and what that is.
 
 use super::Subject;
 use super::bounds::Bounds;
-use super::curves::place;
+use super::curves::{pinned_scale, place};
 use super::parts::Axis;
-use crate::explorer::View;
+use super::scale::Scale;
+use crate::contact::Control;
+use crate::explorer::{CurveData, View};
 use crate::report::number::{significant, with_unit};
+use crate::report::unload::{EventReport, control_name};
 use crate::units::{Quantity, UnitSystem};
 
-/// The state of the curve nearest to a point of a view.
+/// A mark within this share of the window is meant, though a state of the curve may be nearer; a step of the
+/// cross-hair is shorter.
+const NEAR: f64 = 0.025;
+
+/// Two radii that differ by less are the same.
+const SAME: f64 = 1e-6;
+
+/// What a state is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum What {
+    /// A point of the curve, stable under the control or not.
+    Curve {
+        /// Whether stable.
+        stable: bool,
+    },
+    /// A limit point.
+    Limit {
+        /// Of this control.
+        control: Control,
+        /// Its number from the start inward, from 1.
+        number: usize,
+        /// The limit points of the control.
+        of: usize,
+        /// The number of the event that begins there.
+        event: Option<usize>,
+    },
+    /// Where the jump of the event of this number lands.
+    Landing(usize),
+    /// A point of the pinned curve of this number.
+    Pin(usize),
+}
+
+/// A state near to a point of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// Where it stands in the view.
     pub at: (f64, f64),
+    /// What it is.
+    pub what: What,
     /// δ, in the user's units.
     pub approach: f64,
     /// P.
     pub force: f64,
     /// s.
     pub contact_radius: f64,
-    /// Stable under the control.
-    pub stable: bool,
 }
 
 impl Nearest {
@@ -32,12 +67,29 @@ impl Nearest {
             shown(Quantity::Length, self.approach),
             shown(Quantity::Force, self.force),
             shown(Quantity::Length, self.contact_radius),
-            if self.stable { "stable" } else { "unstable" }
+            self.what.text()
         )
     }
 }
 
-/// The point of the curve nearest to `at`, as seen in a window of these bounds; `None` on a view of something else.
+impl What {
+    /// In words.
+    pub fn text(self) -> String {
+        match self {
+            Self::Curve { stable: true } => "stable".to_owned(),
+            Self::Curve { stable: false } => "unstable".to_owned(),
+            Self::Limit { control, number, of, event } => {
+                let event = event.map_or_else(String::new, |event| format!(", event {event}"));
+                format!("limit point of {} control {number} of {of}{event}", control_name(control))
+            }
+            Self::Landing(event) => format!("landing of event {event}"),
+            Self::Pin(number) => format!("on curve {number}"),
+        }
+    }
+}
+
+/// The state nearest to `at`, as seen in a window of these bounds: a limit point or a landing where one is near, else
+/// a point of the curve or of a pinned one; `None` on a view of something else.
 pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<Nearest> {
     if !view.is_curve() {
         return None;
@@ -47,18 +99,53 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
         let share = |[lo, hi]: [f64; 2], by: f64| by / (hi - lo);
         share(bounds.x, x - at.0).hypot(share(bounds.y, y - at.1))
     };
-    subject
-        .curve
-        .points
-        .iter()
-        .map(|point| Nearest {
-            at: scale.place(view, place(point)),
-            approach: point.approach,
-            force: point.force,
-            contact_radius: point.contact_radius,
-            stable: point.stable,
-        })
-        .min_by(|a, b| away(a.at).total_cmp(&away(b.at)))
+    let by_distance = |a: &Nearest, b: &Nearest| away(a.at).total_cmp(&away(b.at));
+    let state = |scale: Scale<'_>, [approach, force, contact_radius]: [f64; 3], what| Nearest {
+        at: scale.place(view, [approach, force, contact_radius]),
+        what,
+        approach,
+        force,
+        contact_radius,
+    };
+    let marks = marks(subject.curve).into_iter().map(|(quantities, what)| state(scale, quantities, what));
+    let mark = marks.filter(|mark| away(mark.at) <= NEAR).min_by(by_distance);
+    let own = subject.curve.points.iter();
+    let own = own.map(|point| state(scale, place(point), What::Curve { stable: point.stable }));
+    let pinned = subject.pins.iter().flat_map(|pin| {
+        let scale = pinned_scale(subject, pin);
+        pin.curve.points.iter().map(move |point| state(scale, place(point), What::Pin(pin.number)))
+    });
+    mark.or_else(|| own.chain(pinned).min_by(by_distance))
+}
+
+/// The limit points of a curve under every control shown, and the landings of its events, as δ, P and s.
+fn marks(curve: &CurveData) -> Vec<([f64; 3], What)> {
+    let events = curve.report.as_ref().map_or(&[][..], |report| &report.events);
+    let event_at = |s: f64| {
+        let begins = |event: &EventReport| (event.before.contact_radius - s).abs() <= SAME * s;
+        events.iter().position(begins).map(|at| at + 1)
+    };
+    let own = curve.shown_limits();
+    let of = own.len();
+    let control = curve.setting.case.control;
+    let mut marks: Vec<_> = own
+        .into_iter()
+        .enumerate()
+        .map(|(i, at)| (at, What::Limit { control, number: i + 1, of, event: event_at(at[2]) }))
+        .collect();
+    for other in [Control::Displacement, Control::Force] {
+        let limits: Vec<_> = curve.other_limits.iter().filter(|(control, _)| *control == other).collect();
+        let of = limits.len();
+        marks.extend(limits.into_iter().enumerate().map(|(i, (control, point))| {
+            (place(point), What::Limit { control: *control, number: i + 1, of, event: None })
+        }));
+    }
+    let landings = events.iter().enumerate().filter_map(|(i, event)| {
+        let after = event.after?;
+        Some(([after.approach, after.force, after.contact_radius], What::Landing(i + 1)))
+    });
+    marks.extend(landings);
+    marks
 }
 
 /// Both coordinates of a point in words, with as many digits as a window of these bounds tells apart.

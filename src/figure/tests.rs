@@ -1,7 +1,9 @@
 //! Every figure of every kind of problem: what is on it, and that its bounds are fit for any renderer.
 
+use super::reading::What;
 use super::*;
 use crate::case::Case;
+use crate::contact::Control;
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
 use crate::preset::Store;
 use crate::units::UnitSystem;
@@ -203,6 +205,45 @@ fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
     let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [-1.0, 1.0] };
     let text = reading::coordinates(&deep, axes, (0.5 + 5e-10, 0.25));
     assert_eq!(text, "δ 0.500000000500, P/Pc 0.250");
+}
+
+#[test]
+fn near_a_limit_point_a_landing_or_a_pin_the_cross_hair_says_so() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Pin).does(Command::Set { key: "gap.amplitude".into(), text: "0.0035".to_owned() });
+    let subject = Subject::of(&session.model).unwrap();
+    let (scale, view) = (subject.scale(), View::RadiusApproach);
+    let bounds = subject.figure(view).bounds;
+    // Closer than the limit points are to each other.
+    let at = |quantities| {
+        let (x, y) = scale.place(view, quantities);
+        let close = Bounds { x: [x - 0.001, x + 0.001], y: [y - 0.02, y + 0.02] };
+        let off = (x + 1e-5, y);
+        nearest(&subject, view, &close, off).unwrap().what
+    };
+    let events = &subject.curve.report.as_ref().unwrap().events;
+    let limits = subject.curve.shown_limits();
+    for (i, limit) in limits.iter().enumerate() {
+        let What::Limit { control: Control::Displacement, number, of, .. } = at(*limit) else {
+            panic!("{:?}", at(*limit))
+        };
+        assert_eq!((number, of), (i + 1, limits.len()));
+    }
+    let first = [events[0].before.approach, events[0].before.force, events[0].before.contact_radius];
+    assert!(at(first).text().ends_with(&format!("of {}, event 1", limits.len())), "{}", at(first).text());
+    let after = events[1].after.unwrap();
+    assert_eq!(at([after.approach, after.force, after.contact_radius]), What::Landing(2));
+    let (control, other) = &subject.curve.other_limits[0];
+    let quantities = [other.approach, other.force, other.contact_radius];
+    assert!(matches!(at(quantities), What::Limit { control: found, number: 1, .. } if found == *control));
+    // The point of the pinned curve that is farthest from this one and from every mark.
+    let pinned = &subject.pins[0].curve.points[30];
+    let quantities = [pinned.approach, pinned.force, pinned.contact_radius];
+    assert_eq!(at(quantities), What::Pin(1));
+    // From far away the nearest point of a curve counts, not a mark.
+    let far = (bounds.x[0], bounds.y[1]);
+    let found = nearest(&subject, view, &bounds, far).unwrap();
+    assert!(matches!(found.what, What::Curve { .. } | What::Pin(_)), "{found:?}");
 }
 
 #[test]

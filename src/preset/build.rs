@@ -2,19 +2,18 @@
 //!
 //! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
 
-use super::family::is_parameter;
 use super::invalid::Invalid;
 use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
+use super::resolve::{quantity, resolved, shown, system, told};
 use super::schema::{
-    Applies, CHOOSERS, DISPLAY, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS,
-    START_OVER_CURVATURE, SYSTEMS, parameter, table_of,
+    Applies, CHOOSERS, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
+    parameter, table_of,
 };
-use super::shape::measured_in;
 use super::value::Value;
 use crate::contact::Start;
 use crate::contact::{Control, Gap};
 use crate::ritz::Grading;
-use crate::units::{DisplayUnits, Quantity, UnitSystem, ValueError, parse_quantity};
+use crate::units::{Quantity, UnitSystem};
 use std::collections::BTreeMap;
 
 /// Values by dotted key. A part of a value (`path.control.stiffness`) is not a key here.
@@ -69,66 +68,12 @@ pub fn build(values: &Values) -> Result<Preset, Vec<Invalid>> {
     if faults.is_empty() { Ok(preset) } else { Err(faults) }
 }
 
-/// The units that these values state.
-fn system(values: &Values, faults: &mut Vec<Invalid>) -> UnitSystem {
-    if chosen(values, CHOOSERS[2]).as_deref() != Some(SYSTEMS[1]) {
-        return UnitSystem::Reduced;
-    }
-    let mut units = DisplayUnits::default();
-    for (key, quantity) in DISPLAY {
-        let Some(Value::Text(name)) = values.get(key) else { continue };
-        match units.clone().with(quantity, name) {
-            Ok(changed) => units = changed,
-            Err(cause) => faults.push(Invalid::Units { key: key.into(), cause }),
-        }
-    }
-    UnitSystem::Si(units)
-}
-
-/// The values with every text that stands for a number read in the units of the preset; a text that has no value
-/// there stays one.
-fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Invalid>) -> Values {
-    let mut all = values.clone();
-    for (key, value) in &mut all {
-        let Value::Typed(text) = value else { continue };
-        match in_units(values, units, key, text) {
-            Ok(k) if key == "path.control" => *value = Control::Stiffness(k).into(),
-            Ok(x) => *value = x.into(),
-            Err(cause) => faults.push(Invalid::Units { key: key.clone(), cause }),
-        }
-    }
-    all
-}
-
-/// The number of a text, in SI or reduced units.
-fn in_units(values: &Values, units: &UnitSystem, key: &str, text: &str) -> Result<f64, ValueError> {
-    let typed = parse_quantity(text)?;
-    if *units == UnitSystem::Reduced {
-        return typed.pure();
-    }
-    let quantity = match table_of(key) {
-        _ if key == "path.control" => Some(Quantity::ForcePerLength),
-        // A parameter of a formula is of the dimension that its own unit names, or of any.
-        Some(table) if is_parameter(key) || is_parameter(table) => {
-            let whole = if is_parameter(key) { key } else { table };
-            match values.get(&*format!("{whole}.unit")) {
-                Some(Value::Text(unit)) => measured_in(unit),
-                _ => None,
-            }
-        }
-        _ => parameter(key).map(|row| row.quantity),
-    };
-    match quantity {
-        Some(quantity) => typed.in_si(quantity, None),
-        None => Ok(typed.unit.as_ref().map_or(typed.number, |unit| unit.to_si(typed.number))),
-    }
-}
-
 /// The checks that span several keys.
 fn across(preset: &Preset) -> Vec<Invalid> {
     let radius = preset.gap.radius_of_curvature();
     let known = preset.gap.largest_radius();
     let mut faults = Vec::new();
+    let length = |x| shown(&preset.units, Quantity::Length, x);
     let end = preset.path.end_contact_radius;
     let start = match preset.path.start {
         Start::ContactRadius(s) => Some(s),
@@ -137,8 +82,10 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end)] {
         let Some(value) = value else { continue };
         if let Some(radius) = radius.filter(|radius| value > RADIUS_OVER_CURVATURE * radius) {
+            let (value, radius) = (length(value), length(radius));
             faults.push(Invalid::Wide { key: key.into(), value, radius });
         } else if let Some(largest) = known.filter(|largest| value >= *largest) {
+            let (value, largest) = (length(value), length(largest));
             faults.push(Invalid::Beyond { key: key.into(), value, largest });
         }
     }
@@ -150,6 +97,7 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     if let (Some(start), Some(end)) = (start, end)
         && end >= start
     {
+        let (end, start) = (length(end), length(start));
         faults.push(Invalid::EndBeyondStart { key: "path.end_contact_radius".into(), end, start });
     }
     faults
@@ -186,8 +134,9 @@ pub(super) struct Given<'a> {
 impl Given<'_> {
     fn check_each(&mut self) {
         for (key, value) in self.values {
-            if let Some(Err(fault)) = parameter(key).map(|row| row.check(value.clone())) {
-                self.faults.push(fault);
+            let Some(row) = parameter(key) else { continue };
+            if let Err(fault) = row.check(value.clone()) {
+                self.faults.push(told(&self.units, quantity(self.values, key), value, fault));
             }
         }
     }

@@ -8,33 +8,16 @@
 
 use super::invalid::Invalid;
 use super::model::Preset;
-use super::schema::{Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
+use super::schema::{self, Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
 use super::value::Value;
 use crate::contact::Groups;
-use crate::units::Quantity;
-use std::borrow::Cow::Borrowed;
 use std::f64::consts::TAU;
 
 const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] };
 
 /// The row of a group.
-const fn group(
-    key: &'static str,
-    label: &'static str,
-    meaning: &'static str,
-    kind: Kind,
-    applies: Applies,
-) -> Parameter {
-    Parameter {
-        key: Borrowed(key),
-        label: Borrowed(label),
-        meaning: Borrowed(meaning),
-        dimension: Borrowed(""),
-        quantity: Quantity::Number,
-        kind,
-        fallback: Fallback::Described("computed"),
-        applies,
-    }
+const fn group(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
+    schema::row(key, label, meaning, kind).or(Fallback::Described("computed"))
 }
 
 /// The groups that can be set.
@@ -44,22 +27,16 @@ pub static GROUPS: [Parameter; 3] = [
         "A/lambda",
         "amplitude over wavelength; changes the amplitude",
         Kind::NonNegative,
-        WAVY,
-    ),
+    )
+    .only(WAVY),
     group(
         "groups.wavelength_over_radius",
         "lambda/R",
         "wavelength over radius of curvature; changes wavelength and amplitude",
         Kind::Positive,
-        WAVY,
-    ),
-    group(
-        "groups.adhesion",
-        "gamma'",
-        "2 pi gamma/(E* R); changes the work of adhesion",
-        Kind::NonNegative,
-        Applies::Always,
-    ),
+    )
+    .only(WAVY),
+    group("groups.adhesion", "gamma'", "2 pi gamma/(E* R); changes the work of adhesion", Kind::NonNegative),
 ];
 
 /// The row of a group's key.
@@ -80,6 +57,17 @@ pub fn get(preset: &Preset, key: &str) -> Option<Value> {
         _ => None,
     }
     .map(Value::from)
+}
+
+/// What a group changes when it is set and what it holds, as the labels of rows; `None` for another key.
+#[must_use]
+pub fn effect(key: &str) -> Option<[&'static str; 2]> {
+    Some(match key {
+        "groups.amplitude_over_wavelength" => ["A", "lambda"],
+        "groups.wavelength_over_radius" => ["lambda and A", "R and A/lambda"],
+        "groups.adhesion" => ["gamma", "E* and R"],
+        _ => return None,
+    })
 }
 
 /// What a group changes when it becomes `x`, in this order.
@@ -115,7 +103,7 @@ pub fn changes(preset: &Preset, row: &Parameter, x: f64) -> Result<Vec<(Key, Val
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::model::tests::wavy;
+    use crate::preset::examples::wavy;
     use crate::preset::{read, read_with, shipped, write};
 
     fn number(preset: &Preset, key: &str) -> f64 {
@@ -142,6 +130,10 @@ mod tests {
             assert_eq!(preset.gap.radius_of_curvature(), old.gap.radius_of_curvature());
             assert_eq!(preset.material.effective_modulus.to_bits(), old.material.effective_modulus.to_bits());
             assert!(!write(&preset).contains("groups"));
+            // The words name the rows that changed.
+            let [changed, _] = effect(key).unwrap();
+            let moved = preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key));
+            assert_eq!(moved.filter(|row| !changed.contains(&*row.label)).count(), 0, "{key}");
         }
     }
 

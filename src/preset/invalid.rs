@@ -118,14 +118,14 @@ pub enum Invalid {
         second: Key,
     },
     /// A path that would end at or beyond its start.
-    #[error("{key} = {end:?} is not below path.start_contact_radius = {start:?}")]
+    #[error("{key} = {end} is not below path.start_contact_radius = {start}")]
     EndBeyondStart {
         /// `path.end_contact_radius`.
         key: Key,
-        /// The contact radius at the end.
-        end: f64,
-        /// The contact radius at the start.
-        start: f64,
+        /// The contact radius at the end, as it is shown.
+        end: String,
+        /// The contact radius at the start, as it is shown.
+        start: String,
     },
     /// A number of rings that their grading does not take.
     #[error(
@@ -165,27 +165,27 @@ pub enum Invalid {
         meant: Option<Key>,
     },
     /// A contact radius where the gap is not known.
-    #[error("{key} = {value:?} is out of range: the gap is known up to the radius {largest:?} only")]
+    #[error("{key} = {value} is out of range: the gap is known up to the radius {largest} only")]
     Beyond {
         /// The key.
         key: Key,
-        /// The contact radius.
-        value: f64,
-        /// The largest known radius.
-        largest: f64,
+        /// The contact radius, as it is shown.
+        value: String,
+        /// The largest known radius, as it is shown.
+        largest: String,
     },
     /// A contact radius far beyond the radius of curvature.
     #[error(
-        "{key} = {value:?} is out of range: it must be at most {RADIUS_OVER_CURVATURE} x the radius of \
-         curvature {radius:?}"
+        "{key} = {value} is out of range: it must be at most {RADIUS_OVER_CURVATURE} x the radius of \
+         curvature {radius}"
     )]
     Wide {
         /// The key.
         key: Key,
-        /// The contact radius.
-        value: f64,
-        /// The radius of curvature.
-        radius: f64,
+        /// The contact radius, as it is shown.
+        value: String,
+        /// The radius of curvature, as it is shown.
+        radius: String,
     },
 }
 

@@ -1,16 +1,21 @@
 //! The file of a measured profile → rows of a gap.
 //!
 //! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
-//! folder of the preset. In an SI preset rows with a unit become metres; in any other radii are taken as they stand; where both columns name a unit of length, gaps are converted to
-//! the unit of the radii, so a gap in nm over µm is what it says.
+//! folder of the preset. In an SI preset rows with a unit become metres; in any other radii are taken as they stand;
+//! where both columns name a unit of length, gaps are converted to the unit of the radii, so a gap in nm over µm is what it
+//! says.
 
+use super::invalid::Invalid;
 use super::profile::{LARGEST, TextError, parse};
+use super::schema::{Kind, Parameter};
 use super::text::{is_unsafe, quote, sanitize, show_path};
+use super::value::Value;
 use super::{file, shipped};
 use crate::contact::shapes::Rows;
 use crate::units::dimension::Quantity;
 use crate::units::unit::Unit;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The beginning of a name of shipped data.
 pub const SHIPPED_DATA: &str = "shipped:";
@@ -52,6 +57,17 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
         unit: radii_in.and_then(|unit| Unit::parse(&unit, 0).ok()),
         notes,
     })
+}
+
+/// A value as it is kept: the name of a file stands for its rows, read here from `folder`.
+pub(super) fn located(row: &Parameter, value: Value, folder: Option<&Path>) -> Result<Value, Invalid> {
+    match value {
+        Value::Text(name) if row.kind == Kind::File => {
+            let cause = |cause| Invalid::Gap { key: row.key.clone(), cause };
+            Ok(Value::Profile(Arc::new(load(folder, &name).map_err(cause)?)))
+        }
+        value => Ok(value),
+    }
 }
 
 /// How many of the unit `of` one `unit` is; both are lengths.

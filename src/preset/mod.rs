@@ -10,9 +10,11 @@
 //! | [`invalid`] | what can be wrong with a value or a key |
 //! | [`model`] | the preset itself, read and changed by dotted key |
 //! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
+//! | `resolve` | the units of a preset, and its texts with units as numbers in them |
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
+//! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |
 //! | [`shipped`] | the presets that come with the program |
 //! | [`name`] | which names a person's preset may have |
@@ -32,6 +34,9 @@
 pub mod atomic;
 pub mod beside;
 pub mod build;
+pub mod changes;
+#[cfg(test)]
+mod examples;
 pub mod family;
 pub mod file;
 pub mod groups;
@@ -43,6 +48,7 @@ pub mod model;
 pub mod name;
 pub mod profile;
 pub mod read;
+mod resolve;
 pub mod schema;
 mod shape;
 pub mod shipped;

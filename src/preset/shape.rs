@@ -4,7 +4,10 @@ use super::build::{Given, Values};
 use super::family::{self, PARAMETER_KEYS, WAVE_KEYS, is_parameter, parameter_key, wave_key};
 use super::invalid::Invalid;
 use super::measured;
-use super::schema::{AUTO, Key, Kind, NONE, Parameter, START_KEYS, START_OVER_CURVATURE, parameter};
+use super::resolve::told;
+use super::schema::{
+    AUTO, COEFFICIENT, Key, Kind, NONE, Parameter, Row, START_KEYS, START_OVER_CURVATURE, parameter,
+};
 use super::suggest::closest;
 use super::value::Value;
 use crate::contact::Shape;
@@ -28,7 +31,7 @@ impl Given<'_> {
             "exact-sphere" => Shape::ExactSphere(ExactSphere { radius: self.radius() }),
             "cone" => Shape::Cone { slope: self.number("gap.slope") },
             "power-law" => Shape::PowerLaw(PowerLaw {
-                factor: self.number("gap.coefficient"),
+                factor: self.number(COEFFICIENT),
                 exponent: self.number("gap.exponent"),
             }),
             "harmonics" => self.harmonics(),
@@ -92,7 +95,7 @@ impl Given<'_> {
             Err(_) if self.faults.len() > faults || !self.all_fine() => {
                 Shape::Sphere { radius_of_curvature: f64::NAN }
             }
-            Err(error) => self.fault("gap.shortest_wavelength", &error),
+            Err(error) => self.fault("gap.shortest_wavelength", &error.words(&self.units)),
         }
     }
 
@@ -131,7 +134,7 @@ impl Given<'_> {
         };
         match TypedGap::new(&text, parameters, start) {
             Ok(gap) => Shape::Formula(Arc::new(gap)),
-            Err(error) => self.fault("gap.formula", &error),
+            Err(error) => self.fault("gap.formula", &error.words(&self.units)),
         }
     }
 
@@ -148,10 +151,11 @@ impl Given<'_> {
             _ => None,
         };
         let parameter = FormulaParameter { name: name.to_owned(), value, min, max, unit };
-        if !value.is_nan()
-            && let Err(fault) = bounded(&parameter).check(Value::Number(value))
+        let (row, value) = (bounded(&parameter), Value::Number(value));
+        if !parameter.value.is_nan()
+            && let Err(fault) = row.check(value.clone())
         {
-            self.faults.push(fault);
+            self.faults.push(told(&self.units, Some(row.quantity), &value, fault));
         }
         parameter
     }
@@ -173,7 +177,7 @@ impl Given<'_> {
         let rows = if self.units == UnitSystem::Reduced { rows } else { rows.in_metres() };
         match Measured::new(rows, smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),
-            Err(error) => self.fault("gap.file", &error),
+            Err(error) => self.fault("gap.file", &error.words(&self.units)),
         }
     }
 
@@ -209,8 +213,25 @@ fn bounded(given: &FormulaParameter) -> Parameter {
     row
 }
 
+/// The quantity of the coefficient c of a gap c rⁿ, a length to the power 1 − n; `None` where that power is not whole or
+/// beyond all units.
+pub(super) fn of_coefficient(exponent: f64) -> Option<Quantity> {
+    Quantity::of_inverse_length(exponent - 1.0)
+}
+
+/// A row of the table as this shape has it.
+pub(super) fn own(shape: &Shape, row: &'static Parameter) -> Row {
+    match shape {
+        Shape::PowerLaw(law) if row.key == COEFFICIENT => Row::Owned(Parameter {
+            quantity: of_coefficient(law.exponent).unwrap_or(Quantity::Number),
+            ..row.clone()
+        }),
+        _ => Row::Borrowed(row),
+    }
+}
+
 /// The quantity that is measured in a unit, if it is one of ours.
-pub(super) fn measured_in(unit: &str) -> Option<Quantity> {
+fn measured_in(unit: &str) -> Option<Quantity> {
     let dimension = Unit::parse(unit, 0).ok()?.dimension();
     Quantity::ALL.into_iter().find(|quantity| quantity.dimension() == dimension)
 }
@@ -321,7 +342,7 @@ pub(super) fn begin(values: &mut Values, word: &str, radius: f64, wave: Option<(
         ("gap.amplitude".into(), Value::Number(amplitude)),
         ("gap.wavelength".into(), Value::Number(wavelength)),
         ("gap.slope".into(), Value::Number(0.1)),
-        ("gap.coefficient".into(), Value::Number(0.5 / radius)),
+        (COEFFICIENT.into(), Value::Number(0.5 / radius)),
         ("gap.exponent".into(), Value::Number(2.0)),
         ("gap.file".into(), "shipped:rough-sphere.csv".into()),
         ("gap.formula".into(), "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))".into()),

@@ -136,6 +136,17 @@ pub enum StoreError {
     /// The file cannot be written; nothing has changed.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// What comes with the program stays.
+    #[error("{0} comes with the program and cannot be deleted")]
+    Shipped(&'static str),
+    /// The file cannot be deleted.
+    #[error("{path}: cannot delete it: {cause}")]
+    Delete {
+        /// The file, safe to show.
+        path: String,
+        /// What the system says.
+        cause: io::Error,
+    },
 }
 
 /// The folder of a person's presets.
@@ -194,14 +205,18 @@ impl Store {
             // A pipe or a dangling link by that name is there, and loading it says what is wrong.
             Ok(path) if path.symlink_metadata().is_ok() => Ok(Source::User { name: name.into_owned(), path }),
             _ => {
-                let (own, _) = self.names();
-                let known = SHIPPED.iter().map(|shipped| shipped.name).chain(own.iter().map(String::as_str));
-                Err(StoreError::NotFound {
-                    name: quote(&name),
-                    meant: closest(&name, known).map(str::to_owned),
-                })
+                let known = self.known();
+                let meant = closest(&name, known.iter().map(String::as_str)).map(str::to_owned);
+                Err(StoreError::NotFound { name: quote(&name), meant })
             }
         }
+    }
+
+    /// The names of all presets, the shipped ones first; whether their files are good is not looked at.
+    #[must_use]
+    pub fn known(&self) -> Vec<String> {
+        let (own, _) = self.names();
+        SHIPPED.iter().map(|shipped| shipped.name.to_owned()).chain(own).collect()
     }
 
     /// Loads a preset and lays `KEY=VALUE` assignments over it.
@@ -277,6 +292,33 @@ impl Store {
         (names, notice)
     }
 
+    /// Deletes the person's own preset of this name, for good, and says where its file was. Data copied beside it stay.
+    ///
+    /// # Errors
+    /// The person has no preset of this name, another saver holds the folder, or the system says no; nothing has
+    /// changed then.
+    pub fn delete(&self, name: &str) -> Result<PathBuf, StoreError> {
+        let path = self.own(name)?;
+        let _lock = locked(folder_of(&path), &path)?;
+        // A link is deleted itself, not what it leads to.
+        match fs::remove_file(&path) {
+            Ok(()) => Ok(path),
+            Err(cause) => Err(StoreError::Delete { path: show_path(&path), cause }),
+        }
+    }
+
+    /// The file of the person's own preset of this name, which can be deleted.
+    ///
+    /// # Errors
+    /// The person has no preset of this name.
+    pub fn own(&self, name: &str) -> Result<PathBuf, StoreError> {
+        match shipped::find(name) {
+            Some(shipped) => Err(StoreError::Shipped(shipped.name)),
+            // First, since a path is no name.
+            None => self.path_of(name).and_then(|path| self.resolve(name).map(|_| path)),
+        }
+    }
+
     /// Saves a preset by name, and says where it is now and how to recognise the file.
     ///
     /// # Errors
@@ -321,6 +363,13 @@ fn make_folder(folder: &Path) -> Result<(), StoreError> {
     made.map_err(|cause| StoreError::Folder { path: show_path(folder), cause })
 }
 
+/// The lock of a folder, for the sake of a file in it.
+fn locked(folder: &Path, path: &Path) -> Result<FolderLock, WriteError> {
+    let lock = FolderLock::acquire(folder, PATIENCE);
+    let failed = |cause| WriteError::Io { path: show_path(path), doing: "lock its folder", cause };
+    lock.map_err(failed)?.ok_or_else(|| WriteError::Locked { path: show_path(path) })
+}
+
 /// Saves a preset to a file by its path: the whole text anew, read back before it takes the file's place.
 ///
 /// # Errors
@@ -332,11 +381,7 @@ pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<F
     // The folder where the rename happens, so that two names for one file share a lock.
     let target = follow(path)?;
     let shown = || show_path(path);
-    let lock = FolderLock::acquire(folder_of(&target), PATIENCE);
-    let lock = lock.map_err(|cause| WriteError::Io { path: shown(), doing: "lock its folder", cause })?;
-    if lock.is_none() {
-        return Err(WriteError::Locked { path: shown() }.into());
-    }
+    let _lock = locked(folder_of(&target), path)?;
     let fingerprint = write_verified(path, text.as_bytes(), overwrite, |bytes| {
         let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
         match read_in(Some(folder_of(path)), &shown(), text, &[] as &[&str]) {
@@ -351,8 +396,8 @@ pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::preset::examples::wavy;
     use crate::preset::model::BasisSpec;
-    use crate::preset::model::tests::wavy;
     use crate::ritz::Grading;
     use rustix::fs::{CWD, FileType, Mode, mknodat};
     use std::os::unix::fs::{PermissionsExt, symlink};
@@ -428,6 +473,36 @@ mod tests {
             assert!(matches!(error, StoreError::Name(_)), "{error}");
         }
         assert!(!store.folder().unwrap().exists());
+    }
+
+    #[test]
+    fn only_ones_own_presets_are_deleted() {
+        let (home, store) = store();
+        let message = |name: &str| store.delete(name).unwrap_err().to_string();
+        assert_eq!(message("mine"), "no preset is called \"mine\"");
+        assert_eq!(message("fig-9"), "fig-9 comes with the program and cannot be deleted");
+        store.save("mine", &wavy(), Overwrite::Never).unwrap();
+        store.save("other", &wavy(), Overwrite::Never).unwrap();
+        let (outside, linked) = (home.path().join("outside.toml"), store.folder().unwrap().join("link.toml"));
+        fs::write(&outside, "x").unwrap();
+        symlink(&outside, &linked).unwrap();
+        for path in [outside.to_str().unwrap(), "../outside", "./mine.toml", "mine.toml"] {
+            assert!(matches!(store.delete(path), Err(StoreError::Name(_))), "{path}");
+        }
+        assert_eq!(store.delete("mine").unwrap(), store.path_of("mine").unwrap());
+        store.delete("link").unwrap();
+        assert!(outside.exists() && linked.symlink_metadata().is_err());
+        assert_eq!(store.names().0, ["other"]);
+        // While another saves in the folder nothing is deleted.
+        let lock = FolderLock::acquire(store.folder().unwrap(), PATIENCE).unwrap();
+        let waiting = std::thread::spawn({
+            let store = store.clone();
+            move || store.delete("other").map(drop)
+        });
+        assert!(lock.is_some() && store.names().0 == ["other"]);
+        drop(lock);
+        waiting.join().unwrap().unwrap();
+        assert!(store.names().0.is_empty());
     }
 
     #[test]

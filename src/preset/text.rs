@@ -38,6 +38,12 @@ pub fn sanitize(text: &str, max: usize) -> String {
     short
 }
 
+/// A label of the parameter table with its Greek letters.
+#[must_use]
+pub fn greek(label: &str) -> String {
+    label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
+}
+
 /// A quotation of foreign text for a message.
 #[must_use]
 pub fn quote(text: &str) -> String {

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use crate::contact::Shape;
     use crate::contact::Start;
-    use crate::preset::model::tests::{any_preset, wavy};
+    use crate::preset::examples::{any_preset, wavy};
     use crate::preset::read::read;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;

@@ -6,6 +6,9 @@ use crate::continuation::sweep::sweep;
 use crate::continuation::trace::trace;
 use crate::continuation::{Branch, End, Settings, Stop, Work, events, locate};
 use crate::ritz::{Basis, Evaluation, Order};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -24,17 +27,33 @@ pub const WAVE_SHARE: f64 = 1.0 / 12.0;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum CurveStop {
     /// It reached the end contact radius.
-    #[error("the end contact radius was reached")]
     End,
     /// The basis has no equilibrium beyond.
-    #[error("the basis has no equilibrium below the contact radius {0:.6e} (a finer basis may help)")]
     NoEquilibrium(f64),
     /// The tracer stopped for another reason.
-    #[error("{0}")]
     Tracer(Stop),
 }
 
+impl fmt::Display for CurveStop {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
 impl CurveStop {
+    /// Why, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        match self {
+            Self::End => "the end contact radius was reached".to_owned(),
+            Self::NoEquilibrium(s) => {
+                let s = said(shown, Quantity::Length, *s);
+                format!("the basis has no equilibrium below the contact radius {s} (a finer basis may help)")
+            }
+            Self::Tracer(stop) => stop.to_string(),
+        }
+    }
+
     /// The same with its numbers in the user's units.
     #[must_use]
     pub fn in_units(self, units: &Units) -> Self {

@@ -10,8 +10,12 @@
 //! the control line, `−∫(P − P_line) dδ` from before to after, with `P_line` = 0, P*, k(Δ* − δ). After a pull-off the
 //! curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is no such
 //! place: the load falls for ever and no loss is reported.
+//!
+//! The area is taken in stretches between the knots of the gap, in x with s = base + x²: at the knot the curve is a power of
+//! √(s − base), and where adhesion alone rules, towards s = 0, so is δ.
 
 use super::equilibrium::{Equilibrium, State};
+use crate::contact::breaks::Stretch;
 use crate::contact::{Control, Gap};
 use crate::ritz::Order;
 use gauss_quad::GaussLegendre;
@@ -68,20 +72,7 @@ pub fn area(
         return None;
     }
     let to = after.unwrap_or(0.0);
-    let waves = equilibrium.problem.gap.feature_length().map_or(0.0, |wave| (before - to) / wave);
-    let pieces = (PIECES_PER_WAVE * waves).ceil().clamp(FEWEST_PIECES, MOST_PIECES);
-    // s = x²: δ behaves like √s towards s = 0 and is smooth in x.
-    let edge = |piece: f64| (before + (to - before) * (piece / pieces).min(1.0)).sqrt();
-    let rule = GaussLegendre::new(NODES.try_into().ok()?);
-    let (mut nodes, mut weights) = (Vec::new(), Vec::new());
-    let mut piece = 0.0;
-    while piece < pieces {
-        let (a, b) = (edge(piece), edge(piece + 1.0));
-        nodes.extend(rule.iter().map(|(x, _)| 0.5 * ((a + b) + (b - a) * x)));
-        weights.extend(rule.iter().map(|(_, weight)| 0.5 * (b - a) * weight));
-        piece += 1.0;
-    }
-    let radii: Vec<f64> = nodes.iter().map(|x| x * x).collect();
+    let (radii, weights) = area_rule(&equilibrium.problem.gap, before, to)?;
     let solved = equilibrium.basis.equilibria(&equilibrium.problem, &radii, Order::Slopes, &mut || true);
     if solved.len() < radii.len() {
         return None;
@@ -93,12 +84,35 @@ pub fn area(
     };
     let mut area: f64 = solved
         .iter()
-        .zip(nodes.iter().zip(&weights))
-        .map(|(e, (x, weight))| -(e.force - line(e.approach)) * e.slopes()[0] * 2.0 * x * weight)
+        .zip(&weights)
+        .map(|(e, weight)| -(e.force - line(e.approach)) * e.slopes()[0] * weight)
         .sum();
     if let (None, Control::Stiffness(k)) = (after, control) {
         // From δ = 0 along P = 0 to the slack spring at δ = Δ*.
         area += 0.5 * k * value * value;
     }
     Some(area)
+}
+
+/// Radii from `before` inward to `to`, with the weights of ∫ ds.
+fn area_rule(gap: &dyn Gap, before: f64, to: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let rule = GaussLegendre::new(NODES.try_into().ok()?);
+    let breaks = gap.breaks();
+    let broken = !breaks.between(to, before).is_empty();
+    let (mut radii, mut weights) = (Vec::new(), Vec::new());
+    for Stretch { from, to, base } in breaks.stretches(to, before).rev() {
+        let waves = gap.feature_length().map_or(0.0, |wave| (to - from) / wave);
+        let fewest = if broken { 1.0 } else { FEWEST_PIECES };
+        let pieces = (PIECES_PER_WAVE * waves).ceil().clamp(fewest, MOST_PIECES);
+        let edge = |piece: f64| (to + (from - to) * (piece / pieces).min(1.0) - base).max(0.0).sqrt();
+        let mut piece = 0.0;
+        while piece < pieces {
+            let (a, b) = (edge(piece), edge(piece + 1.0));
+            let node = |x: f64| 0.5 * ((a + b) + (b - a) * x);
+            radii.extend(rule.iter().map(|(x, _)| base + node(*x).powi(2)));
+            weights.extend(rule.iter().map(|(x, weight)| (b - a) * weight * node(*x)));
+            piece += 1.0;
+        }
+    }
+    Some((radii, weights))
 }

@@ -4,16 +4,17 @@ use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
 use super::jump::Nodes;
 use crate::contact::{Control, Gap, Reduced, Start, Units};
 use crate::ritz::Basis;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt;
 use std::sync::Arc;
 
 /// Why a start state was not found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StartError {
     /// The basis has no equilibrium at the radius.
-    #[error("there is no equilibrium at the contact radius {0:.6e}")]
     NoEquilibrium(f64),
     /// No contact carries the value.
-    #[error("no contact has the {name} {value:.6e}; the smallest on the curve is {smallest:.6e}")]
     OutOfReach {
         /// `approach` or `force`.
         name: &'static str,
@@ -23,10 +24,6 @@ pub enum StartError {
         smallest: f64,
     },
     /// The value is beyond what is known of the gap.
-    #[error(
-        "no contact up to the radius {searched:.6e} has the {name} {value:.6e}, and the gap is known up to the radius \
-         {known:.6e} only"
-    )]
     NotKnown {
         /// `approach` or `force`.
         name: &'static str,
@@ -38,7 +35,6 @@ pub enum StartError {
         known: f64,
     },
     /// The curve was not found to rise above the value.
-    #[error("no contact up to the radius {largest:.6e} reaches the {name} {value:.6e}")]
     NotReached {
         /// `approach` or `force`.
         name: &'static str,
@@ -49,7 +45,41 @@ pub enum StartError {
     },
 }
 
+impl fmt::Display for StartError {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
 impl StartError {
+    /// What is wrong, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        let radius = |s| said(shown, Quantity::Length, s);
+        let of = |name, x| {
+            let quantity = if name == "force" { Quantity::Force } else { Quantity::Length };
+            said(shown, quantity, x)
+        };
+        match *self {
+            Self::NoEquilibrium(s) => format!("there is no equilibrium at the contact radius {}", radius(s)),
+            Self::OutOfReach { name, value, smallest } => {
+                let (value, smallest) = (of(name, value), of(name, smallest));
+                format!("no contact has the {name} {value}; the smallest on the curve is {smallest}")
+            }
+            Self::NotKnown { name, value, searched, known } => {
+                let (value, searched, known) = (of(name, value), radius(searched), radius(known));
+                format!(
+                    "no contact up to the radius {searched} has the {name} {value}, and the gap is known up to the \
+                     radius {known} only"
+                )
+            }
+            Self::NotReached { name, value, largest } => {
+                let (value, largest) = (of(name, value), radius(largest));
+                format!("no contact up to the radius {largest} reaches the {name} {value}")
+            }
+        }
+    }
+
     /// The same error with its numbers in the user's units.
     #[must_use]
     pub fn in_units(self, units: &Units) -> Self {

@@ -5,6 +5,9 @@ use super::energy;
 use super::equilibrium::{Equilibrium, Point, State};
 use super::jump::{Landing, Nodes, Run};
 use crate::contact::{Control, Units};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt;
 
 /// What happened at an instability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,17 +63,30 @@ impl Event {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PathStop {
     /// The bodies came apart.
-    #[error("the bodies came apart (pull-off)")]
     PullOff,
     /// The end contact radius was reached in a stable state.
-    #[error("the end contact radius was reached in a stable state")]
     End,
     /// The curve ends before.
-    #[error("the curve ends: {0}")]
     Curve(CurveStop),
 }
 
+impl fmt::Display for PathStop {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
 impl PathStop {
+    /// Why, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        match self {
+            Self::PullOff => "the bodies came apart (pull-off)".to_owned(),
+            Self::End => "the end contact radius was reached in a stable state".to_owned(),
+            Self::Curve(stop) => format!("the curve ends: {}", stop.words(shown)),
+        }
+    }
+
     /// The same with its numbers in the user's units.
     #[must_use]
     pub fn in_units(self, units: &Units) -> Self {
@@ -106,10 +122,6 @@ pub struct Unloading {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum UnloadError {
     /// The start is unstable and nothing outward is stable.
-    #[error(
-        "the start state (contact radius {contact_radius:.6e}) is unstable under {control} control and no stable \
-         state lies outward up to the contact radius {searched:.6e}"
-    )]
     UnstableStart {
         /// s of the start.
         contact_radius: f64,
@@ -119,11 +131,37 @@ pub enum UnloadError {
         searched: f64,
     },
     /// It was no longer wanted.
-    #[error("cancelled")]
     Cancelled,
 }
 
+impl fmt::Display for UnloadError {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
 impl UnloadError {
+    /// What is wrong, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        match *self {
+            Self::UnstableStart { contact_radius, control, searched } => {
+                let [s, searched] = [contact_radius, searched].map(|s| said(shown, Quantity::Length, s));
+                let control = match control {
+                    Control::Stiffness(k) => {
+                        format!("stiffness={}", said(shown, Quantity::ForcePerLength, k))
+                    }
+                    other => other.to_string(),
+                };
+                format!(
+                    "the start state (contact radius {s}) is unstable under {control} control and no stable state \
+                     lies outward up to the contact radius {searched}"
+                )
+            }
+            Self::Cancelled => "cancelled".to_owned(),
+        }
+    }
+
     /// The same error with its numbers in the user's units.
     #[must_use]
     pub fn in_units(self, units: &Units) -> Self {

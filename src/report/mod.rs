@@ -2,7 +2,7 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`number`] | how numbers are written for people |
+//! | [`number`] | how numbers are written for people, from [`units`](crate::units) |
 //! | [`problem`] | the problem that a trace and an unloading carry |
 //! | [`overlap`] | the states that are not admissible, as part of a document |
 //! | [`trace`] | the equilibrium curve as a document |
@@ -14,7 +14,6 @@
 //! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
 //! read the same documents.
 
-pub mod number;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
@@ -23,6 +22,7 @@ pub mod trace;
 pub mod unload;
 pub mod verify;
 
+pub use crate::units::number;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;

@@ -3,8 +3,9 @@
 use crate::case::Case;
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
+use crate::preset::family::is_parameter;
 use crate::preset::schema::SYSTEMS;
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{Quantity, Unit, UnitSystem};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -84,10 +85,23 @@ fn document(preset: &Preset) -> Map<String, Value> {
     let mut document = Map::new();
     for (row, value) in preset.values() {
         if !row.is_part() {
-            insert(&mut document, &row.key, json_value(&value));
+            let value = unit_of_parameter(preset, &row.key, &value).unwrap_or_else(|| json_value(&value));
+            insert(&mut document, &row.key, value);
         }
     }
     document
+}
+
+/// The unit of a parameter of a formula in an SI document: its numbers there are in SI, whatever the file wrote, so the
+/// unit beside them is too. One that is none of ours is the remark it was.
+fn unit_of_parameter(preset: &Preset, key: &str, value: &crate::preset::Value) -> Option<Value> {
+    let parameter = key.strip_suffix(".unit").filter(|key| is_parameter(key))?;
+    let crate::preset::Value::Text(unit) = value else { return None };
+    if preset.units == UnitSystem::Reduced {
+        return None;
+    }
+    let base = Unit::parse(unit, 0).ok()?.dimension().si();
+    Some(preset.row(parameter)?.quantity.si().map_or_else(|| Value::from(base), Value::from))
 }
 
 /// Puts a value below its dotted key. Waves are an array; a parameter that has more than a value is an object.

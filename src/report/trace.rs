@@ -236,10 +236,10 @@ impl TraceReport {
             warnings: case
                 .warnings(curve.outermost())
                 .into_iter()
-                .chain(overlap::warning("the curve", &inadmissible))
+                .chain(overlap::warning("the curve", &inadmissible, &preset.units))
                 .collect(),
             notes: case.notes(curve.outermost()),
-            stop: curve.stop.in_units(units).to_string(),
+            stop: curve.stop.in_units(units).words(&preset.units),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,

@@ -1,6 +1,6 @@
 //! The unloading as a document.
 
-use super::number::significant;
+use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
 use super::{SCHEMA, rows};
@@ -11,6 +11,7 @@ use crate::preset::Preset;
 use crate::quasistatic::equilibrium::wave_index;
 use crate::quasistatic::overlap::passed_while;
 use crate::quasistatic::{Event, EventKind, Overlap, State, Unloading};
+use crate::units::Quantity;
 use serde::Serialize;
 
 /// A quasi-static unloading.
@@ -130,13 +131,14 @@ impl UnloadReport {
     pub fn new(preset: &Preset, case: &Case, unloading: &Unloading) -> Self {
         let units = case.units();
         let start = StateReport::new(case, &unloading.start);
+        let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
         let note = unloading.asked.map(|asked| {
             let asked = asked.in_units(units);
             format!(
                 "the state asked for (contact radius {}) is unstable under {} control: the edge first ran outward to {}",
-                significant(asked.contact_radius, 6),
+                length(asked.contact_radius),
                 control_name(unloading.control),
-                significant(start.contact_radius, 6)
+                length(start.contact_radius)
             )
         });
         let start = StartReport {
@@ -152,7 +154,7 @@ impl UnloadReport {
             problem: ProblemReport::new(preset, case),
             warnings: case.warnings(unloading.start.contact_radius.max(case.start)),
             notes: case.notes(unloading.start.contact_radius.max(case.start)),
-            stop: unloading.stop.in_units(units).to_string(),
+            stop: unloading.stop.in_units(units).words(&preset.units),
             control: case.shown_control(unloading.control),
             start,
             min_force: unloading.min_force.in_units(units).force,
@@ -176,7 +178,7 @@ impl UnloadReport {
             report.admissible = Some(holds(&event.before) && event.after.as_ref().is_none_or(holds));
         }
         let inadmissible = OverlapReport::all(passed, case.units());
-        self.warnings.extend(overlap::warning("the path", &inadmissible));
+        self.warnings.extend(overlap::warning("the path", &inadmissible, &case.shown));
         self.inadmissible = Some(inadmissible);
         self
     }

@@ -11,10 +11,13 @@
 //! so one slope a node gives a point (δ, P) of the curve, and two more derivatives its tangent and curvature. The sums are
 //! Gauss's in θ, whose weights are positive and lose no digits. The integrands are symmetric about θ = π/2: of a
 //! rule on (0, π) one half is enough, and its nodes crowd where the phase q sin θ of a wave runs fastest. Two nodes for each
-//! wave inside the disc and a dozen more then reach rounding, so small discs take small rules.
+//! wave inside the disc and a dozen more then reach rounding, so small discs take small rules. Where the gap is not smooth the
+//! rule is broken (see [`breaks`](crate::contact::breaks)).
 
 use crate::contact::Gap;
+use crate::contact::breaks::{Angles, CUBIC_FREQUENCY};
 use gauss_quad::GaussLegendre;
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 use std::num::NonZeroUsize;
 use wide::f64x4;
@@ -66,6 +69,17 @@ impl Rule {
     }
 }
 
+impl From<Angles> for Rule {
+    fn from(Angles { mut sines, mut weights, .. }: Angles) -> Self {
+        // To a multiple of four with nodes that do not count.
+        let last = sines.last().copied().unwrap_or(0.0);
+        let size = sines.len().next_multiple_of(4);
+        sines.resize(size, last);
+        weights.resize(size, 0.0);
+        Self { sines, weights }
+    }
+}
+
 /// The rules from the smallest to the largest.
 #[derive(Debug, Clone)]
 pub struct EdgeRules(Vec<Rule>);
@@ -83,16 +97,26 @@ impl EdgeRules {
     }
 
     /// The smallest rule that resolves the waves of `gap` in a disc of radius `s`; the largest where none does, or the
-    /// gap promises nothing.
-    fn resolving(&self, gap: &dyn Gap, s: f64) -> &Rule {
+    /// gap promises nothing; one broken where the gap is not smooth.
+    fn resolving(&self, gap: &dyn Gap, s: f64) -> Cow<'_, Rule> {
+        let breaks = gap.breaks();
+        if breaks.matter(s) {
+            // The largest rule has a node for each unit of the phase between axis and edge, and some more.
+            let most = self.0[self.0.len() - 1].weights.len() as f64;
+            let frequency = if breaks.cubic { CUBIC_FREQUENCY } else { 2.0 * most };
+            return Cow::Owned(Rule::from(Angles::new(breaks, s, frequency)));
+        }
         let wanted = gap.band_limit().map_or(f64::INFINITY, |wave| MORE_NODES + NODES_PER_WAVE * s / wave);
         let at = self.0.partition_point(|rule| (rule.weights.len() as f64) < wanted);
-        &self.0[at.min(self.0.len() - 1)]
+        Cow::Borrowed(&self.0[at.min(self.0.len() - 1)])
     }
 
     /// sin θ at the nodes that [`EdgeRules::moments`] samples `gap` at on a disc of radius `s`.
-    pub fn nodes(&self, gap: &dyn Gap, s: f64) -> &[f64] {
-        &self.resolving(gap, s).sines
+    pub fn nodes(&self, gap: &dyn Gap, s: f64) -> Cow<'_, [f64]> {
+        match self.resolving(gap, s) {
+            Cow::Borrowed(rule) => Cow::Borrowed(&rule.sines),
+            Cow::Owned(rule) => Cow::Owned(rule.sines),
+        }
     }
 
     /// The sums over `gap` on a disc of radius `s`.

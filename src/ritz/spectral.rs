@@ -26,7 +26,8 @@
 //!
 //! P and q need one and the same sampling of the gap's slope (see [`super::moments`]), and so do their derivatives:
 //! `sH' = g − H` makes `∂P/∂s = −2q` exactly. Only energy and pressure need the coefficients `d_k`: Gauss nodes in t,
-//! the positive half of a rule on (−1, 1), because all is even in t; n of them for n functions.
+//! the positive half of a rule on (−1, 1), because all is even in t; n of them for n functions. Where the gap is not
+//! smooth they are nodes in θ, broken there (see [`breaks`](crate::contact::breaks)).
 //!
 //! Sources: Popov, J. Appl. Math. Mech. 27 (1963), for the eigenfunctions; Sneddon, Int. J. Eng. Sci. 3 (1965) 47,
 //! doi:10.1016/0020-7225(65)90019-4, for g.
@@ -36,9 +37,11 @@ use super::caution::Caution;
 use super::functional::Evaluation;
 use super::moments::{EdgeRules, Moments};
 use super::outside;
-use crate::contact::{Gap, Reduced};
+use crate::contact::breaks::{Angles, CUBIC_FREQUENCY};
+use crate::contact::{Axis, Gap, Reduced};
 use gauss_quad::GaussLegendre;
 use nalgebra::DVectorView;
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
@@ -154,7 +157,8 @@ impl Spectral {
     ///
     /// The first guess counts the waves; it grows until the tail of the coefficients is below [`TAIL_TOLERANCE`].
     /// A gap whose terms fall as a power of their number gets twice as many functions as take it to six digits, and at
-    /// least 256.
+    /// least 256. Where it is known not to be smooth, as many as take it there and at most all: δ and P do not depend on
+    /// their number, and energies feel its square.
     ///
     /// # Errors
     /// [`SpectralError::Unresolved`] with the numbers when the most functions are not enough.
@@ -165,6 +169,8 @@ impl Spectral {
         let largest = (s + wave.unwrap_or(0.0)).min(problem.largest_contact().max(s));
         let waves = wave.map_or(0.0, |wave| largest / wave);
         let mut wanted = FUNCTIONS_PER_WAVE * waves;
+        let breaks = problem.gap.breaks();
+        let rough = (breaks.axis != Axis::Even || breaks.matter(largest)) && wanted <= most as f64;
         let mut slow = None;
         loop {
             // Positive and at most 4096.
@@ -173,9 +179,13 @@ impl Spectral {
             let basis = Self::new(functions)?;
             let tail = basis.tail(problem, largest);
             if tail <= SLOW_TAIL && slow.is_none() {
-                slow = Some((2 * functions).max(SLOW_FUNCTIONS));
+                // Where the gap is not smooth, twice as many would buy half a digit.
+                let enough = if rough { functions } else { 2 * functions };
+                slow = Some(enough.max(SLOW_FUNCTIONS));
             }
-            if tail <= TAIL_TOLERANCE || slow.is_some_and(|enough| functions >= enough) {
+            if tail <= TAIL_TOLERANCE
+                || slow.is_some_and(|enough| functions >= if rough { enough.min(most) } else { enough })
+            {
                 return Ok(basis);
             }
             if functions >= most {
@@ -202,9 +212,27 @@ impl Spectral {
         }
     }
 
+    /// The rule for projections of `gap` on a disc of radius `s`.
+    ///
+    /// A gap that is not even and smooth in r is neither in t: it takes nodes in θ, t = cos θ, broken where it breaks.
+    fn rule(&self, gap: &dyn Gap, s: f64) -> Cow<'_, DiscRule> {
+        let breaks = gap.breaks();
+        if breaks.axis == Axis::Even && !breaks.matter(s) {
+            return Cow::Borrowed(&self.disc);
+        }
+        let degree = 2.0 * self.functions as f64;
+        let frequency = degree + if breaks.cubic { CUBIC_FREQUENCY } else { degree };
+        let Angles { sines, cosines, mut weights } = Angles::new(breaks, s, frequency);
+        for (weight, sin) in weights.iter_mut().zip(&sines) {
+            *weight *= sin;
+        }
+        Cow::Owned(DiscRule { depths: cosines, radii: sines, weights })
+    }
+
     /// `d_k` of δ − h on the disc of radius `s`, n of them, lengths.
     fn coefficients(&self, gap: &dyn Gap, s: f64, delta: f64) -> Vec<f64> {
-        let DiscRule { depths, radii, weights } = &self.disc;
+        let rule = self.rule(gap, s);
+        let DiscRule { depths, radii, weights } = rule.as_ref();
         let mut samples = vec![0.0; radii.len()];
         gap.values(s, radii, &mut samples);
         for (sample, weight) in samples.iter_mut().zip(weights) {

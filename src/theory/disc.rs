@@ -16,7 +16,8 @@
 //! Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141. The formulas
 //! hold for one connected disc; whether the gap outside stays open is not asked here.
 
-use super::quadrature::{Integral, integrate};
+use super::quadrature::{Integral, integrate, integrate_broken};
+use crate::contact::Breaks;
 use std::f64::consts::{PI, TAU};
 
 /// The Abel transform of a gap at one radius.
@@ -67,7 +68,14 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     fn work_of_adhesion(&self) -> f64;
 
     /// The shortest wave of the gap, by which integrals are divided.
-    fn wave(&self) -> Option<f64>;
+    fn wave(&self) -> Option<f64> {
+        None
+    }
+
+    /// Where the gap is not smooth and its transform is singular.
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks::default()
+    }
 
     /// g, g' and M₁ at the radius `a ≥ 0`.
     fn transform(&self, a: f64) -> Transform;
@@ -105,19 +113,19 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     /// Its integral has the waves of g', which the transform of the gap has resolved where it says so.
     fn pressure(&self, s: f64, r: f64) -> f64 {
         let depth = ((s - r) * (s + r)).sqrt();
-        // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
-        let pressed = integrate(0.0, depth, self.wave(), |t| {
-            let a = r.hypot(t);
-            [self.transform(a).slope / a]
-        });
-        self.effective_modulus() / PI * (pressed.values[0] - self.edge(s) / depth)
+        self.effective_modulus() / PI * (pressed(self, s, r) - self.edge(s) / depth)
+    }
+
+    /// The pressure in a disc of radius `s` at each of `radii`, as [`Disc::pressure`].
+    fn pressures(&self, s: f64, radii: &[f64]) -> Vec<f64> {
+        radii.iter().map(|&r| self.pressure(s, r)).collect()
     }
 
     /// M₂ at `to` less M₂ at `from`.
     fn rise(&self, from: f64, to: f64) -> Integral<1> {
         // A product of two waves has waves of half the length.
         let wave = self.wave().map(|wave| 0.5 * wave);
-        integrate(from, to, wave, |a| {
+        integrate_broken(self.breaks(), from, to, wave, |a| {
             let g = self.transform(a);
             [2.0 * g.slope * g.moment]
         })
@@ -156,4 +164,15 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         };
         radii.iter().zip(squares).map(state).collect()
     }
+}
+
+/// ∫_r^s g'(a)/√(a² − r²) da.
+pub(super) fn pressed(disc: &(impl Disc + ?Sized), s: f64, r: f64) -> f64 {
+    let depth = ((s - r) * (s + r)).sqrt();
+    // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
+    let pressed = integrate(0.0, depth, disc.wave(), |t| {
+        let a = r.hypot(t);
+        [disc.transform(a).slope / a]
+    });
+    pressed.values[0]
 }

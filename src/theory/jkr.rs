@@ -69,10 +69,6 @@ impl Disc for Jkr {
         self.work_of_adhesion
     }
 
-    fn wave(&self) -> Option<f64> {
-        None
-    }
-
     fn transform(&self, a: f64) -> Transform {
         let radius = self.radius_of_curvature;
         Transform {

@@ -47,10 +47,6 @@ impl Disc for PowerLaw {
         self.work_of_adhesion
     }
 
-    fn wave(&self) -> Option<f64> {
-        None
-    }
-
     fn transform(&self, a: f64) -> Transform {
         let n = self.exponent;
         // aⁿ⁻¹, so that the cone keeps its slope on the axis.

@@ -4,8 +4,11 @@
 //! evaluation, are below [`TOLERANCE`] of the integral of |f|. For a smooth integrand the error of the rule is then
 //! far smaller still; at a kink the coefficients fall slowly and the panels crowd there.
 
+use crate::contact::Breaks;
+use crate::contact::breaks::Stretch;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
+use std::ops::AddAssign;
 use std::sync::LazyLock;
 
 /// Nodes of one panel: a panel that spans one wave then needs no halving.
@@ -19,6 +22,14 @@ const STARTED: f64 = 4096.0;
 
 /// Panels of one integral at most: what is not resolved then stays as good as it is, and says so.
 const PANELS: usize = 1 << 15;
+
+/// Nodes of a stretch between two knots of a cubic gap. What is singular one stretch further in then counts by 4.1⁻²⁴ of
+/// itself, and itself is small.
+const STRETCH_NODES: NonZeroUsize = NonZeroUsize::new(12).unwrap();
+
+/// Its nodes and weights on (−1, 1).
+pub(super) static STRETCH: LazyLock<Vec<(f64, f64)>> =
+    LazyLock::new(|| GaussLegendre::new(STRETCH_NODES).as_node_weight_pairs().to_vec());
 
 /// A node on (−1, 1), its weight, and its weights in the last two Legendre coefficients.
 struct Node {
@@ -79,6 +90,48 @@ pub struct Integral<const K: usize> {
     /// Whether every panel met [`TOLERANCE`]. If not, the integrand has structure too fine for the panels, or is no
     /// number, and the values are only as good as the last panels.
     pub resolved: bool,
+}
+
+impl<const K: usize> AddAssign for Integral<K> {
+    fn add_assign(&mut self, part: Self) {
+        for (sum, part) in self.values.iter_mut().zip(part.values) {
+            *sum += part;
+        }
+        self.resolved &= part.resolved;
+    }
+}
+
+/// The integrals from `from` to `to ≥ from` of what has been made from transforms of a gap with these breaks: powers of
+/// √(a − c) beyond each knot c, elsewhere as in [`integrate`].
+pub fn integrate_broken<const K: usize>(
+    breaks: Breaks<'_>,
+    from: f64,
+    to: f64,
+    wave: Option<f64>,
+    mut f: impl FnMut(f64) -> [f64; K],
+) -> Integral<K> {
+    if breaks.knots.is_empty() {
+        return integrate(from, to, wave, f);
+    }
+    let mut sum = Integral { values: [0.0; K], resolved: true };
+    for Stretch { from, to, base } in breaks.stretches(from, to) {
+        let (x_from, x_to) = ((from - base).sqrt(), (to - base).sqrt());
+        let mut rooted = |x: f64| f(base + x * x).map(|value| 2.0 * x * value);
+        sum += if breaks.cubic {
+            let (middle, half) = (0.5 * (x_from + x_to), 0.5 * (x_to - x_from));
+            let mut values = [0.0; K];
+            for (x, weight) in STRETCH.iter() {
+                for (sum, value) in values.iter_mut().zip(rooted(middle + half * x)) {
+                    *sum += half * weight * value;
+                }
+            }
+            Integral { values, resolved: values.iter().all(|value| value.is_finite()) }
+        } else {
+            // a = base + x²: a wave is shortest in x at the far end.
+            integrate(x_from, x_to, wave.map(|wave| 0.5 * wave / x_to), rooted)
+        };
+    }
+    sum
 }
 
 /// The integrals from `from` to `to` of the `K` values of `f`, which has waves of the length `wave` there.

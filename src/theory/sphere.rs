@@ -43,10 +43,6 @@ impl Disc for Sphere {
         self.work_of_adhesion
     }
 
-    fn wave(&self) -> Option<f64> {
-        None
-    }
-
     /// NaN from a = R on.
     fn transform(&self, a: f64) -> Transform {
         let radius = self.radius;

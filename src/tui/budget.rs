@@ -3,7 +3,7 @@
 use super::app::App;
 use super::converse;
 use super::terminal::{Display, Inbox, Incoming, Sink};
-use super::theme::Theme;
+use super::theme::{Charts, Palette, Theme};
 use crate::explorer::{Effect, Inline, Reply};
 use crate::preset::Store;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -44,6 +44,10 @@ impl Sink for Counter {
         Ok(())
     }
 
+    fn take_mouse(&self, _wanted: bool) -> io::Result<()> {
+        Ok(())
+    }
+
     fn size(&self) -> io::Result<(u16, u16)> {
         Ok((120, 40))
     }
@@ -61,7 +65,7 @@ impl Session {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
-        let (app, effects) = App::new(loaded, Theme { ascii: false });
+        let (app, effects) = App::new(loaded, Theme::new(Palette::Dark, Charts::Braille, false));
         let mut session = Self { app, driver: Inline::new(store), _folder: folder };
         session.settle(effects);
         session
@@ -75,9 +79,12 @@ impl Session {
     }
 
     fn draw(&mut self, display: &mut Display<Counter>) {
-        let mut views = 0;
-        display.draw(|frame| views = super::view::draw(frame, &self.app));
-        let effects = self.app.make_room(views);
+        let (mut views, mut screen) = (0, self.app.screen);
+        display.draw(|frame| {
+            screen = frame.area();
+            views = super::view::draw(frame, &self.app);
+        });
+        let effects = self.app.make_room(screen, views);
         self.settle(effects);
     }
 

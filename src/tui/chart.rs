@@ -1,16 +1,16 @@
 //! One chart: axes with sensible ticks, curves in strokes, areas hatched, marks as letters.
 //!
-//! No two strokes look alike without their colour: a line, close dots, dots far apart, dashes, dots with digits
-//! between. No number that is not finite reaches the canvas, and nothing outside the window is drawn.
+//! No two strokes look alike without their colour: a line, a line with letters, close dots, dots far apart, dashes,
+//! dots with digits between. No number that is not finite reaches the canvas, and nothing outside the window is drawn.
 
 use super::hatch::hatch;
 use super::stroke::{Stroke, letters, spots};
-use super::theme::{Theme, ink};
+use super::theme::Theme;
 use crate::figure::Bounds;
 use crate::report::number::{fixed, short};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
 use ratatui::style::{Color, Style};
 use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
@@ -22,8 +22,8 @@ use ratatui::widgets::{Block, Widget};
 pub struct Series {
     /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Its colour.
-    pub color: Color,
+    /// Its style.
+    pub style: Style,
     /// How it is drawn.
     pub stroke: Stroke,
 }
@@ -99,7 +99,7 @@ impl Chart {
         let mut block = Block::bordered()
             .border_set(theme.border())
             .border_style(theme.frame(selected))
-            .title(Span::styled(theme.text(&self.title), theme.strong()));
+            .title(Span::styled(theme.text(&self.title), theme.title(selected)));
         let fits = |text: &&String| text.chars().count() + 2 <= usize::from(area.width);
         let titles = self.title.chars().count() + self.note.chars().count() + 3;
         if !self.note.is_empty() && titles <= usize::from(area.width) {
@@ -110,14 +110,8 @@ impl Chart {
         }
         let inner = block.inner(area);
         frame.render_widget(block, area);
-        if inner.width < 12 || inner.height < 4 {
-            return;
-        }
-        let y_ticks = ticks(self.bounds.y, usize::from(inner.height / 3).clamp(2, 8));
-        let gutter = y_ticks.iter().map(|(_, label)| label.len()).max().unwrap_or(0);
-        let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
-        let plot =
-            Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner };
+        let Some(plot) = self.plot(area) else { return };
+        let gutter = plot.x - inner.x;
         let buffer = frame.buffer_mut();
         if let Some(reason) = &self.missing {
             let text = theme.text(reason);
@@ -126,7 +120,7 @@ impl Chart {
         }
         self.draw_lines(buffer, plot, theme);
         self.draw_cross(buffer, plot, theme);
-        for (value, label) in &y_ticks {
+        for (value, label) in &self.y_ticks(inner) {
             if let Some(row) = cell(*value, self.bounds.y, plot.height, true) {
                 let room = usize::from(gutter.saturating_sub(1));
                 let text = format!("{label:>room$}");
@@ -152,16 +146,32 @@ impl Chart {
         for series in &self.series {
             let Some((letter, apart)) = series.stroke.letter() else { continue };
             for (x, y) in letters(&series.points, &self.bounds, plot, apart) {
-                buffer.set_stringn(x, y, letter, 1, Style::new().fg(series.color));
+                put(buffer, (x, y), letter, series.style);
             }
         }
         for mark in &self.marks {
             let column = cell(mark.at.0, self.bounds.x, plot.width, false);
             let row = cell(mark.at.1, self.bounds.y, plot.height, true);
             if let (Some(column), Some(row)) = (column, row) {
-                buffer.set_stringn(plot.x + column, plot.y + row, mark.letter, 1, mark.style);
+                put(buffer, (plot.x + column, plot.y + row), mark.letter, mark.style);
             }
         }
+    }
+
+    /// The ticks of y in a frame of this inside.
+    fn y_ticks(&self, inner: Rect) -> Vec<(f64, String)> {
+        ticks(self.bounds.y, usize::from(inner.height / 3).clamp(2, 8))
+    }
+
+    /// Where the curves are drawn, with the frame in `area`; `None` where there is no room for them.
+    pub fn plot(&self, area: Rect) -> Option<Rect> {
+        let inner = area.inner(Margin::new(1, 1));
+        if inner.width < 12 || inner.height < 4 {
+            return None;
+        }
+        let gutter = self.y_ticks(inner).iter().map(|(_, label)| label.len()).max().unwrap_or(0);
+        let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
+        Some(Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner })
     }
 
     /// Areas and curves, whole lines over dots and dashes.
@@ -169,15 +179,18 @@ impl Chart {
         let hatching = theme.hatch_marker();
         let lost: Vec<(f64, f64)> =
             self.areas.iter().flat_map(|outline| hatch(outline, &self.bounds, plot, hatching)).collect();
-        self.canvas(buffer, plot, hatching, |context| context.draw(&Points::new(&lost, ink::LOST)));
-        let (solid, broken): (Vec<&Series>, Vec<&Series>) =
-            self.series.iter().partition(|series| series.stroke == Stroke::Solid);
+        self.canvas(buffer, plot, hatching, |context| {
+            context.draw(&Points::new(&lost, color(theme.styles().lost)));
+        });
+        let (broken, lines): (Vec<&Series>, Vec<&Series>) =
+            self.series.iter().partition(|series| !series.stroke.is_line());
+        let ordered = [broken, lines].concat();
         let marker = |series: &&Series| series.stroke.marker(theme);
-        for group in broken.chunk_by(|a, b| marker(a) == marker(b)).chain([solid.as_slice()]) {
+        for group in ordered.chunk_by(|a, b| marker(a) == marker(b)) {
             let Some(first) = group.first() else { continue };
             self.canvas(buffer, plot, marker(first), |context| {
                 for series in group {
-                    self.draw_series(context, series, plot);
+                    self.draw_series(context, series, plot, theme);
                     // A layer of its own: a later one does not recolour the cells of an earlier.
                     context.layer();
                 }
@@ -185,17 +198,18 @@ impl Chart {
         }
     }
 
-    fn draw_series(&self, context: &mut Context<'_>, series: &Series, plot: Rect) {
-        if series.stroke != Stroke::Solid {
-            let spots = spots(&series.points, &self.bounds, plot, series.stroke);
-            context.draw(&Points::new(&spots, series.color));
+    fn draw_series(&self, context: &mut Context<'_>, series: &Series, plot: Rect, theme: Theme) {
+        let color = color(series.style);
+        if !series.stroke.is_line() {
+            let spots = spots(&series.points, &self.bounds, plot, series.stroke, theme.charts);
+            context.draw(&Points::new(&spots, color));
             return;
         }
         for pair in series.points.windows(2) {
             if let [(x1, y1), (x2, y2)] = *pair
                 && [x1, y1, x2, y2].iter().all(|x| x.is_finite())
             {
-                context.draw(&Segment { x1, y1, x2, y2, color: series.color });
+                context.draw(&Segment { x1, y1, x2, y2, color });
             }
         }
     }
@@ -228,8 +242,20 @@ impl Chart {
                 cell.set_symbol(line).set_style(theme.dim());
             }
         }
-        buffer.set_stringn(plot.x + column, plot.y + row, "+", 1, theme.strong());
+        put(buffer, (plot.x + column, plot.y + row), "+", theme.strong());
     }
+}
+
+/// A letter in place of what is drawn there: of a block its background would shine through.
+fn put(buffer: &mut Buffer, at: (u16, u16), letter: &str, style: Style) {
+    let cell = &mut buffer[at];
+    cell.reset();
+    cell.set_symbol(letter).set_style(style);
+}
+
+/// The colour of a style; the terminal's own where it has none.
+fn color(style: Style) -> Color {
+    style.fg.unwrap_or(Color::Reset)
 }
 
 /// The cell of `count` in which `value` falls; from the far end where `flipped`.

@@ -1,9 +1,12 @@
-//! Command id → keys. Every command has a key that every terminal sends.
+//! Command id → keys: those of the table below, or the person's own.
 //!
-//! Never Ctrl-S or Ctrl-Q (flow control); never a function or Alt key as the only way.
+//! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default never a function or Alt key as the only way.
+//! A command without a key is reached through the command line.
 
+use crate::config::{Config, ConfigError, Mistake};
 use crate::explorer::Id;
-use crate::explorer::command::ROWS;
+use crate::explorer::command::{ROWS, row_of};
+use crate::preset::text::quote;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// One key.
@@ -17,15 +20,85 @@ pub enum Key {
     Named(KeyCode),
 }
 
+/// The names of keys that are no character.
+const NAMES: [(&str, Key); 25] = [
+    ("Space", Key::Char(' ')),
+    ("Enter", Key::Named(KeyCode::Enter)),
+    ("Esc", Key::Named(KeyCode::Esc)),
+    ("Tab", Key::Named(KeyCode::Tab)),
+    ("Shift-Tab", Key::Named(KeyCode::BackTab)),
+    ("Backspace", Key::Named(KeyCode::Backspace)),
+    ("Delete", Key::Named(KeyCode::Delete)),
+    ("Insert", Key::Named(KeyCode::Insert)),
+    ("Up", Key::Named(KeyCode::Up)),
+    ("Down", Key::Named(KeyCode::Down)),
+    ("Left", Key::Named(KeyCode::Left)),
+    ("Right", Key::Named(KeyCode::Right)),
+    ("Home", Key::Named(KeyCode::Home)),
+    ("End", Key::Named(KeyCode::End)),
+    ("PageUp", Key::Named(KeyCode::PageUp)),
+    ("PageDown", Key::Named(KeyCode::PageDown)),
+    ("F2", Key::Named(KeyCode::F(2))),
+    ("F3", Key::Named(KeyCode::F(3))),
+    ("F4", Key::Named(KeyCode::F(4))),
+    ("F5", Key::Named(KeyCode::F(5))),
+    ("F6", Key::Named(KeyCode::F(6))),
+    ("F7", Key::Named(KeyCode::F(7))),
+    ("F8", Key::Named(KeyCode::F(8))),
+    ("F9", Key::Named(KeyCode::F(9))),
+    ("F12", Key::Named(KeyCode::F(12))),
+];
+
+/// Keys no command can have, and why.
+const RESERVED: [(Key, &str); 8] = [
+    (Key::Ctrl('s'), "a terminal stops its output on it"),
+    (Key::Ctrl('q'), "a terminal goes on with its output on it"),
+    (Key::Ctrl('z'), "it leads back to the shell"),
+    (Key::Ctrl('i'), "terminals send it as Tab"),
+    (Key::Ctrl('m'), "terminals send it as Enter"),
+    (Key::Ctrl('j'), "terminals send it as Enter"),
+    (Key::Ctrl('h'), "terminals send it as Backspace"),
+    (Key::Ctrl('['), "terminals send it as Esc"),
+];
+
 impl Key {
-    /// How it is written in the help and the footer.
+    /// How it is written in the help, the footer and the settings.
     pub fn label(self) -> String {
-        match self {
-            Self::Char(' ') => "Space".to_owned(),
-            Self::Char(c) => c.to_string(),
-            Self::Ctrl(c) => format!("Ctrl-{}", c.to_ascii_uppercase()),
-            Self::Named(KeyCode::BackTab) => "Shift-Tab".to_owned(),
-            Self::Named(code) => code.to_string(),
+        match (NAMES.iter().find(|(_, key)| *key == self), self) {
+            (Some((name, _)), _) => (*name).to_owned(),
+            (None, Self::Char(c)) => c.to_string(),
+            (None, Self::Ctrl(c)) => format!("Ctrl-{}", c.to_ascii_uppercase()),
+            (None, Self::Named(code)) => code.to_string(),
+        }
+    }
+
+    /// The key of a label.
+    ///
+    /// # Errors
+    /// Why a command cannot have it, in words.
+    pub fn parse(label: &str) -> Result<Self, String> {
+        let named = NAMES.iter().find(|(name, _)| name.eq_ignore_ascii_case(label)).map(|(_, key)| *key);
+        let ctrl = label
+            .get(..5)
+            .filter(|start| start.eq_ignore_ascii_case("Ctrl-"))
+            .and_then(|_| single(&label[5..]));
+        let key = match (named, ctrl, single(label)) {
+            (Some(key), _, _) => key,
+            (_, Some(c), _) if c.is_ascii_alphabetic() || c == '[' => Self::Ctrl(c.to_ascii_lowercase()),
+            (_, _, Some(c)) if c.is_ascii_digit() && c != '0' => {
+                return Err(format!("{c} cannot be bound: digits count steps"));
+            }
+            (_, _, Some(c)) if !c.is_control() && !c.is_whitespace() => Self::Char(c),
+            _ => {
+                let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
+                let quoted = quote(label);
+                let names = names.join(", ");
+                return Err(format!("\"{quoted}\" is no key: it is a character, Ctrl-A to Ctrl-Z, {names}"));
+            }
+        };
+        match RESERVED.iter().find(|(reserved, _)| *reserved == key) {
+            Some((key, why)) => Err(format!("{} cannot be bound: {why}", key.label())),
+            None => Ok(key),
         }
     }
 
@@ -40,8 +113,14 @@ impl Key {
     }
 }
 
-/// The keys of a command, the one shown in the footer first.
-pub fn keys(id: Id) -> &'static [Key] {
+/// The only character of a text.
+fn single(text: &str) -> Option<char> {
+    let mut chars = text.chars();
+    chars.next().filter(|_| chars.next().is_none())
+}
+
+/// The keys a command has unless the person says otherwise, the one shown in the footer first.
+fn usual(id: Id) -> &'static [Key] {
     use Key::{Char, Ctrl, Named};
     match id {
         Id::Step => &[Char(' ')],
@@ -52,7 +131,10 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Reverse => &[Char('b')],
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
+        // Typed, since each takes a value.
+        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo => &[],
         Id::Undo => &[Char('u')],
+        Id::UndoCommand => &[Char('U')],
         Id::Redo => &[Ctrl('r')],
         Id::Restart => &[Char('0')],
         Id::Control => &[Char('c')],
@@ -83,15 +165,119 @@ pub fn keys(id: Id) -> &'static [Key] {
         Id::Save => &[Char('s')],
         Id::SaveAs => &[Char('S')],
         Id::Export => &[Char('e')],
+        Id::CommandLine => &[Char(':')],
+        Id::Copy => &[Char('Y')],
+        Id::Mouse => &[Char('m')],
         Id::Help => &[Char('?')],
         Id::Cancel => &[Named(KeyCode::Esc)],
         Id::Quit => &[Char('q'), Ctrl('c')],
     }
 }
 
-/// The command of a key.
-pub fn command(key: KeyEvent) -> Option<Id> {
-    ROWS.iter().map(|row| row.id).find(|id| keys(*id).iter().any(|k| k.matches(key)))
+/// The keys of every command.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Keymap(Vec<(Id, Vec<Key>)>);
+
+impl Default for Keymap {
+    fn default() -> Self {
+        Self(ROWS.iter().map(|row| (row.id, usual(row.id).to_vec())).collect())
+    }
+}
+
+impl Keymap {
+    /// The usual keys with those of `config` instead, where it has some.
+    ///
+    /// # Errors
+    /// A key that is none or is reserved, one that two commands would have, or no key for the command line.
+    pub fn of(config: &Config) -> Result<Self, ConfigError> {
+        let (mut map, mut mistakes) = (Self::default(), Vec::new());
+        for binding in &config.keys {
+            let parsed: Result<Vec<Key>, String> = binding.keys.iter().map(|key| Key::parse(key)).collect();
+            match parsed {
+                Ok(keys) if keys.is_empty() && binding.id == Id::CommandLine => mistakes.push(Mistake {
+                    line: binding.line,
+                    what: "command-line needs a key: commands without one are reached through it".to_owned(),
+                }),
+                Ok(keys) => map.bind(binding.id, keys),
+                Err(what) => mistakes.push(Mistake { line: binding.line, what }),
+            }
+        }
+        if mistakes.is_empty() {
+            mistakes.extend(map.clashes(config));
+        }
+        if mistakes.is_empty() {
+            return Ok(map);
+        }
+        mistakes.sort_by_key(|mistake| mistake.line);
+        Err(ConfigError::Mistakes { name: config.name.clone(), mistakes })
+    }
+
+    fn bind(&mut self, id: Id, keys: Vec<Key>) {
+        if let Some((_, bound)) = self.0.iter_mut().find(|(known, _)| *known == id) {
+            *bound = keys;
+        }
+    }
+
+    /// The keys that two commands have.
+    fn clashes(&self, config: &Config) -> Vec<Mistake> {
+        let all: Vec<(Id, Key)> =
+            self.0.iter().flat_map(|(id, keys)| keys.iter().map(|key| (*id, *key))).collect();
+        let line = |id: Id| config.keys.iter().find(|binding| binding.id == id).map(|binding| binding.line);
+        all.iter()
+            .enumerate()
+            .filter_map(|(i, (second, key))| {
+                let (first, _) = all[..i].iter().find(|(_, other)| other == key)?;
+                let (first, second) = if line(*second).is_some() { (first, second) } else { (second, first) };
+                let (a, b) = (row_of(*second).name, row_of(*first).name);
+                let what = if first == second {
+                    format!("{} stands twice for {a}", key.label())
+                } else {
+                    format!("{} would be the key of {a} and of {b}: give {b} another", key.label())
+                };
+                Some(Mistake { line: line(*second).unwrap_or(1), what })
+            })
+            .collect()
+    }
+
+    /// The keys of a command, the one shown in the footer first.
+    pub fn keys(&self, id: Id) -> &[Key] {
+        self.0.iter().find(|(known, _)| *known == id).map_or(&[], |(_, keys)| keys)
+    }
+
+    /// The command of a key.
+    pub fn command(&self, key: KeyEvent) -> Option<Id> {
+        self.0.iter().find(|(_, keys)| keys.iter().any(|k| k.matches(key))).map(|(id, _)| *id)
+    }
+
+    /// The command of a key in a list: arrows, Enter and Esc do there what they do everywhere.
+    pub fn in_list(&self, key: KeyEvent) -> Option<Id> {
+        match key.code {
+            KeyCode::Up => Some(Id::Up),
+            KeyCode::Down => Some(Id::Down),
+            KeyCode::Enter => Some(Id::Edit),
+            KeyCode::Esc => Some(Id::Cancel),
+            _ => self.command(key),
+        }
+    }
+
+    /// The first key of a command, or how it is typed.
+    pub fn first(&self, id: Id) -> String {
+        self.keys(id).first().map_or_else(|| self.typed(id), |key| key.label())
+    }
+
+    /// How a command without a key is typed.
+    fn typed(&self, id: Id) -> String {
+        let line = self.keys(Id::CommandLine).first().map_or_else(String::new, |key| key.label());
+        format!("{line}{}", row_of(id).name)
+    }
+
+    /// The keys of a command as text.
+    pub fn label(&self, id: Id) -> String {
+        match self.keys(id) {
+            [] => self.typed(id),
+            keys => keys.iter().map(|key| key.label()).collect::<Vec<_>>().join(" "),
+        }
+    }
 }
 
 /// Whether a key asks to stop the program for a while.
@@ -99,39 +285,76 @@ pub fn is_suspend(key: KeyEvent) -> bool {
     Key::Ctrl('z').matches(key)
 }
 
-/// The keys of a command as text.
-pub fn label(id: Id) -> String {
-    keys(id).iter().map(|key| key.label()).collect::<Vec<_>>().join(" ")
-}
-
 /// The key table of the manual, as Markdown.
 pub fn markdown() -> String {
     use std::fmt::Write;
-    let mut text = String::from("| key | does |\n|---|---|\n");
+    let map = Keymap::default();
+    let mut text = String::from("| key | name | does |\n|---|---|---|\n");
     for row in ROWS {
-        let keys: Vec<String> = keys(row.id).iter().map(|key| format!("`{}`", key.label())).collect();
+        let keys: Vec<String> = map.keys(row.id).iter().map(|key| format!("`{}`", key.label())).collect();
+        let keys = if keys.is_empty() { format!("`{}`", map.typed(row.id)) } else { keys.join(" ") };
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "| {} | {} |", keys.join(" "), row.help);
+        let _ = writeln!(text, "| {keys} | `{}` | {} |", row.name, row.help);
     }
-    text.push_str("| `Ctrl-Z` | back to the shell; `fg` returns |\n");
+    text.push_str("| `Ctrl-Z` | | back to the shell; `fg` returns |\n");
     text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::read;
     use std::collections::HashSet;
 
     #[test]
     fn every_command_has_a_key_of_its_own_and_none_is_flow_control() {
         let mut seen = HashSet::new();
         for row in ROWS {
-            assert!(!keys(row.id).is_empty(), "{}", row.name);
-            for key in keys(row.id) {
+            assert!(row.argument.is_some() || !usual(row.id).is_empty(), "{}", row.name);
+            for key in usual(row.id) {
                 assert!(seen.insert(key.label()), "{} twice", key.label());
-                assert!(!matches!(key, Key::Ctrl('s' | 'q' | 'z')));
-                assert!(!matches!(key, Key::Char('g' | 'G' | ':' | '/' | '1'..='9')), "reserved");
+                assert_eq!(Key::parse(&key.label()), Ok(*key));
+                assert!(!matches!(key, Key::Char('g' | 'G' | '/')), "reserved");
             }
+        }
+    }
+
+    fn of(text: &str) -> Result<Keymap, String> {
+        Keymap::of(&read("c", text).unwrap()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_persons_keys_take_the_place_of_the_usual_ones() {
+        let map =
+            of("[keys]\njump = []\nstep = [\"x\", \"ctrl-x\", \"F5\", \"space\"]\nundo = \"U\"").unwrap();
+        assert_eq!(map.label(Id::Step), "x Ctrl-X F5 Space");
+        assert_eq!((map.first(Id::Jump), map.label(Id::Undo)), (":jump".to_owned(), "U".to_owned()));
+        assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE)), Some(Id::Step));
+        assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::CONTROL)), Some(Id::Step));
+        assert_eq!(map.command(KeyEvent::new(KeyCode::Char('u'), KeyModifiers::NONE)), None);
+        assert_eq!(map.label(Id::NextLimit), Keymap::default().label(Id::NextLimit));
+        let line = of("[keys]\ncommand-line = \";\"\njump = []").unwrap();
+        assert_eq!(line.first(Id::Jump), ";jump");
+    }
+
+    #[test]
+    fn clashes_and_keys_that_cannot_be_are_refused_with_line_and_reason() {
+        for (text, said) in [
+            ("[keys]\nstep = \"x\"", "c:2: x would be the key of step and of jump: give jump another"),
+            ("[keys]\njump = \"F2\"\nundo = \"F2\"", "F2 would be the key of "),
+            ("[keys]\nstep = [\"F2\", \"f2\"]", "c:2: F2 stands twice for step"),
+            ("[keys]\nstep = \"Ctrl-S\"", "c:2: Ctrl-S cannot be bound: a terminal stops"),
+            ("[keys]\nstep = \"ctrl-q\"", "Ctrl-Q cannot be bound"),
+            ("[keys]\nstep = \"Ctrl-Z\"", "Ctrl-Z cannot be bound: it leads back to the shell"),
+            ("[keys]\nstep = \"Ctrl-i\"", "terminals send it as Tab"),
+            ("[keys]\nstep = \"3\"", "3 cannot be bound: digits count steps"),
+            ("[keys]\nstep = \"Hyper-x\"", "\"Hyper-x\" is no key"),
+            ("[keys]\nstep = \"\"", "\"\" is no key"),
+            ("[keys]\nstep = \"\u{e9}\u{e9}\"", "is no key"),
+            ("[keys]\ncommand-line = []", "command-line needs a key"),
+        ] {
+            let error = of(text).unwrap_err();
+            assert!(error.contains(said), "{text}: {error}");
         }
     }
 }

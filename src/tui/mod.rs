@@ -7,17 +7,21 @@
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
-//! | [`theme`] | colours and glyphs, Unicode or ASCII |
+//! | [`look`] | theme, charts and mouse from flags, configuration and environment |
+//! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
 //! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
+//! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
 //! | [`hatch`] | areas filled with slanting lines |
 //! | [`view`] | one file per screen region |
 
 pub mod app;
 pub mod chart;
+pub mod copy;
 pub mod hatch;
 pub mod keymap;
 pub mod layout;
+pub mod look;
 pub mod overlay;
 pub mod stroke;
 pub mod terminal;
@@ -29,15 +33,29 @@ mod budget;
 
 pub use terminal::refuse_reason;
 
+use crate::explorer::model::Level;
 use crate::explorer::{Effect, Reply, Workers};
 use crate::fault;
 use crate::preset::{Loaded, Store, temporary};
 use app::App;
+use keymap::Keymap;
+use look::Look;
 use std::io;
 use std::process::ExitCode;
 use std::time::Duration;
 use terminal::{Display, Inbox, Incoming, Sink};
-use theme::Theme;
+use theme::Palette;
+
+/// What a person has set, ready to be used.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// The keys of the commands.
+    pub keymap: Keymap,
+    /// How the screen is to look.
+    pub look: look::LookFile,
+    /// What is to be told when the screen comes up.
+    pub notice: Option<String>,
+}
 
 /// How long quitting waits for a file that is being written: the shell waits too.
 const SAVE_PATIENCE: Duration = Duration::from_secs(10);
@@ -46,14 +64,19 @@ const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 ///
 /// # Errors
 /// When the terminal cannot be taken, or the system gives no thread.
-pub fn run(store: Store, loaded: Loaded) -> io::Result<ExitCode> {
+pub fn run(store: Store, loaded: Loaded, look: Look, settings: Settings) -> io::Result<ExitCode> {
+    // A theme asked for by name holds against NO_COLOR, which the backend would obey by itself.
+    crossterm::style::force_color_output(look.theme != Palette::Mono);
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
         // Refused only when the screen is gone, and the process with it.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects) = App::new(loaded, Theme::of_environment());
+    let (mut app, effects) = App::new(loaded, look.theme());
+    app.mouse = look.mouse;
+    app.keymap = settings.keymap;
+    app.model.message = settings.notice.map(|text| (Level::Error, text));
     workers.submit_all(effects);
     converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects));
     drop(guard);
@@ -86,6 +109,7 @@ fn converse<S: Sink>(
                     fault::point(fault::UI);
                     app.key(key)
                 }
+                Incoming::Mouse(mouse) => app.mouse(mouse),
                 Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
                     display.repaint();
@@ -96,11 +120,18 @@ fn converse<S: Sink>(
             submit(effects);
             dirty = true;
         }
+        display.take_mouse(app.mouse);
+        if let Some(text) = app.clipboard.take() {
+            display.copy(&text);
+        }
         if dirty && display.is_due() {
-            let mut views = 0;
-            display.draw(|frame| views = view::draw(frame, app));
+            let (mut views, mut screen) = (0, app.screen);
+            display.draw(|frame| {
+                screen = frame.area();
+                views = view::draw(frame, app);
+            });
             dirty = false;
-            submit(app.make_room(views));
+            submit(app.make_room(screen, views));
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::explorer::Command;
 use crate::explorer::files::Document;
 use crate::figure::Figure;
 use crate::preset::Key;
+use crate::tui::copy::Content;
 use tui_input::Input;
 
 /// What lies over the screen.
@@ -16,8 +17,8 @@ pub enum Overlay {
     Choose(Choose),
     /// A question to answer with yes or no.
     Confirm(Confirm),
-    /// The help, scrolled by so many lines.
-    Help(u16),
+    /// The help.
+    Help(Help),
 }
 
 /// A line to type.
@@ -53,8 +54,25 @@ pub enum Purpose {
     },
     /// The file to export to.
     File(Document),
+    /// The file for this text.
+    Text(String),
     /// The path of a preset to open.
     Path,
+    /// A command of the script grammar.
+    Line,
+}
+
+/// The help, and what is looked for in it.
+#[derive(Debug, Clone, Default)]
+pub struct Help {
+    /// The first line shown.
+    pub line: usize,
+    /// What is being typed to look for.
+    pub typing: Option<Input>,
+    /// What was looked for last.
+    pub pattern: String,
+    /// Where it was found: the line, the number of that place from 1, and how many there are.
+    pub found: Option<(usize, usize, usize)>,
 }
 
 impl Prompt {
@@ -79,14 +97,16 @@ impl Prompt {
 }
 
 impl Purpose {
-    /// The command for a typed line.
-    pub fn command(self, text: String) -> Command {
-        match self {
+    /// The command for a typed line; a line of its own grammar is read elsewhere.
+    pub fn command(self, text: String) -> Option<Command> {
+        Some(match self {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
             Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
+            Self::Text(content) => Command::ExportText { text: content, path: text, replace: false },
             Self::Path => Command::Open(text),
-        }
+            Self::Line => return None,
+        })
     }
 }
 
@@ -110,6 +130,15 @@ pub struct Item {
     pub text: String,
     /// What it does.
     pub action: Action,
+    /// What is asked before it is deleted, and what does it; nothing where it cannot be.
+    pub delete: Option<Box<Confirm>>,
+}
+
+impl Item {
+    /// A line that cannot be deleted.
+    pub fn new(text: impl Into<String>, action: Action) -> Self {
+        Self { text: text.into(), action, delete: None }
+    }
 }
 
 /// What choosing a line does.
@@ -119,6 +148,8 @@ pub enum Action {
     Command(Command),
     /// Asks for a line.
     Prompt(Box<Prompt>),
+    /// Puts something into the clipboard.
+    Copy(Content),
 }
 
 /// A question.

@@ -3,7 +3,7 @@
 //! Distances are counted along the curve in character widths, a row counting twice, from its first point, so that the
 //! pattern does not depend on where its points lie. What is outside the window is passed over, however long.
 
-use super::theme::Theme;
+use super::theme::{Charts, Theme};
 use crate::figure::Bounds;
 use line_clipping::{LineSegment, Point, Window, cohen_sutherland};
 use ratatui::layout::Rect;
@@ -24,6 +24,10 @@ pub enum Stroke {
     ShortDashed,
     /// Long dashes.
     LongDashed,
+    /// Long and short dashes in turn.
+    DashDotted,
+    /// A line with this letter along it.
+    Marked(&'static str),
     /// Dots with this letter between.
     Lettered(&'static str),
     /// This letter again and again, over what else is there.
@@ -37,40 +41,82 @@ const REPEATED: f64 = 2.0;
 const FAR: f64 = 1e12;
 
 impl Stroke {
+    /// Whether it is drawn without gaps.
+    pub fn is_line(self) -> bool {
+        matches!(self, Self::Solid | Self::Marked(_))
+    }
+
     /// The distance between its spots, and of how many widths how many are drawn.
-    fn pattern(self) -> (f64, [f64; 2]) {
+    fn pattern(self, charts: Charts) -> (f64, [f64; 2]) {
+        let whole = [1.0, 1.0];
+        // A block is as wide as a cell, where a dot has half of one: the gaps are wider.
+        let (dense, dot) = if charts == Charts::Block { (0.5, 2.5) } else { (0.25, 0.75) };
         match self {
-            Self::Solid => (0.25, [1.0, 1.0]),
-            Self::Dotted => (0.75, [1.0, 1.0]),
-            Self::Sparse => (2.5, [1.0, 1.0]),
-            Self::Lettered(_) => (1.5, [1.0, 1.0]),
-            Self::Repeated(_) => (REPEATED, [1.0, 1.0]),
-            Self::Dashed => (0.25, [3.5, 2.0]),
-            Self::ShortDashed => (0.25, [2.0, 1.0]),
-            Self::LongDashed => (0.25, [8.0, 6.0]),
+            Self::Solid | Self::Marked(_) => (dense, whole),
+            Self::Dotted => (dot, whole),
+            Self::Sparse if charts == Charts::Block => (5.0, whole),
+            Self::Sparse => (2.5, whole),
+            Self::Lettered(_) => (if charts == Charts::Block { 3.5 } else { 1.5 }, whole),
+            Self::Repeated(_) => (REPEATED, whole),
+            Self::Dashed => (dense, [3.5 + dense, 2.0]),
+            Self::ShortDashed if charts == Charts::Block => (dense, [3.0, 1.5]),
+            Self::ShortDashed => (dense, [2.0, 1.0]),
+            Self::LongDashed => (dense, [8.0, 6.0]),
+            Self::DashDotted => (dense, [7.0, 3.0]),
         }
+    }
+
+    /// Whether a spot so far along the curve is drawn.
+    fn is_drawn(self, distance: f64, [period, drawn]: [f64; 2]) -> bool {
+        let at = distance % period;
+        // The dot of a dash and a dot stands in the middle of the gap.
+        at < drawn || (self == Self::DashDotted && (at - 0.5 * (period + drawn)).abs() < 0.5)
     }
 
     /// The letter of a curve, and how far apart it stands.
     pub fn letter(self) -> Option<(&'static str, f64)> {
         match self {
-            Self::Lettered(letter) => Some((letter, LETTERS)),
+            Self::Lettered(letter) | Self::Marked(letter) => Some((letter, LETTERS)),
             Self::Repeated(letter) => Some((letter, REPEATED)),
             _ => None,
         }
     }
 
-    /// The dots of the canvas; in ASCII one dot a cell, so each stroke needs a character of its own.
+    /// What the canvas draws it with; in ASCII one character a cell, so each stroke needs one of its own.
     pub fn marker(self, theme: Theme) -> Marker {
-        if !theme.ascii {
-            return Marker::Braille;
+        match theme.charts {
+            Charts::Braille => return Marker::Braille,
+            Charts::Block => return Marker::HalfBlock,
+            Charts::Ascii => {}
         }
         Marker::Custom(match self {
             Self::Solid => 'o',
-            Self::Dotted | Self::Sparse | Self::Lettered(_) | Self::Repeated(_) => '.',
+            Self::Dotted | Self::Lettered(_) | Self::Repeated(_) => '.',
+            Self::Sparse => ',',
             Self::Dashed => '-',
             Self::ShortDashed => ':',
             Self::LongDashed => '~',
+            Self::DashDotted => '=',
+            Self::Marked(letter) => letter.chars().next().unwrap_or('o'),
+        })
+    }
+
+    /// How a legend shows it; no two are the same in one theme.
+    pub fn glyph(self, theme: Theme) -> &'static str {
+        let of = |[braille, block, ascii]: [&'static str; 3]| match theme.charts {
+            Charts::Braille => braille,
+            Charts::Block => block,
+            Charts::Ascii => ascii,
+        };
+        of(match self {
+            Self::Solid => ["━", "▄▄▄", "o"],
+            Self::Dotted => ["┈", "▄ ▄", "."],
+            Self::Sparse => ["· ·", "▄   ▄", ","],
+            Self::Dashed => ["╌", "▄▄ ▄▄", "--"],
+            Self::ShortDashed => ["┅", "▄ ▄▄", "::"],
+            Self::LongDashed => ["━ ━", "▄▄▄ ▄▄▄", "~~"],
+            Self::DashDotted => ["━·", "▄▄ ▄", "=="],
+            Self::Lettered(letter) | Self::Repeated(letter) | Self::Marked(letter) => return letter,
         })
     }
 }
@@ -112,12 +158,18 @@ fn along(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, apart: f64) -> Vec<
 }
 
 /// The spots of a curve in axis values.
-pub fn spots(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, stroke: Stroke) -> Vec<(f64, f64)> {
-    let (apart, [period, drawn]) = stroke.pattern();
+pub fn spots(
+    points: &[(f64, f64)],
+    bounds: &Bounds,
+    plot: Rect,
+    stroke: Stroke,
+    charts: Charts,
+) -> Vec<(f64, f64)> {
+    let (apart, pattern) = stroke.pattern(charts);
     let share = |cells: f64, count: u16| cells / f64::from(count);
     along(points, bounds, plot, apart)
         .into_iter()
-        .filter(|(distance, ..)| distance % period < drawn)
+        .filter(|(distance, ..)| stroke.is_drawn(*distance, pattern))
         .map(|(_, x, y)| bounds.at((share(x, plot.width), share(y, plot.height))))
         .collect()
 }
@@ -147,10 +199,16 @@ mod tests {
         let bounds = Bounds { x: [0.0, 1.0], y: [0.0, 1.0] };
         let coarse = [(-1.0, 0.5), (2.0, 0.5)];
         let fine: Vec<(f64, f64)> = (0..=300).map(|i| (-1.0 + f64::from(i) / 100.0, 0.5)).collect();
-        for stroke in
-            [Stroke::Dotted, Stroke::Sparse, Stroke::Dashed, Stroke::ShortDashed, Stroke::LongDashed]
-        {
-            let [a, b] = [&coarse[..], &fine].map(|points| spots(points, &bounds, PLOT, stroke));
+        for stroke in [
+            Stroke::Dotted,
+            Stroke::Sparse,
+            Stroke::Dashed,
+            Stroke::ShortDashed,
+            Stroke::LongDashed,
+            Stroke::DashDotted,
+        ] {
+            let draw = |points| spots(points, &bounds, PLOT, stroke, Charts::Braille);
+            let [a, b] = [&coarse[..], &fine].map(draw);
             assert!(!a.is_empty() && a.len().abs_diff(b.len()) <= 1, "{stroke:?} {} {}", a.len(), b.len());
             assert!(a.iter().all(|spot| bounds.share(*spot).is_some()), "{stroke:?}");
         }
@@ -161,7 +219,7 @@ mod tests {
     fn far_lines_and_numbers_that_are_none_cost_nothing() {
         let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [0.0, 1e-9] };
         let line = [(0.0, 0.0), (1.0, 0.0), (f64::NAN, 0.0), (1e300, -1e300), (0.0, f64::INFINITY)];
-        let spots = spots(&line, &deep, PLOT, Stroke::Dotted);
+        let spots = spots(&line, &deep, PLOT, Stroke::Dotted, Charts::Braille);
         assert!((60..=70).contains(&spots.len()), "{}", spots.len());
         assert!(letters(&line[2..], &deep, PLOT, LETTERS).is_empty());
     }

@@ -29,6 +29,8 @@ pub enum Quantity {
     Energy,
     /// The stiffness of the device: N/m, of the same dimension as J/m².
     ForcePerLength,
+    /// A length to the power −k, k from 1 to [`Quantity::DEEPEST`], as the coefficient of a power law: m⁻ᵏ.
+    InverseLength(u8),
     /// A ratio, an angle or a count.
     Number,
 }
@@ -42,6 +44,17 @@ impl Dimension {
         Self { metre, kilogram, second }
     }
 
+    /// Its SI unit in base units, `m^-1 kg s^-2`; empty for a pure number.
+    pub fn si(self) -> String {
+        let factor = |(symbol, power): (&str, i32)| match power {
+            0 => None,
+            1 => Some(symbol.to_owned()),
+            _ => Some(format!("{symbol}^{power}")),
+        };
+        let factors = [("m", self.metre), ("kg", self.kilogram), ("s", self.second)];
+        factors.into_iter().filter_map(factor).collect::<Vec<_>>().join(" ")
+    }
+
     /// What it is called, with its article, if it has a name here.
     ///
     /// An energy per area and a force per length have one dimension.
@@ -52,6 +65,8 @@ impl Dimension {
             (2, 0, 0) => "an area",
             (3, 0, 0) => "a volume",
             (-1, 0, 0) => "an inverse length",
+            (-2, 0, 0) => "an inverse area",
+            (-3, 0, 0) => "an inverse volume",
             (0, 1, 0) => "a mass",
             (0, 0, 1) => "a time",
             (1, 1, -2) => "a force",
@@ -62,6 +77,10 @@ impl Dimension {
         })
     }
 }
+
+/// m⁻ᵏ at the place k.
+const INVERSE_METRES: [&str; 10] =
+    ["", "m^-1", "m^-2", "m^-3", "m^-4", "m^-5", "m^-6", "m^-7", "m^-8", "m^-9"];
 
 impl Add for Dimension {
     type Output = Self;
@@ -81,24 +100,19 @@ impl Mul<i32> for Dimension {
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(name) = self.name() {
-            return f.write_str(name);
+        match self.name() {
+            Some(name) => f.write_str(name),
+            None => write!(f, "of dimension {}", self.si()),
         }
-        f.write_str("of dimension")?;
-        for (symbol, power) in [("m", self.metre), ("kg", self.kilogram), ("s", self.second)] {
-            match power {
-                0 => {}
-                1 => write!(f, " {symbol}")?,
-                _ => write!(f, " {symbol}^{power}")?,
-            }
-        }
-        Ok(())
     }
 }
 
 impl Quantity {
+    /// The largest k of a length to the power −k.
+    pub const DEEPEST: u8 = 9;
+
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 16] = [
         Self::Length,
         Self::Force,
         Self::Stress,
@@ -106,7 +120,22 @@ impl Quantity {
         Self::Energy,
         Self::ForcePerLength,
         Self::Number,
+        Self::InverseLength(1),
+        Self::InverseLength(2),
+        Self::InverseLength(3),
+        Self::InverseLength(4),
+        Self::InverseLength(5),
+        Self::InverseLength(6),
+        Self::InverseLength(7),
+        Self::InverseLength(8),
+        Self::InverseLength(9),
     ];
+
+    /// What is measured in a length to the power −`k`, where `k` is a whole number from 0 to [`Self::DEEPEST`].
+    pub fn of_inverse_length(k: f64) -> Option<Self> {
+        let whole = (0..=Self::DEEPEST).find(|whole| k - f64::from(*whole) == 0.0)?;
+        Some(if whole == 0 { Self::Number } else { Self::InverseLength(whole) })
+    }
 
     /// Its dimension.
     pub fn dimension(self) -> Dimension {
@@ -116,6 +145,7 @@ impl Quantity {
             Self::Stress => Dimension::new(-1, 1, -2),
             Self::EnergyPerArea | Self::ForcePerLength => Dimension::new(0, 1, -2),
             Self::Energy => Dimension::new(2, 1, -2),
+            Self::InverseLength(k) => Dimension::new(-i32::from(k), 0, 0),
             Self::Number => Dimension::NONE,
         }
     }
@@ -129,6 +159,10 @@ impl Quantity {
             Self::EnergyPerArea => "an energy per area",
             Self::Energy => "an energy",
             Self::ForcePerLength => "a force per length",
+            Self::InverseLength(1) => "an inverse length",
+            Self::InverseLength(2) => "an inverse area",
+            Self::InverseLength(3) => "an inverse volume",
+            Self::InverseLength(_) => "an inverse power of a length",
             Self::Number => "a pure number",
         }
     }
@@ -142,6 +176,7 @@ impl Quantity {
             Self::EnergyPerArea => Some("J/m^2"),
             Self::Energy => Some("J"),
             Self::ForcePerLength => Some("N/m"),
+            Self::InverseLength(k) => INVERSE_METRES.get(usize::from(k)).copied(),
             Self::Number => None,
         }
     }
@@ -149,6 +184,7 @@ impl Quantity {
     /// A unit of it for a message; a pure number has none.
     pub fn example(self) -> Option<&'static str> {
         match self {
+            Self::InverseLength(_) => self.si(),
             Self::Length => Some("um"),
             Self::Force => Some("mN"),
             Self::Stress => Some("kPa"),

@@ -10,9 +10,11 @@
 //! | [`table`] | unit names and SI prefixes |
 //! | [`mod@unit`] | a product of units, read and written |
 //! | [`value`] | a number with its unit, read |
+//! | [`number`] | how numbers are written for people |
 //! | [`system`] | reduced or SI: how a quantity is typed and shown |
 
 pub mod dimension;
+pub mod number;
 pub mod system;
 pub mod table;
 pub mod unit;

@@ -24,6 +24,8 @@ pub struct DisplayUnits {
     energy_per_area: Unit,
     energy: Unit,
     force_per_length: Unit,
+    /// The powers −1, −2, … of the length.
+    inverse_lengths: Vec<Unit>,
 }
 
 impl Default for DisplayUnits {
@@ -31,8 +33,10 @@ impl Default for DisplayUnits {
     fn default() -> Self {
         let factor = |prefix: &'static Prefix, unit: &'static Named, power| Factor { prefix, unit, power };
         let one = |prefix, unit| Unit::of(vec![factor(prefix, unit, 1)]);
+        let length = one(&MICRO, &METRE);
         Self {
-            length: one(&MICRO, &METRE),
+            inverse_lengths: inverses(&length),
+            length,
             force: one(&MICRO, &NEWTON),
             stress: one(&KILO, &PASCAL),
             energy_per_area: Unit::of(vec![factor(&MILLI, &JOULE, 1), factor(&NONE, &METRE, -2)]),
@@ -40,6 +44,11 @@ impl Default for DisplayUnits {
             force_per_length: Unit::of(vec![factor(&NONE, &NEWTON, 1), factor(&NONE, &METRE, -1)]),
         }
     }
+}
+
+/// The units of the powers −1, −2, … of a length.
+fn inverses(length: &Unit) -> Vec<Unit> {
+    (1..=Quantity::DEEPEST).map(|k| length.to_power(-i32::from(k))).collect()
 }
 
 impl DisplayUnits {
@@ -52,11 +61,13 @@ impl DisplayUnits {
             Quantity::EnergyPerArea => &self.energy_per_area,
             Quantity::Energy => &self.energy,
             Quantity::ForcePerLength => &self.force_per_length,
+            Quantity::InverseLength(k) => return self.inverse_lengths.get(usize::from(k).checked_sub(1)?),
             Quantity::Number => return None,
         })
     }
 
-    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without.
+    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without, and the
+    /// inverse powers of a length follow the length.
     ///
     /// # Errors
     /// A text that is no unit, or one of another dimension.
@@ -67,13 +78,16 @@ impl DisplayUnits {
             return Err(ValueError::Dimension { expected: quantity, text: unit.to_string(), got });
         }
         match quantity {
-            Quantity::Length => self.length = unit,
+            Quantity::Length => {
+                self.inverse_lengths = inverses(&unit);
+                self.length = unit;
+            }
             Quantity::Force => self.force = unit,
             Quantity::Stress => self.stress = unit,
             Quantity::EnergyPerArea => self.energy_per_area = unit,
             Quantity::Energy => self.energy = unit,
             Quantity::ForcePerLength => self.force_per_length = unit,
-            Quantity::Number => {}
+            Quantity::InverseLength(_) | Quantity::Number => {}
         }
         Ok(self)
     }

@@ -1,7 +1,7 @@
 //! A product of units, read and written: `mJ/m^2`, `N m^-1`, `kPa`.
 //!
 //! ```text
-//! product = factor (("/" | "*" | "·" | blank) factor)*      the slash holds for the one factor after it
+//! product = ("1"? "/")? factor (("/" | "*" | "·" | blank) factor)*      the slash holds for the one factor after it
 //! factor  = name ("^" integer | superscripts)?
 //! ```
 
@@ -89,7 +89,9 @@ impl Unit {
         let place = |input: &Input| Place::of(text, start + input.current_token_start());
         let mut input = Input::new(&text[start..]);
         let mut factors = Vec::new();
-        let mut sign = 1;
+        blanks(&mut input);
+        let below = taken(&mut input, (opt('1'), multispace0, '/').void()).is_some();
+        let mut sign = if below { -1 } else { 1 };
         loop {
             blanks(&mut input);
             let at = place(&input);
@@ -121,6 +123,12 @@ impl Unit {
     /// The product of these factors.
     pub(super) fn of(factors: Vec<Factor>) -> Self {
         Self { factors }
+    }
+
+    /// It to the power `power`, not 0.
+    pub(super) fn to_power(&self, power: i32) -> Self {
+        let raised = |factor: &Factor| Factor { power: factor.power * power, ..*factor };
+        Self { factors: self.factors.iter().map(raised).collect() }
     }
 
     /// Its dimension.
@@ -262,6 +270,9 @@ mod tests {
             ("kg m s^-2", 1.0, "a force", "kg m/s²", "kg m/s^2"),
             ("eV", 1.602_176_634 / 1e19, "an energy", "eV", "eV"),
             ("m^-1", 1.0, "an inverse length", "m⁻¹", "m^-1"),
+            ("1/m", 1.0, "an inverse length", "m⁻¹", "m^-1"),
+            (" 1 / mm^2", 1e6, "an inverse area", "mm⁻²", "mm^-2"),
+            ("/um/mm", 1e9, "an inverse area", "µm⁻¹/mm", "um^-1/mm"),
             ("m/s", 1.0, "of dimension m s^-1", "m/s", "m/s"),
             ("deg", std::f64::consts::PI / 180.0, "a pure number", "°", "deg"),
         ] {
@@ -281,6 +292,9 @@ mod tests {
             ("3 (m)", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found '('"),
             ("3 furlong", "column 3: unknown unit furlong"),
             ("3 Nm", "column 3: unknown unit Nm"),
+            ("3 1/", "column 5: expected a unit such as um, mN, kPa or mJ/m^2, found the end"),
+            ("3 1 m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 1"),
+            ("3 2/m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 2"),
             ("3 m^x", "column 4: the power of a unit must be an integer from -9 to 9, not 0"),
             ("3 m^0", "column 4: the power of a unit must be an integer from -9 to 9, not 0"),
             ("3 m^99999999999", "column 4: the power of a unit must be an integer from -9 to 9, not 0"),

@@ -2,7 +2,9 @@
 
 use super::dimension::{Dimension, Quantity};
 use super::unit::{Unit, UnitError};
+use crate::expression::program::Program;
 use crate::expression::{FormulaError, grammar};
+use std::fmt;
 use thiserror::Error;
 
 /// Characters of a value that a message quotes.
@@ -60,16 +62,28 @@ fn wanted(quantity: Quantity) -> String {
     }
 }
 
-/// The value of a text: an expression of numbers, then a unit if there is one.
+/// The value of a text: an expression of numbers, then a unit if there is one. Where the expression ends with a
+/// division by a unit, as `3/mm^2` does, the unit begins with that slash.
 ///
 /// # Errors
 /// Text that is neither, with its column; a number that is not finite.
 pub fn parse_quantity(text: &str) -> Result<Value, ValueError> {
-    let (program, end) = grammar::number(text)?;
+    let (program, end) = match grammar::number(text) {
+        Ok(read) => read,
+        Err(error) => divided(text, &error).ok_or(error)?,
+    };
     let unit = if end < text.len() { Some(Unit::parse(text, end)?) } else { None };
     let number = program.value();
     let value = Value { number, unit, text: quoted(text) };
     if number.is_finite() { Ok(value) } else { Err(ValueError::NotFinite { text: value.text }) }
+}
+
+/// The number of a text and the byte of the slash behind it, if what the grammar refused in it stands behind a slash.
+fn divided(text: &str, error: &FormulaError) -> Option<(Program, usize)> {
+    let before = text.get(..error.place.byte)?.trim_end().strip_suffix('/')?;
+    let (program, end) = grammar::number(before).ok()?;
+    let is_unit = Unit::parse(text, before.len()).is_ok();
+    (end == before.len() && is_unit).then_some((program, end))
 }
 
 /// The text on one line and not too long; what could be read holds nothing unsafe.
@@ -79,6 +93,13 @@ fn quoted(text: &str) -> String {
         return line;
     }
     line.chars().take(QUOTED - 3).chain("...".chars()).collect()
+}
+
+impl fmt::Display for Value {
+    /// As typed, on one line and not too long.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
 }
 
 impl Value {
@@ -97,6 +118,19 @@ impl Value {
         {
             return Err(ValueError::Dimension { expected, text: self.text.clone(), got: own.measures() });
         }
+        self.in_si_of(unit)
+    }
+
+    /// The value in SI, of whatever dimension its unit has.
+    ///
+    /// # Errors
+    /// A value that is too large or too small for a double.
+    pub fn in_own_si(&self) -> Result<f64, ValueError> {
+        self.in_si_of(None)
+    }
+
+    /// The value in SI; a bare number is one of `unit`, or of SI without one.
+    fn in_si_of(&self, unit: Option<&Unit>) -> Result<f64, ValueError> {
         let si = self.unit.as_ref().or(unit).map_or(self.number, |unit| unit.to_si(self.number));
         if si.is_finite() && (si != 0.0 || self.number == 0.0) {
             Ok(si)
@@ -140,6 +174,11 @@ mod tests {
             ("3*pi/2", Quantity::Number, 3.0 * std::f64::consts::FRAC_PI_2),
             ("90 deg", Quantity::Number, std::f64::consts::FRAC_PI_2),
             ("0 um", Quantity::Length, 0.0),
+            ("2e3 m^-1", Quantity::InverseLength(1), 2e3),
+            ("3 1/mm^2", Quantity::InverseLength(2), 3e6),
+            ("3/mm^2", Quantity::InverseLength(2), 3e6),
+            ("1/2/um", Quantity::InverseLength(1), 0.5e6),
+            ("(1+1) / µm⁴", Quantity::InverseLength(4), 2e24),
         ] {
             assert_eq!(si(text, quantity), Ok(expected), "{text}");
         }
@@ -152,6 +191,17 @@ mod tests {
                 "30 mJ/m^2",
                 Quantity::Stress,
                 "expected a stress such as kPa, got 30 mJ/m^2, an energy per area",
+            ),
+            ("3/um", Quantity::Length, "expected a length such as um, got 3/um, an inverse length"),
+            (
+                "3 1/mm^2",
+                Quantity::InverseLength(4),
+                "expected an inverse power of a length such as m^-4, got 3 1/mm^2, an inverse area",
+            ),
+            (
+                "3/r",
+                Quantity::InverseLength(1),
+                "column 3: r has no value here: only numbers, pi, e and functions of them",
             ),
             ("3 um", Quantity::Number, "expected a pure number, got 3 um, a length"),
             ("3 m/s", Quantity::Length, "expected a length such as um, got 3 m/s, of dimension m s^-1"),

@@ -53,6 +53,16 @@ pub struct Pole {
     pub tangent: bool,
 }
 
+/// Steps whose sign, or the smaller of which, decides what the formula is: at zero, or where they are equal, it has a
+/// corner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corner {
+    /// The steps of the argument, or of the first.
+    pub argument: Range<usize>,
+    /// The steps of the second, where two are compared.
+    pub other: Option<Range<usize>>,
+}
+
 /// The formula as steps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Steps {
@@ -64,6 +74,8 @@ pub struct Steps {
     pub waves: Vec<Wave>,
     /// Its possible poles.
     pub poles: Vec<Pole>,
+    /// Its possible corners.
+    pub corners: Vec<Corner>,
 }
 
 /// A value on the stack while the steps are written.
@@ -131,6 +143,9 @@ impl Folder {
             }
             Step::Unary(Unary::Log | Unary::Log10) | Step::Over(_) => self.out.poles.push(pole(false)),
             Step::RealPower(p) if p < 0.0 => self.out.poles.push(pole(false)),
+            Step::Unary(Unary::Abs | Unary::Sign | Unary::Step) => {
+                self.out.corners.push(Corner { argument: argument.clone(), other: None });
+            }
             _ => {}
         }
         self.out.steps.push(step);
@@ -142,6 +157,7 @@ impl Folder {
         self.out.steps.truncate(start);
         self.out.waves.retain(|wave| wave.argument.end <= start);
         self.out.poles.retain(|pole| pole.argument.end <= start);
+        self.out.corners.retain(|corner| corner.argument.end <= start);
         self.slots.push(Slot::Constant(number));
     }
 
@@ -154,6 +170,7 @@ impl Folder {
                     let argument = second..self.out.steps.len();
                     self.out.poles.push(Pole { argument, tangent: false });
                 }
+                self.compared(binary, start, second);
                 self.step(start, Step::Binary(binary));
             }
             (Slot::From(start), Slot::Constant(c)) => self.with_second(binary, start, c),
@@ -170,6 +187,14 @@ impl Folder {
         }
     }
 
+    /// The corner of an operation that compares what the steps from `start` on make with those from `second` on.
+    fn compared(&mut self, binary: Binary, start: usize, second: usize) {
+        if matches!(binary, Binary::Min | Binary::Max) {
+            let other = Some(second..self.out.steps.len());
+            self.out.corners.push(Corner { argument: start..second, other });
+        }
+    }
+
     /// An operation whose second operand is a number.
     fn with_second(&mut self, binary: Binary, start: usize, c: f64) {
         match binary {
@@ -181,7 +206,9 @@ impl Folder {
             Binary::Divide => self.step(start, Step::Divide(c)),
             Binary::Power => self.power(start, c),
             Binary::Min | Binary::Max | Binary::Hypot => {
+                let second = self.out.steps.len();
                 self.out.steps.push(Step::Number(c));
+                self.compared(binary, start, second);
                 self.step(start, Step::Binary(binary));
             }
         }

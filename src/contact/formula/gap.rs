@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::survey::NotFinite;
-use crate::contact::{Gap, Jet};
+use crate::contact::{Axis, Breaks, Gap, Jet};
 
 /// How far beyond the radius asked for a formula is looked at.
 const BEYOND: f64 = 16.0;
@@ -17,6 +17,8 @@ pub struct FormulaGap {
     largest: f64,
     feature_length: Option<f64>,
     known: Option<f64>,
+    corners: Vec<f64>,
+    axis: Axis,
 }
 
 impl Bound {
@@ -26,7 +28,7 @@ impl Bound {
     /// Where h, h' or h'' is not finite.
     pub fn over(self, largest: f64) -> Result<FormulaGap, NotFinite> {
         self.check(largest)?;
-        Ok(FormulaGap { feature_length: self.feature_length(largest), bound: self, largest, known: None })
+        Ok(self.gap(largest, largest, None))
     }
 
     /// The formula as a gap that is known as far as it is finite, its waves looked for up to `largest`.
@@ -47,7 +49,17 @@ impl Bound {
             Err(NotFinite { radius, .. }) => Some(radius),
         };
         let waves = known.map_or(largest, |known| largest.min(known * (1.0 - f64::EPSILON)));
-        Ok(FormulaGap { feature_length: self.feature_length(waves), bound: self, largest, known })
+        Ok(self.gap(largest, waves, known))
+    }
+
+    /// The gap, its waves and corners looked for up to `surveyed`.
+    fn gap(self, largest: f64, surveyed: f64, known: Option<f64>) -> FormulaGap {
+        let feature_length = self.feature_length(surveyed);
+        // A path may run outward from its start.
+        let corners = self.corners(known.map_or(BEYOND * surveyed, |known| known.min(BEYOND * surveyed)));
+        let first = corners.first().copied().unwrap_or(surveyed).min(feature_length.unwrap_or(surveyed));
+        let axis = self.axis(first);
+        FormulaGap { bound: self, largest, feature_length, known, corners, axis }
     }
 }
 
@@ -83,6 +95,10 @@ impl Gap for FormulaGap {
 
     fn feature_length(&self) -> Option<f64> {
         self.feature_length
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks { knots: &self.corners, axis: self.axis, cubic: false }
     }
 
     /// The largest radius: a formula need not have a radius of curvature.

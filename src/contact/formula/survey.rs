@@ -6,6 +6,8 @@
 
 use super::bound::Bound;
 use super::fold::{Pole, Wave};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::ops::Range;
 use thiserror::Error;
 
@@ -27,9 +29,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Where a formula is no gap.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error(
-    "the formula is not finite at r = {radius} (up to r = {largest} it must be, with its slope and curvature)"
-)]
+#[error("{}", self.words(&UnitSystem::Reduced))]
 pub struct NotFinite {
     /// The smallest radius found where h, h' or h'' is not finite: 0 if h(0) is not.
     pub radius: f64,
@@ -37,8 +37,18 @@ pub struct NotFinite {
     pub largest: f64,
 }
 
+impl NotFinite {
+    /// What is wrong, with the radii as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
+        format!(
+            "the formula is not finite at r = {radius} (up to r = {largest} it must be, with its slope and curvature)"
+        )
+    }
+}
+
 /// The grid on (0, `largest`], ascending.
-fn grid(largest: f64) -> Vec<f64> {
+pub(super) fn grid(largest: f64) -> Vec<f64> {
     let step = largest / NODES as f64;
     let halved = (1..=HALVINGS).rev().map(|k| step * 0.5f64.powi(i32::try_from(k).unwrap_or(i32::MAX)));
     halved.chain((1..=NODES).map(|k| if k == NODES { largest } else { step * k as f64 })).collect()
@@ -118,7 +128,7 @@ impl Bound {
     }
 
     /// The operand made by these steps, with N − 1 derivatives, at each of `radii`.
-    fn operand<const N: usize>(&self, steps: &Range<usize>, radii: &[f64]) -> Vec<[f64; N]> {
+    pub(super) fn operand<const N: usize>(&self, steps: &Range<usize>, radii: &[f64]) -> Vec<[f64; N]> {
         let mut operand = Vec::with_capacity(radii.len());
         self.each(&self.steps.steps[steps.clone()], 1.0, radii, |_, jet| operand.push(jet));
         operand
@@ -126,7 +136,7 @@ impl Bound {
 }
 
 /// The first radius found where `good` no longer holds; it holds at `from` and not at `to`.
-fn bisect(mut from: f64, mut to: f64, good: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn bisect(mut from: f64, mut to: f64, good: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (from + to);
         if good(middle) {

@@ -3,6 +3,7 @@
 use super::gap::FormulaGap;
 use super::survey::NotFinite;
 use super::{BindError, Formula, FormulaError};
+use crate::units::UnitSystem;
 use thiserror::Error;
 
 /// The most parameters of one formula.
@@ -53,6 +54,16 @@ pub enum TypedError {
     /// It is not finite where it must be.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
+}
+
+impl TypedError {
+    /// What is wrong, with lengths as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        match self {
+            Self::NotFinite(cause) => cause.words(units),
+            other => other.to_string(),
+        }
+    }
 }
 
 impl PartialEq for TypedGap {

@@ -16,11 +16,14 @@
 //! The feature length is the shortest wavelength with an amplitude. The exact solution is
 //! [`theory::harmonics`](crate::theory::harmonics).
 
-use crate::contact::{Gap, Jet};
+use crate::contact::{Axis, Breaks, Gap, Jet};
 use std::f64::consts::TAU;
 
 /// The most waves of one gap.
 pub const MOST_WAVES: usize = 1000;
+
+/// The sine of a phase below which the wave is even: that of π k as rounded, k up to some thousand.
+const PHASE_ROUNDING: f64 = 1e-12;
 
 /// One wave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,6 +110,18 @@ impl Gap for Harmonics {
             Some(shortest.map_or(wave.wavelength, |other| other.min(wave.wavelength)))
         };
         self.waves.iter().filter(|wave| wave.amplitude != 0.0).fold(None, shortest)
+    }
+
+    /// Waves of any phase are smooth in r.
+    fn band_limit(&self) -> Option<f64> {
+        self.feature_length()
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        // The sine of a multiple of π as rounded.
+        let slope = |term: &Term| term.phase_sin.abs() > PHASE_ROUNDING;
+        let axis = if self.terms.iter().any(slope) { Axis::Odd } else { Axis::Even };
+        Breaks { axis, ..Breaks::default() }
     }
 
     fn reference_length(&self) -> f64 {

@@ -16,7 +16,7 @@
 //! The exact solution is [`theory::power_law`](crate::theory::power_law). L. A. Galin, *Contact Problems in the Theory
 //! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
 
-use crate::contact::{Gap, Jet};
+use crate::contact::{Axis, Breaks, Gap, Jet};
 use std::ops::RangeInclusive;
 
 /// The allowed exponents: below 1 the tip is a cusp without a disc of contact, above 100 it is a flat punch.
@@ -35,6 +35,9 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
+    /// Where a cone is not smooth: at its tip.
+    pub const CONE_BREAKS: Breaks<'static> = Breaks { knots: &[], axis: Axis::Odd, cubic: false };
+
     /// The cone h = c r of slope `slope`, the cotangent of its half apex angle.
     #[must_use]
     pub fn cone(slope: f64) -> Self {
@@ -75,6 +78,15 @@ impl Gap for PowerLaw {
 
     fn feature_length(&self) -> Option<f64> {
         None
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        let axis = match self.exponent {
+            n if n.fract() != 0.0 => Axis::Broken,
+            n if n % 2.0 == 0.0 => Axis::Even,
+            _ => Axis::Odd,
+        };
+        Breaks { axis, ..Breaks::default() }
     }
 
     fn reference_length(&self) -> f64 {

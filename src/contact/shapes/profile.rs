@@ -21,7 +21,9 @@
 //! 249, 321 (1957), doi:10.1098/rsta.1957.0002.
 
 use super::spline::{Fit, Rows};
-use crate::contact::{Gap, Jet};
+use crate::contact::{Axis, Breaks, Gap, Jet};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::TAU;
 
 /// The fewest rows of a profile.
@@ -90,10 +92,7 @@ pub enum InvalidProfile {
         radius: f64,
     },
     /// The radii do not ascend.
-    #[error(
-        "row {row} of the profile has the radius {radius:e}, which is not above the one before, {before:e}, by \
-         {CLOSEST:e} of the largest"
-    )]
+    #[error("{}", not_ascending(&UnitSystem::Reduced, *.row, [*.radius, *.before]))]
     NotAscending {
         /// The row.
         row: usize,
@@ -103,10 +102,7 @@ pub enum InvalidProfile {
         before: f64,
     },
     /// The cutoff is out of range.
-    #[error(
-        "the cutoff {cutoff:e} is out of range: it must be positive and at most {most:e}, {MOST_SPACINGS} mean \
-         distances of the rows"
-    )]
+    #[error("{}", far_cutoff(&UnitSystem::Reduced, [*.cutoff, *.most]))]
     Cutoff {
         /// The cutoff.
         cutoff: f64,
@@ -114,8 +110,46 @@ pub enum InvalidProfile {
         most: f64,
     },
     /// The equations of the spline cannot be solved.
-    #[error("no smooth curve was found for the profile: its radii are too uneven for the cutoff {0:e}")]
+    #[error("{}", unsolved(&UnitSystem::Reduced, *.0))]
     Unsolved(f64),
+}
+
+/// A length in a message.
+fn length(units: &UnitSystem, x: f64) -> String {
+    said(units, Quantity::Length, x)
+}
+
+fn not_ascending(units: &UnitSystem, row: usize, radii: [f64; 2]) -> String {
+    let [radius, before] = radii.map(|r| length(units, r));
+    format!(
+        "row {row} of the profile has the radius {radius}, which is not above the one before, {before}, by {CLOSEST:e} of \
+         the largest"
+    )
+}
+
+fn far_cutoff(units: &UnitSystem, lengths: [f64; 2]) -> String {
+    let [cutoff, most] = lengths.map(|x| length(units, x));
+    format!(
+        "the cutoff {cutoff} is out of range: it must be positive and at most {most}, {MOST_SPACINGS} mean distances of \
+         the rows"
+    )
+}
+
+fn unsolved(units: &UnitSystem, cutoff: f64) -> String {
+    let cutoff = length(units, cutoff);
+    format!("no smooth curve was found for the profile: its radii are too uneven for the cutoff {cutoff}")
+}
+
+impl InvalidProfile {
+    /// What is wrong, with lengths as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        match *self {
+            Self::NotAscending { row, radius, before } => not_ascending(units, row, [radius, before]),
+            Self::Cutoff { cutoff, most } => far_cutoff(units, [cutoff, most]),
+            Self::Unsolved(cutoff) => unsolved(units, cutoff),
+            other => other.to_string(),
+        }
+    }
 }
 
 impl Profile {
@@ -188,14 +222,19 @@ impl Profile {
     }
 }
 
-impl Gap for Profile {
-    fn jet(&self, r: f64) -> Jet {
+impl Profile {
+    /// The jet at `r`; `at` is the piece it is looked for in first, and then that of `r`.
+    fn jet_near(&self, r: f64, at: &mut usize) -> Jet {
         let last = self.knots[self.knots.len() - 1];
         if r.is_nan() || r > last * (1.0 + ROUNDING) {
             return Jet::UNKNOWN;
         }
-        let above = self.knots.partition_point(|knot| *knot <= r);
-        let i = above.saturating_sub(1).min(self.pieces.len() - 1);
+        // Sums ask in order: most radii lie in the piece of the one before.
+        if r < self.knots[*at] || r >= self.knots[*at + 1] {
+            let above = self.knots.partition_point(|knot| *knot <= r);
+            *at = above.saturating_sub(1).min(self.pieces.len() - 1);
+        }
+        let i = *at;
         let (x, Jet { value, first, second, third }) = (r - self.knots[i], self.pieces[i]);
         Jet {
             value: value + x * (first + x * (0.5 * second + x * third / 6.0)),
@@ -203,6 +242,32 @@ impl Gap for Profile {
             second: second + x * third,
             third,
         }
+    }
+}
+
+impl Gap for Profile {
+    fn jet(&self, r: f64) -> Jet {
+        self.jet_near(r, &mut 0)
+    }
+
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        let mut at = 0;
+        for (value, x) in values.iter_mut().zip(nodes) {
+            *value = self.jet_near(s * x, &mut at).value;
+        }
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
+        let mut at = 0;
+        for (((first, second), third), x) in first.iter_mut().zip(second).zip(third).zip(nodes) {
+            let jet = self.jet_near(s * x, &mut at);
+            (*first, *second, *third) = (jet.first, jet.second, jet.third);
+        }
+    }
+
+    /// The knots without the axis, where the cubic of the first piece is not even.
+    fn breaks(&self) -> Breaks<'_> {
+        Breaks { knots: &self.knots[1..], axis: Axis::Odd, cubic: true }
     }
 
     fn feature_length(&self) -> Option<f64> {

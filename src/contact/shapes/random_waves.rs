@@ -26,6 +26,8 @@
 
 use super::harmonics::{Harmonic, Harmonics, MOST_WAVES};
 use super::split_mix::SplitMix64;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::TAU;
 
 /// What the waves are drawn from. Lengths in one unit.
@@ -61,7 +63,7 @@ pub enum RandomWavesError {
         allowed: &'static str,
     },
     /// The wavelengths are in the wrong order.
-    #[error("the shortest wavelength {shortest:e} must be below the longest, {longest:e}")]
+    #[error("{}", order(&UnitSystem::Reduced, [*.shortest, *.longest]))]
     Order {
         /// The shortest wavelength.
         shortest: f64,
@@ -71,6 +73,22 @@ pub enum RandomWavesError {
     /// The number of waves is out of range.
     #[error("{0} waves are out of range, allowed are 1 to {MOST_WAVES}")]
     Count(usize),
+}
+
+/// The wrong order of the shortest and the longest wavelength, in words.
+fn order(units: &UnitSystem, wavelengths: [f64; 2]) -> String {
+    let [shortest, longest] = wavelengths.map(|x| said(units, Quantity::Length, x));
+    format!("the shortest wavelength {shortest} must be below the longest, {longest}")
+}
+
+impl RandomWavesError {
+    /// What is wrong, with the wavelengths as `units` show them.
+    pub fn words(&self, units: &UnitSystem) -> String {
+        match *self {
+            Self::Order { shortest, longest } => order(units, [shortest, longest]),
+            other => other.to_string(),
+        }
+    }
 }
 
 impl RandomWaves {

@@ -4,7 +4,8 @@ use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
 use crate::contact::Shape;
 use crate::explorer::driver::Effect;
-use crate::explorer::files::{Document, Done, Job};
+use crate::explorer::files::{Content, Document, Done, Job};
+use crate::explorer::journal::Journal;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::preset::{Overwrite, Preset, Source};
@@ -25,24 +26,59 @@ pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
 }
 
 pub(super) fn export(model: &mut Model, what: Document, path: String, replace: bool) -> Vec<Effect> {
-    let Some(curve) = model.curve.clone() else {
+    let (Some(curve), Some(start)) = (model.curve.clone(), model.journal.start().cloned()) else {
         tell(model, Level::Error, "there is no curve to export yet");
         return Vec::new();
     };
     let ending = std::path::Path::new(&path).extension().and_then(|ending| ending.to_str());
-    if !ending.is_some_and(|ending| ["csv", "json"].iter().any(|known| known.eq_ignore_ascii_case(ending))) {
-        tell(model, Level::Error, "the file must end in .csv or .json");
+    let endings = what.endings();
+    if !ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending))) {
+        tell(model, Level::Error, format!("the file must end in .{}", endings.join(" or .")));
         return Vec::new();
     }
-    let walk = model.history.path().into_iter().map(|(_, node)| node.clone()).collect();
-    let events = model.shown_events();
-    vec![file(Job::Export { what, curve, walk, events, path, replace })]
+    let content = match what {
+        Document::Curve => Content::Curve(curve),
+        Document::Walk => {
+            Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
+        }
+        Document::Events => Content::Events(curve, model.shown_events()),
+        Document::Script => match Journal::so_far(model) {
+            Ok(lines) => Content::Script(Box::new(start), lines),
+            Err(reason) => {
+                tell(model, Level::Error, format!("not exported: {reason}"));
+                return Vec::new();
+            }
+        },
+    };
+    vec![file(Job::Export { content, path, replace })]
+}
+
+pub(super) fn export_text(model: &mut Model, text: String, path: String, replace: bool) -> Vec<Effect> {
+    if ends_in(&path, &["txt"]) {
+        return vec![file(Job::Write { text, path, replace })];
+    }
+    tell(model, Level::Error, "the file must end in .txt");
+    Vec::new()
+}
+
+fn ends_in(path: &str, endings: &[&str]) -> bool {
+    let ending = std::path::Path::new(path).extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
 }
 
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
         Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Named(names) => model.preset_names = names,
+        Done::Deleted(path, listing) => {
+            tell(model, Level::Info, format!("deleted {path}; what is on the screen stays"));
+            model.listing = Some(*listing);
+        }
         Done::Browsed(folder) => model.folder = Some(*folder),
+        Done::Assigned(preset) => {
+            model.untried = None;
+            return change(model, *preset);
+        }
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let (mut opened, effects) = open(*loaded);
@@ -73,6 +109,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::FileExists(what, path) => {
             tell(model, Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
+        }
+        Done::TextExists(text, path) => {
+            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.question = Some(Question::ReplaceText(text, path));
         }
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }

@@ -1,25 +1,29 @@
 //! Values changed, and the curve that follows from them.
 
-use super::files::read;
+use super::files::{file, read};
 use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::explorer::command::Assignment;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
+use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
-use crate::explorer::model::{Level, Model};
+use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
+use crate::explorer::pins::labelled;
 use crate::explorer::walk::Action;
 use crate::preset::schema::Kind;
-use crate::preset::text::{show_name, show_path};
-use crate::preset::{Preset, Value};
+use crate::preset::text::{greek, show_name, show_path};
+use crate::preset::{Preset, Value, groups};
 use std::path::Path;
 use std::sync::Arc;
 
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
+    model.progress = None;
     // The curve does not know what is controlled: under another control it need not be swept again.
     let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
     let sweep = known.map(Arc::clone);
@@ -171,7 +175,10 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     let Some((row, _)) = model.selected_knob() else { return Vec::new() };
     let contact = contact_stiffness(model);
     match nudge(&model.preset, &row, up, amount, contact) {
-        Ok(preset) => change(model, preset),
+        Ok(preset) => {
+            tell_effect(model, &row.key, &preset);
+            change(model, preset)
+        }
         Err(reason) => {
             tell(model, Level::Error, reason);
             Vec::new()
@@ -179,9 +186,20 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
     }
 }
 
+/// A group is not stored: what it changed instead is said, with the new values.
+fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
+    let Some([_, held]) = groups::effect(key) else { return };
+    let moved = changed.rows().filter(|row| model.preset.get(&row.key) != changed.get(&row.key));
+    let values: Vec<String> =
+        moved.filter_map(|row| Some(labelled(&row, &changed.get(&row.key)?, &changed.units))).collect();
+    if !values.is_empty() {
+        tell(model, Level::Info, greek(&format!("changed: {}; {held} held", values.join(", "))));
+    }
+}
+
 /// Another value for a key, in place of those tried for it.
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let mut preset = model.untried.as_deref().unwrap_or(&model.preset).clone();
+    let mut preset = before_tried(model).clone();
     let Some(row) = preset.row(key) else { return Vec::new() };
     let result = match preset.typed(&row, text) {
         // A file is read by those who may wait for it.
@@ -191,6 +209,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     match result {
         Ok(()) => {
             model.untried = None;
+            tell_effect(model, &row.key, &preset);
             change(model, preset)
         }
         Err(invalid) => {
@@ -202,15 +221,49 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
 
 /// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
 pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
-    let before = model.untried.clone().unwrap_or_else(|| Box::new(model.preset.clone()));
+    let before = model.untried.clone().unwrap_or_else(|| {
+        let (preset, mark, journal) = (model.preset.clone(), model.history.mark(), model.journal.clone());
+        Box::new(Untried { preset, mark, journal })
+    });
     let effects = set(model, key, text);
     model.untried = Some(before);
     effects
 }
 
-/// The values before those tried.
+/// The values and the walker's state before those tried.
 pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
-    model.untried.take().map_or_else(Vec::new, |before| change(model, *before))
+    let Some(before) = model.untried.take() else { return Vec::new() };
+    let mut effects = stop(model);
+    model.walking = None;
+    model.history.return_to(before.mark);
+    model.journal = before.journal;
+    model.journal.abandoned();
+    effects.extend(change(model, before.preset));
+    effects
+}
+
+/// The preset before the values tried.
+fn before_tried(model: &Model) -> &Preset {
+    model.untried.as_deref().map_or(&model.preset, |before| &before.preset)
+}
+
+/// Other values for some keys, as one change; those of a file wait for who may read it.
+pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Effect> {
+    let mut preset = before_tried(model).clone();
+    let is_file = |key: &str| preset.row(key).is_some_and(|row| row.kind == Kind::File);
+    if assignments.iter().any(|(key, _)| is_file(key)) {
+        return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
+    }
+    match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
+        Ok(()) => {
+            model.untried = None;
+            change(model, preset)
+        }
+        Err(invalid) => {
+            tell(model, Level::Error, invalid.to_string());
+            Vec::new()
+        }
+    }
 }
 
 /// The rows of a profile were read: they are the gap now.

@@ -2,10 +2,11 @@
 
 use super::values::{adopt_parameters, want_curve};
 use super::{number, tell};
+use crate::explorer::command::Id;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::Effect;
-use crate::explorer::history::{History, Node, NodeKind};
-use crate::explorer::model::{LENGTHS, Level, Model};
+use crate::explorer::history::{Node, NodeKind};
+use crate::explorer::model::{LENGTHS, Level, Model, Walking};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
         return if model.is_computing() { Vec::new() } else { vec![want_curve(model)] };
     };
     let control = curve.setting.case.control;
-    let moves = matches!(action, Action::MoveTo(_) | Action::MoveToLimit(_) | Action::Solve { .. });
+    let moves = matches!(action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Solve { .. });
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {
@@ -52,33 +53,48 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let from = node.map(|node| node.point.clone());
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = number(model);
-    model.walking = Some(id);
+    let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
+    model.walking = Some(Walking { id, made: 0, wanted });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
+    model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
     vec![Effect::Walk(Box::new(Request { id, action, curve, from, on_limit, control, inward, length }))]
 }
 
 pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
-    if model.walking != Some(id) {
-        return Vec::new();
-    }
+    let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else { return Vec::new() };
+    walking.made += made.len();
+    model.journal.made(made.len());
     for state in made {
-        append(model, state);
+        append(model, id, state);
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
+    model.journal.ended(&outcome);
     match outcome {
         Outcome::Done => {}
         Outcome::AtLimit => {
             // A held key stops at the limit point; pressing it again goes on.
             model.queue.retain(|action| !matches!(action, Action::Steps(_)));
         }
+        // The end of a run is no error, but nothing follows from it either.
+        Outcome::Paused => {
+            model.queue.clear();
+            // Otherwise another value ended it, whose curve is to be told of.
+            if !model.is_computing() {
+                tell(model, Level::Info, "paused; Space steps, r runs on");
+            }
+        }
+        Outcome::Ended(reason) => {
+            model.queue.clear();
+            tell(model, Level::Info, reason);
+        }
         Outcome::Stopped(reason) => {
             model.queue.clear();
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
             if unsolved {
-                mark_stale(model, &reason);
+                mark_stale(model, id, &reason);
             }
             tell(model, Level::Error, reason);
         }
@@ -96,19 +112,20 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         return walk(model, Action::Solve { state });
     }
     match model.queue.pop_front() {
+        // It could be asked for on the way, and cannot be done from where the way ended.
+        Some(Action::Jump) if !model.can_jump() => Vec::new(),
         Some(next) => walk(model, next),
         None => Vec::new(),
     }
 }
 
-fn append(model: &mut Model, state: Made) {
-    let step = model.history.current().map_or(0, |node| node.step + 1);
+fn append(model: &mut Model, request: u64, state: Made) {
+    let current = model.history.current();
+    let again = current.is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
+    let beside = state.kind == NodeKind::Solved && again;
+    // A change made further is no further step.
+    let step = current.map_or(0, |node| node.step + usize::from(!beside));
     let step = if state.begins { 0 } else { step };
-    let solved = state.kind == NodeKind::Solved;
-    let again = model
-        .history
-        .current()
-        .is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
     let node = Node {
         parent: None,
         kind: state.kind,
@@ -123,22 +140,25 @@ fn append(model: &mut Model, state: Made) {
         digits: state.digits,
         from_exact: state.from_exact,
         begins: state.begins,
+        request,
     };
     // A knob turned further is one change: the states in between are kept, but undo leads before them.
-    if solved && again { model.history.push_beside(node) } else { model.history.push(node) }
+    if beside { model.history.push_beside(node) } else { model.history.push(node) }
 }
 
 /// A state that could not be solved for the new values stays, marked, with the reason.
-fn mark_stale(model: &mut Model, reason: &str) {
+fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     let Some(node) = model.history.current().cloned() else { return };
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
-    let stale = Node { kind: NodeKind::Stale(reason.to_owned()), step: node.step + 1, begins: false, ..node };
+    let step = node.step + usize::from(!again);
+    let kind = NodeKind::Stale(reason.to_owned());
+    let stale = Node { kind, step, begins: false, request, ..node };
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
-    model.walking.map(Effect::StopWalk).into_iter().collect()
+    model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
@@ -152,13 +172,40 @@ pub(super) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 
-/// Undo and redo: the parameters of the node come back with it.
-pub(super) fn travel(model: &mut Model, go: fn(&mut History) -> bool) -> Vec<Effect> {
-    let mut effects = stop(model);
-    model.walking = None;
-    if go(&mut model.history) {
+/// Undo, undo of a whole command, and redo: the parameters of the node come back with it.
+pub(super) fn travel(model: &mut Model, id: Id) -> Vec<Effect> {
+    let mut effects = abandon(model);
+    let request = model.history.current().map(|node| node.request);
+    let mut has_gone = false;
+    while if id == Id::Redo { model.history.redo() } else { model.history.undo() } {
+        has_gone = true;
+        // One by one: a replay makes its states by other commands.
+        model.journal.travelled(if id == Id::Redo { id } else { Id::Undo }, model.history.current());
+        if id != Id::UndoCommand || model.history.current().map(|node| node.request) != request {
+            break;
+        }
+    }
+    if has_gone {
         effects.extend(adopt_parameters(model));
     }
+    effects
+}
+
+/// Back to the node of this number, which is one before the walker's.
+pub(super) fn travel_to(model: &mut Model, node: usize) -> Vec<Effect> {
+    let mut effects = abandon(model);
+    while model.history.cursor() != Some(node) && model.history.undo() {
+        model.journal.travelled(Id::Undo, model.history.current());
+    }
+    effects.extend(adopt_parameters(model));
+    effects
+}
+
+/// Ends the walk that runs; what it might still make is not waited for.
+pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
+    let effects = stop(model);
+    model.walking = None;
+    model.journal.abandoned();
     effects
 }
 
@@ -167,6 +214,7 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
     let (Some(stiffness), Some(admissibility)) = (curve.sweep.stiffness, curve.sweep.start) else { return };
     let state = curve.setting.equilibrium.state(&point);
     let control = curve.setting.case.control;
+    model.journal.begin(model.source.clone(), curve.setting.preset.clone());
     model.history.push(Node {
         parent: None,
         kind: NodeKind::Start,
@@ -181,5 +229,6 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         digits: curve.sweep.digits,
         from_exact: from_exact(&curve.setting.case, &state),
         begins: true,
+        request: 0,
     });
 }

@@ -2,7 +2,7 @@
 
 use crate::explorer::command::Id;
 use crate::explorer::history::{Node, NodeKind};
-use crate::explorer::model::Model;
+use crate::explorer::model::{Model, Walking};
 use crate::quasistatic::EventKind;
 use crate::report::number::{loss, significant, with_unit};
 use crate::report::unload::{StateReport, control_name};
@@ -12,7 +12,7 @@ use crate::units::Quantity;
 pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
     let apart = model.history.current().is_some_and(Node::is_apart);
     match id {
-        Id::Undo => "this is the start: there is nothing to undo",
+        Id::Undo | Id::UndoCommand => "this is the start: there is nothing to undo",
         Id::Redo => "there is nothing to redo",
         Id::Jump if apart => "the bodies are apart: u goes back, 0 restarts",
         Id::Jump => "the state is stable: the edge stays; n runs to the next limit point",
@@ -26,22 +26,28 @@ pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
     }
 }
 
+/// How far the curve is that takes long.
+fn progress(model: &Model) -> String {
+    model.progress.map_or_else(String::new, |progress| format!(": {}; Esc gives up", progress.text()))
+}
+
 /// What the state is and which key is next.
 pub fn hint(model: &Model) -> String {
     if let Some(error) = &model.curve_error {
         return error.clone();
     }
     let Some(node) = model.history.current() else {
-        return "computing the equilibrium curve".to_owned();
+        return format!("computing the equilibrium curve{}", progress(model));
     };
-    if model.walking.is_some() {
-        return "walking; Esc stops".to_owned();
+    if let Some(Walking { made, wanted, .. }) = model.walking {
+        let of = wanted.filter(|count| *count > 1).map_or_else(String::new, |count| format!(" of {count}"));
+        return format!("walking, {made}{of} states; Esc stops");
     }
     if let NodeKind::Stale(reason) = &node.kind {
         return format!("not solved: {reason}");
     }
     if model.is_computing() {
-        return "computing the curve for the new values".to_owned();
+        return format!("computing the curve for the new values{}", progress(model));
     }
     let Some(control) = model.control() else { return String::new() };
     if let NodeKind::Jump(event) = &node.kind {

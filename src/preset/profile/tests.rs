@@ -1,7 +1,10 @@
 //! Good files, bad files and files damaged at random.
 
 use super::*;
+use crate::contact::Gap;
+use crate::contact::shapes::{Profile, Smoothing};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Ten rows of a paraboloid, parted by `separator`.
 fn rows(separator: &str) -> String {
@@ -156,6 +159,10 @@ fn files_are_regular_and_named_in_errors() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 512, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..ProptestConfig::default()
+    })]
+
     /// Whatever is done to a good file, the answer is a sound profile or an error that names lines.
     #[test]
     fn damage_is_reported_and_never_panics(
@@ -175,18 +182,103 @@ proptest! {
                 _ => bytes.truncate(at),
             }
         }
-        match parse(&bytes) {
-            Ok(columns) => {
-                prop_assert!(ROW_RANGE.contains(&columns.radii.len()));
-                prop_assert_eq!(columns.radii.len(), columns.gaps.len());
-                prop_assert!(columns.radii.is_sorted_by(|a, b| a < b) && columns.radii[0] >= 0.0);
-                prop_assert!(columns.gaps.iter().all(|h| h.is_finite()));
+        sound_or_refused(&bytes);
+    }
+
+    /// Whole rows doubled, moved, cut short or with a cell that no instrument wrote.
+    #[test]
+    fn damaged_rows_are_reported_and_never_panic(
+        separator in prop::sample::select(vec![",", ";", "\t", " "]),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..6_u8), 1..8),
+    ) {
+        let mut lines: Vec<String> = rows(separator).lines().map(str::to_owned).collect();
+        for (place, other, kind) in damage {
+            let [at, to] = [place, other].map(|index| index.index(lines.len()));
+            let line = lines[at].clone();
+            let cell = CELLS[other.index(CELLS.len())];
+            let (radius, gap) = line.split_once(separator).unwrap_or((&line, ""));
+            match kind {
+                0 => lines.insert(to, line),
+                1 => lines.swap(at, to),
+                2 => lines[at] = line.chars().take(other.index(line.chars().count() + 1)).collect(),
+                3 => lines[at] = format!("{cell}{separator}{line}"),
+                4 => lines[at] = format!("{radius}{separator}{cell}"),
+                _ => lines[at] = format!("{cell}{separator}{gap}"),
             }
-            Err(error) => {
-                let text = error.to_string();
-                prop_assert!(text.contains("line ") || text.contains("rows"));
-                prop_assert!(!text.chars().any(|c| c != '\n' && is_unsafe(c)), "{}", text);
+        }
+        sound_or_refused(lines.join("\n").as_bytes());
+    }
+}
+
+/// Cells that no instrument wrote: huge and tiny numbers, other digits, marks of direction, units, formulas.
+const CELLS: &[&str] = &[
+    "1e30",
+    "1e29",
+    "-1e30",
+    "1e308",
+    "1e999",
+    "-1e999",
+    "1e-300",
+    "1e-999",
+    "5e-324",
+    "0",
+    "-0",
+    "nan",
+    "inf",
+    "0x10",
+    "1_000",
+    "1,5",
+    "٣",
+    "３",
+    "½",
+    "−1",
+    "1e５",
+    "\u{202e}1",
+    "1\u{200b}",
+    "\u{feff}1",
+    "\u{a0}1",
+    "e\u{301}",
+    "🦀",
+    "\u{0}",
+    "\u{7}",
+    "\u{1b}[2J",
+    "\u{2028}",
+    "\"",
+    "\"1",
+    "1 um",
+    "=1+1",
+    "#",
+    "//",
+    "",
+    "99999999999999999999999999999999",
+];
+
+/// Sound columns, from which a gap is made or refused in words; or an error that names lines.
+fn sound_or_refused(bytes: &[u8]) {
+    let columns = match parse(bytes) {
+        Ok(columns) => columns,
+        Err(error) => {
+            let text = error.to_string();
+            assert!(text.contains("line ") || text.contains("rows"), "{text}");
+            assert!(!text.chars().any(|c| c != '\n' && is_unsafe(c)), "{text:?}");
+            return;
+        }
+    };
+    assert!(ROW_RANGE.contains(&columns.radii.len()) && columns.radii.len() == columns.gaps.len());
+    assert!(columns.radii.is_sorted_by(|a, b| a < b) && columns.radii[0] >= 0.0);
+    assert!(columns.gaps.iter().all(|h| h.is_finite()));
+    for smoothing in [Smoothing::None, Smoothing::Auto, Smoothing::Cutoff(1.0)] {
+        match Profile::new(&columns.radii, &columns.gaps, smoothing) {
+            Ok(profile) => {
+                let known = profile.largest_radius().unwrap();
+                for share in [0.0, 1e-9, 0.3, 0.999] {
+                    let jet = profile.jet(share * known);
+                    let finite = [jet.value, jet.first, jet.second].iter().all(|x| x.is_finite());
+                    assert!(finite, "{jet:?} {columns:?}");
+                }
+                assert!(profile.feature_length().is_none_or(|length| length > 0.0));
             }
+            Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
 }

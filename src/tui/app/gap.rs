@@ -44,7 +44,7 @@ impl App {
         let key: Key = "gap.shape".into();
         let item = |word: &&str| {
             let meaning = SHAPES.iter().find(|(name, _)| name == word).map_or("", |(_, meaning)| meaning);
-            Item { text: format!("{word:<13} {meaning}"), action: set(&key, *word) }
+            Item::new(format!("{word:<13} {meaning}"), set(&key, *word))
         };
         let selected = words.iter().position(|word| *word == self.model.preset.gap.name()).unwrap_or(0);
         self.choose("Gap", words.iter().map(item).collect(), selected);
@@ -60,20 +60,17 @@ impl App {
     /// The profiles of a folder, and the ways out of it.
     pub(super) fn choose_profile(&mut self, folder: &Folder) {
         let key: Key = "gap.file".into();
-        let go = |text: String, path| Item { text, action: Action::Command(Command::Browse(Some(path))) };
+        let go = |text: String, path| Item::new(text, Action::Command(Command::Browse(Some(path))));
         let up = folder.path.parent().map(|parent| go("../".to_owned(), parent.to_owned()));
         let below = folder.folders.iter().map(|name| go(format!("{name}/"), folder.path.join(name)));
-        let files = folder
-            .files
-            .iter()
-            .map(|name| Item { text: name.clone(), action: set(&key, folder.name_of(name)) });
+        let files = folder.files.iter().map(|name| Item::new(name.clone(), set(&key, folder.name_of(name))));
         let shipped = DATA.iter().map(|data| {
             let name = format!("{SHIPPED_DATA}{}", data.name);
-            Item { text: name.clone(), action: set(&key, name) }
+            Item::new(name.clone(), set(&key, name))
         });
         let note = "a file with the columns r and h";
         let prompt = Prompt::new("Read a profile", note, String::new(), Purpose::Value(key.clone()));
-        let path = Item { text: "a path ...".to_owned(), action: Action::Prompt(Box::new(prompt)) };
+        let path = Item::new("a path ...", Action::Prompt(Box::new(prompt)));
         let selected =
             usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
         let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).collect();

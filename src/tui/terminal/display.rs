@@ -9,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crossterm::{Command, clipboard::CopyToClipboard};
 use ratatui::{
     Frame, Terminal,
     backend::{Backend, ClearType},
@@ -61,13 +62,19 @@ impl Pace {
 /// The screen to draw on.
 pub struct Display<S: Sink + 'static> {
     terminal: Terminal<Screen<S>>,
+    line: &'static S,
     pace: Pace,
     due: Instant,
 }
 
 impl<S: Sink> Display<S> {
     pub(in crate::tui) fn new(line: &'static S) -> io::Result<Self> {
-        Ok(Self { terminal: Terminal::new(Screen::new(line))?, pace: Pace::default(), due: Instant::now() })
+        Ok(Self {
+            terminal: Terminal::new(Screen::new(line))?,
+            line,
+            pace: Pace::default(),
+            due: Instant::now(),
+        })
     }
 
     /// Draws a frame and writes what has changed, in one write; nothing if nothing has.
@@ -91,6 +98,23 @@ impl<S: Sink> Display<S> {
     #[must_use]
     pub fn is_due(&self) -> bool {
         Instant::now() >= self.due
+    }
+
+    /// Takes the mouse from the terminal, or leaves it to it.
+    pub fn take_mouse(&mut self, wanted: bool) {
+        if self.line.take_mouse(wanted).is_err() {
+            end(HUNG_UP);
+        }
+    }
+
+    /// Puts text into the clipboard of the person's terminal, if it takes it (OSC 52).
+    pub fn copy(&mut self, text: &str) {
+        let mut sequence = String::new();
+        // Writing to a string cannot fail.
+        let _ = CopyToClipboard::to_clipboard_from(text).write_ansi(&mut sequence);
+        if self.line.write_frame(sequence.as_bytes()).is_err() {
+            end(HUNG_UP);
+        }
     }
 
     /// Has the next frame draw everything, whatever the terminal shows now.

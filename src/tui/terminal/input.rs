@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crossterm::event::{self, Event, KeyEvent, KeyEventKind};
+use crossterm::event::{self, Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 
 use super::{
     end::{HUNG_UP, end},
@@ -27,6 +27,8 @@ const CAPACITY: usize = 256;
 pub enum Incoming<T> {
     /// A key was pressed or repeats.
     Key(KeyEvent),
+    /// The first button was pressed, or the wheel turned; the place may be outside of the screen.
+    Mouse(MouseEvent),
     /// Text was pasted. It is text, never a command.
     Paste(String),
     /// The window has another size: call [`Display::repaint`](super::Display::repaint) and draw; the frame has the size.
@@ -136,6 +138,7 @@ impl<T: Send + 'static> Inbox<T> {
                 let message = match event::read() {
                     Ok(Event::Key(key)) if key.kind != KeyEventKind::Release => Incoming::Key(key),
                     Ok(Event::Paste(text)) => Incoming::Paste(text),
+                    Ok(Event::Mouse(mouse)) if is_wanted(mouse.kind) => Incoming::Mouse(mouse),
                     // Sizes come from the signal itself: this reader misses one while within a sequence.
                     Ok(_) => continue,
                     Err(_) => end(HUNG_UP),
@@ -159,6 +162,12 @@ impl<T: Send + 'static> Inbox<T> {
             None
         }
     }
+}
+
+/// The mouse does nothing else.
+fn is_wanted(kind: MouseEventKind) -> bool {
+    use MouseEventKind::{Down, ScrollDown, ScrollUp};
+    matches!(kind, Down(MouseButton::Left) | ScrollUp | ScrollDown)
 }
 
 /// A sending end for the program's own messages. Waits while the queue is full.

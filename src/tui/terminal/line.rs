@@ -9,7 +9,7 @@ use std::{
     os::fd::{AsFd, OwnedFd},
     sync::{
         Mutex, MutexGuard, OnceLock, PoisonError, TryLockError,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, AtomicU32, Ordering},
     },
     thread,
     time::{Duration, Instant},
@@ -32,10 +32,16 @@ use super::screen::Sink;
 /// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
 
-/// Undoes everything that [`TAKE`] and a frame can leave on.
+/// Presses and the wheel are reported, with coordinates of any size; not every movement, which a slow line would feel.
+const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1006h";
+
+/// Undoes it.
+const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1000l";
+
+/// Undoes everything that [`TAKE`], [`MOUSE_ON`] and a frame can leave on.
 ///
 /// It starts with CAN, since discarded output may have ended within a sequence.
-const GIVE_BACK: &[u8] = b"\x18\x1b[0m\x1b[?2004l\x1b[?1049l\x1b[?25h";
+const GIVE_BACK: &[u8] = b"\x18\x1b[0m\x1b[?1006l\x1b[?1000l\x1b[?2004l\x1b[?1049l\x1b[?25h";
 
 /// How long giving back may wait: first for a writer in the middle of a write, then for room for [`GIVE_BACK`].
 const PATIENCE: Duration = Duration::from_millis(80);
@@ -55,6 +61,8 @@ pub(super) struct Line {
     before: Mutex<Termios>,
     /// How often the terminal changed hands. Odd: ours. A frame begun under another number is not continued.
     hands: AtomicU32,
+    /// Whether the mouse is wanted.
+    mouse: AtomicBool,
     /// Held for the length of one write.
     turn: Mutex<()>,
 }
@@ -64,7 +72,13 @@ impl Line {
     pub(super) fn open() -> io::Result<&'static Self> {
         let fd = reopen()?;
         let before = tcgetattr(&fd)?;
-        let line = Self { fd, before: Mutex::new(before), hands: AtomicU32::new(0), turn: Mutex::new(()) };
+        let line = Self {
+            fd,
+            before: Mutex::new(before),
+            hands: AtomicU32::new(0),
+            mouse: AtomicBool::new(false),
+            turn: Mutex::new(()),
+        };
         if LINE.set(line).is_err() {
             return Err(io::Error::new(io::ErrorKind::AlreadyExists, "the terminal is already taken"));
         }
@@ -91,7 +105,8 @@ impl Line {
         raw.special_codes[SpecialCodeIndex::VTIME] = 0;
         retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw))?;
         self.hands.fetch_add(if ours { 2 } else { 1 }, Ordering::SeqCst);
-        self.send(TAKE, TAKE_PATIENCE)
+        self.send(TAKE, TAKE_PATIENCE)?;
+        if self.mouse.load(Ordering::SeqCst) { self.send(MOUSE_ON, TAKE_PATIENCE) } else { Ok(()) }
     }
 
     /// Gives the terminal back as it was. From any thread, any number of times, in less than 200 ms.
@@ -220,6 +235,13 @@ impl Sink for Line {
             }
         }
         Ok(())
+    }
+
+    fn take_mouse(&self, wanted: bool) -> io::Result<()> {
+        if self.mouse.swap(wanted, Ordering::SeqCst) == wanted {
+            return Ok(());
+        }
+        self.write_frame(if wanted { MOUSE_ON } else { MOUSE_OFF })
     }
 
     fn size(&self) -> io::Result<(u16, u16)> {

@@ -38,7 +38,7 @@
 //!         match message {
 //!             Incoming::Key(key) => running = key.code != terminal::KeyCode::Char('q'),
 //!             Incoming::Resized | Incoming::Resumed => display.repaint(),
-//!             Incoming::Paste(_) | Incoming::App(_) => {}
+//!             Incoming::Mouse(_) | Incoming::Paste(_) | Incoming::App(_) => {}
 //!         }
 //!         dirty = true;
 //!     }
@@ -62,7 +62,7 @@ mod report;
 mod screen;
 mod signals;
 
-pub use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+pub use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 pub use display::{Display, Pace};
 pub use end::set_last_words;
 pub use guard::{Guard, enter, restore};

@@ -25,6 +25,12 @@ pub trait Sink {
     /// The terminal has gone away.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()>;
 
+    /// Takes the mouse from the terminal or leaves it to it, now and whenever the terminal is taken again.
+    ///
+    /// # Errors
+    /// The terminal has gone away.
+    fn take_mouse(&self, wanted: bool) -> io::Result<()>;
+
     /// Columns and rows.
     ///
     /// # Errors

@@ -3,16 +3,16 @@
 use super::is_selected;
 use super::legend::legend;
 use crate::contact::Control;
-use crate::explorer::{Panel, View, Window};
+use crate::explorer::{Id, Panel, View, Window};
 use crate::figure::{Bounds, Figure, Mark as Placed, Role, Sign, Subject, nearest};
 use crate::report::number::short;
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Mark, Series};
 use crate::tui::stroke::Stroke;
-use crate::tui::theme::{Theme, ink};
+use crate::tui::theme::{Styles, Theme};
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier, Style};
+use ratatui::style::Style;
 
 /// The digits of the pinned curves, by number.
 const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
@@ -24,12 +24,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
         let figure = subject.figure(view);
         let mut chart = chart(&figure, &app.model.window(view), app.theme);
         if first {
-            let hint = format!("  (t: {})", view.further(1).name());
+            let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
             let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
             if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
                 chart.title.push_str(&hint);
             }
-            cross_hair(&subject, view, app.model.cross, &mut chart);
+            cross_hair(&subject, view, app, &mut chart);
         }
         chart
     });
@@ -68,11 +68,11 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
             .lines
             .iter()
             .map(|line| {
-                let (stroke, color) = look(line.role);
-                Series { points: line.points.clone(), color, stroke }
+                let (stroke, style) = look(line.role, theme.styles());
+                Series { points: line.points.clone(), style, stroke }
             })
             .collect(),
-        marks: figure.marks.iter().map(mark).collect(),
+        marks: figure.marks.iter().map(|placed| mark(placed, theme.styles())).collect(),
         cross: None,
         bounds: figure.bounds.part(window),
         legend: legend(figure, theme),
@@ -81,32 +81,31 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
 }
 
 /// The cross-hair, and the state of the curve nearest to it.
-fn cross_hair(subject: &Subject<'_>, view: View, cross: Option<(f64, f64)>, chart: &mut Chart) {
-    chart.cross = cross.map(|share| chart.bounds.at(share));
+fn cross_hair(subject: &Subject<'_>, view: View, app: &App, chart: &mut Chart) {
+    chart.cross = app.model.cross.map(|share| chart.bounds.at(share));
     if let Some(nearest) = chart.cross.and_then(|at| nearest(subject, view, &chart.bounds, at)) {
-        let style = Style::new().fg(ink::WALKER).add_modifier(Modifier::BOLD);
-        chart.marks.push(Mark { at: nearest.at, letter: "*", style });
+        chart.marks.push(Mark { at: nearest.at, letter: "*", style: app.theme.styles().nearest });
     }
 }
 
-/// The stroke and the colour of a line.
-pub fn look(role: Role) -> (Stroke, Color) {
+/// The stroke and the style of a line.
+pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
     match role {
-        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, ink::SMOOTH),
-        Role::Envelope => (Stroke::LongDashed, ink::EXACT),
-        Role::Exact => (Stroke::Dashed, ink::EXACT),
+        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
+        Role::Envelope => (Stroke::LongDashed, styles.exact),
+        Role::Exact => (Stroke::Dashed, styles.exact),
         Role::Pin(number) => {
             let at = number.saturating_sub(1) % DIGITS.len();
-            (Stroke::Lettered(DIGITS[at]), ink::PINS[at])
+            (Stroke::Lettered(DIGITS[at]), styles.pins[at])
         }
-        Role::Unstable => (Stroke::Dotted, ink::UNSTABLE),
-        Role::Stable => (Stroke::Solid, ink::STABLE),
-        Role::Inadmissible => (Stroke::Repeated("!"), ink::MARK),
-        Role::Body => (Stroke::Solid, ink::BODY),
-        Role::Contact | Role::Walk => (Stroke::Solid, ink::WALK),
-        Role::Barrier => (Stroke::Dashed, ink::MARK),
-        Role::Device => (Stroke::ShortDashed, ink::MARK),
-        Role::Jump => (Stroke::Solid, ink::JUMP),
+        Role::Unstable => (Stroke::Dotted, styles.unstable),
+        Role::Stable | Role::Body => (Stroke::Solid, styles.stable),
+        Role::Inadmissible => (Stroke::Repeated("!"), styles.aid),
+        Role::Contact => (Stroke::Marked("c"), styles.walk),
+        Role::Walk => (Stroke::Marked("w"), styles.walk),
+        Role::Barrier => (Stroke::DashDotted, styles.aid),
+        Role::Device => (Stroke::ShortDashed, styles.aid),
+        Role::Jump => (Stroke::Marked("j"), styles.jump),
     }
 }
 
@@ -127,16 +126,14 @@ pub fn letter(sign: Sign) -> &'static str {
     }
 }
 
-fn mark(mark: &Placed) -> Mark {
+fn mark(mark: &Placed, styles: &Styles) -> Mark {
     let style = match mark.sign {
-        Sign::OtherLimit(_) => Style::new().fg(ink::MARK),
-        Sign::Landing => Style::new().fg(ink::JUMP).add_modifier(Modifier::BOLD),
-        Sign::Crest | Sign::Edge => Style::new().fg(ink::SMOOTH),
-        Sign::Limit | Sign::PullOff | Sign::Minimum | Sign::Maximum | Sign::Barrier => {
-            Style::new().fg(ink::MARK).add_modifier(Modifier::BOLD)
-        }
-        Sign::Stray => Style::new().fg(ink::SMOOTH).add_modifier(Modifier::REVERSED),
-        Sign::Walker => Style::new().fg(ink::WALKER).add_modifier(Modifier::BOLD | Modifier::REVERSED),
+        Sign::OtherLimit(_) => styles.aid,
+        Sign::Landing => styles.landing,
+        Sign::Crest | Sign::Edge => styles.smooth,
+        Sign::Limit | Sign::PullOff | Sign::Minimum | Sign::Maximum | Sign::Barrier => styles.mark,
+        Sign::Stray => styles.stray,
+        Sign::Walker => styles.walker,
     };
     Mark { at: mark.at, letter: letter(mark.sign), style }
 }

@@ -29,16 +29,16 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(block, area);
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
     let wide = inner.width >= WIDE;
-    frame.render_widget(Line::styled(theme.text(heads(wide)), theme.dim()), head);
+    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.sweep.critical_force);
+    frame.render_widget(Line::styled(theme.text(&heads(wide, critical)), theme.dim()), head);
     let parts = model.shown_inadmissible();
     if events.is_empty() && parts.is_empty() {
         frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
         return;
     }
-    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.sweep.critical_force);
     let rows = usize::from(body.height);
     let count = events.len() + parts.len();
-    let first = (model.event + 1).saturating_sub(rows).min(count.saturating_sub(rows));
+    let first = first(model, count, rows);
     let here = here(model, &events);
     let hidden = count.saturating_sub(first + rows);
     let texts = events.iter().enumerate().map(|(i, event)| {
@@ -49,7 +49,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         text
     });
     let mut lines: Vec<Line> = texts
-        .chain(parts.iter().map(part))
+        .chain(parts.iter().map(|found| part(found, &model.preset.units, theme.ascii)))
         .enumerate()
         .skip(first)
         .take(rows)
@@ -73,11 +73,26 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), body);
 }
 
+/// The first line shown, so that the selected one is.
+fn first(model: &Model, count: usize, rows: usize) -> usize {
+    (model.event + 1).saturating_sub(rows).min(count.saturating_sub(rows))
+}
+
+/// The line in this row of the screen, in the panel `area`.
+pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
+    // The frame and the heads.
+    let rows = usize::from(area.height.saturating_sub(3));
+    let count = model.shown_events().len() + model.shown_inadmissible().len();
+    let below = usize::from(row.checked_sub(area.y + 2)?);
+    let line = first(model, count, rows) + below;
+    (below < rows && line < count).then_some(line)
+}
+
 /// An inadmissible part of the curve: no event, so it has no number.
-fn part(part: &Inadmissible) -> String {
+fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
     let OverlapReport { crest_wave, .. } = part.report;
     let wave = crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
-    format!(" ! inadmissible {}{wave}", part.report.text())
+    format!(" ! inadmissible {}{wave}", part.report.text(units, ascii))
 }
 
 /// The event of the limit point on which the walker stands.
@@ -138,23 +153,26 @@ fn empty(model: &Model) -> String {
     match (&model.curve, model.events) {
         (None, _) => " computing".to_owned(),
         (Some(_), EventSource::Walked) => " none yet: n runs to a limit point, x takes the jump".to_owned(),
-        (Some(curve), EventSource::Curve) => match &curve.unloading {
-            Err(reason) => format!(" no path: {reason}"),
-            Ok(unloading) => format!(" none: {}", unloading.stop),
+        (Some(curve), EventSource::Curve) => match (&curve.unloading, &curve.report) {
+            (Err(reason), _) => format!(" no path: {reason}"),
+            (Ok(_), report) => format!(" none: {}", report.as_ref().map_or("", |report| &report.stop)),
         },
     }
 }
 
-fn heads(wide: bool) -> &'static str {
-    if wide {
+/// The heads of the columns; without a `P_c` the forces over it are forces.
+fn heads(wide: bool, critical: f64) -> String {
+    let heads = if wide {
         "  # event            δ     after         P     after   P/Pc  after         s     after  crest lost      by area"
     } else {
         "   #          δ   P/Pc  after         s     after  crest lost      event"
-    }
+    };
+    if critical > 0.0 { heads.to_owned() } else { heads.replace("P/Pc", "   P") }
 }
 
 fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
-    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let in_digits = |x, digits| significant(units.shown(Quantity::Length, x).number, digits);
+    let length = |x| in_digits(x, 4);
     let energy = |x| loss(units.shown(Quantity::Energy, x).number);
     let dash = || "-".to_owned();
     let after = event.after.as_ref();
@@ -192,7 +210,7 @@ fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64, wi
         significant(units.shown(Quantity::Force, before.force).number, 4),
         after.map_or_else(dash, |a| significant(units.shown(Quantity::Force, a.force).number, 4)),
         force(before.force),
-        significant(before.contact_radius, 5),
-        after.map_or_else(dash, |a| significant(a.contact_radius, 5)),
+        in_digits(before.contact_radius, 5),
+        after.map_or_else(dash, |a| in_digits(a.contact_radius, 5)),
     )
 }

@@ -1,9 +1,11 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
+use super::fitted;
 use crate::contact::Control;
 use crate::explorer::{Axes, Model};
 use crate::report::number::{significant, with_unit};
 use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
 use crate::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -49,20 +51,53 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             theme.dim(),
         ));
     }
-    let warning = model.curve.as_ref().and_then(|curve| curve.sweep.warnings.first());
+    let warnings = model.curve.iter().flat_map(|curve| &curve.sweep.warnings);
+    let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
     for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
         // A warning needs the room more than what the Problem panel says as well.
-        if let (Some(count), None) = (model.preset.get(key), warning) {
+        if let (Some(count), true) = (model.preset.get(key), warnings.is_empty()) {
             spans.push(Span::raw(format!("  {name} {count}")));
         }
     }
     if model.is_computing() {
-        spans.push(Span::styled("  computing", theme.key().add_modifier(Modifier::BOLD)));
+        let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));
+        spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
     }
-    if let Some(warning) = warning {
-        spans.push(Span::styled(format!("  ! {}", theme.text(warning)), theme.error()));
+    let used: usize = spans.iter().map(Span::width).sum();
+    let room = usize::from(area.width).saturating_sub(used + 2);
+    if let Some(text) = warned(&app.keymap, &warnings, room) {
+        spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
         spans.push(Span::styled(format!("  {}", theme.text(&model.preset.title)), theme.dim()));
     }
     frame.render_widget(Line::from(spans), area);
+}
+
+/// The first warning, as much of it as `room` holds, and the key that tells the rest.
+fn warned(keymap: &Keymap, warnings: &[String], room: usize) -> Option<String> {
+    let (first, others) = warnings.split_first()?;
+    let more = if others.is_empty() { String::new() } else { format!("+{}", others.len()) };
+    Some(fitted(keymap, &format!("! {first}"), &more, room))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_that_is_cut_says_where_the_rest_is() {
+        let warnings = |all: &[&str]| all.iter().map(ToString::to_string).collect::<Vec<_>>();
+        assert_eq!(warned(&Keymap::default(), &[], 40), None);
+        assert_eq!(
+            warned(&Keymap::default(), &warnings(&["too coarse"]), 12).as_deref(),
+            Some("! too coarse")
+        );
+        for (all, room, text) in [
+            (&["much too coarse"][..], 16, "! much... ?: all"),
+            (&["coarse", "sharp"], 40, "! coarse... +1 ?: all"),
+            (&["coarse", "sharp"], 3, "... +1 ?: all"),
+        ] {
+            assert_eq!(warned(&Keymap::default(), &warnings(all), room).as_deref(), Some(text));
+        }
+    }
 }

@@ -1,12 +1,14 @@
 //! The help, read from the one table of commands.
 
 use super::panel;
+use crate::explorer::Model;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;
-use crate::tui::keymap;
+use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
@@ -20,13 +22,27 @@ const READING: &[&str] = &[
     "Views follow each other with t: three of the curve, then the pressure in the disc, the gap outside it and the",
     "potential over the radius at the walker's state, and the unloading with its losses hatched. In the potential",
     "m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the crests.",
+    "Along the curve w marks the states walked and j a jump; letters and dashes tell lines apart without colour.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
     "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
 ];
 
-fn text(theme: Theme) -> Vec<Line<'static>> {
-    let mut lines = Vec::new();
+/// What narrow screens cut elsewhere, whole: the status, warnings, notes.
+fn now(theme: Theme, model: &Model) -> Vec<Line<'static>> {
+    let mut lines = vec![Line::default(), Line::styled("Now", theme.strong())];
+    lines.push(Line::raw(format!("  {}", theme.text(&model.status().1))));
+    if let Some(curve) = &model.curve {
+        let line = |text: &String, style| Line::styled(format!("  {}", theme.text(text)), style);
+        lines.extend(curve.sweep.warnings.iter().map(|text| line(&format!("! {text}"), theme.error())));
+        lines.extend(curve.sweep.notes.iter().map(|text| line(text, Style::new())));
+    }
+    lines
+}
+
+fn text(app: &App) -> Vec<Line<'static>> {
+    let (theme, keymap) = (app.theme, &app.keymap);
+    let mut lines = now(theme, &app.model);
     let mut section = "";
     for row in ROWS {
         if row.section != section {
@@ -35,7 +51,7 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
             lines.push(Line::styled(section, theme.strong()));
         }
         lines.push(Line::from(vec![
-            Span::styled(format!("  {:<18}", keymap::label(row.id)), theme.key()),
+            Span::styled(format!("  {:<18}", keymap.label(row.id)), theme.key()),
             Span::raw(row.help),
         ]));
     }
@@ -50,26 +66,42 @@ fn text(theme: Theme) -> Vec<Line<'static>> {
     lines
 }
 
-/// How far the help can be scrolled.
-pub fn lines() -> u16 {
-    /// As many rows as a line may take on the narrowest screen.
-    const WRAPPED: usize = 3;
-    u16::try_from(WRAPPED * text(Theme { ascii: true }).len()).unwrap_or(u16::MAX)
+/// The lines as they are searched.
+pub fn plain(app: &App) -> Vec<String> {
+    text(app).iter().map(Line::to_string).collect()
 }
 
-/// Draws the help over the screen, scrolled by so many lines.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, scroll: u16) {
+fn title(help: &Help) -> String {
+    match (&help.typing, help.found) {
+        (Some(input), _) => format!("Help  /{}_", input.value()),
+        (None, Some((_, at, of))) => format!("Help  /{}: {at} of {of}, n and N go on", help.pattern),
+        (None, None) if help.pattern.is_empty() => {
+            "Help: up and down scroll, / searches, Esc closes".to_owned()
+        }
+        (None, None) => format!("Help  /{}: not found", help.pattern),
+    }
+}
+
+/// Draws the help over the screen, from its first line shown on.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
-    let lines = text(theme);
+    let mut lines = text(app);
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
-    let block = panel(theme, "Help: up and down scroll, Esc closes", true);
+    let block = panel(theme, &title(help), true);
     let inner = block.inner(area);
-    // Wrapped lines take more rows than there are lines: narrow screens may scroll that much further.
-    let rows: usize =
-        lines.iter().map(|line| line.width().div_ceil(usize::from(inner.width.max(1))).max(1)).sum();
-    let last = u16::try_from(rows).unwrap_or(u16::MAX).saturating_sub(inner.height);
+    if let Some(found) = help.found.and_then(|(line, ..)| lines.get_mut(line)) {
+        *found = Line::styled(found.to_string(), theme.selection());
+    }
+    // A wrapped line takes several rows: no further than where the last rows fill the screen.
+    let rows = |line: &Line<'_>| line.width().div_ceil(usize::from(inner.width.max(1))).max(1);
+    let mut room = usize::from(inner.height);
+    let mut last = lines.len();
+    while last > 0 && room >= rows(&lines[last - 1]) {
+        last -= 1;
+        room -= rows(&lines[last]);
+    }
+    let shown = lines.split_off(help.line.min(last));
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
-    let text = Paragraph::new(lines).wrap(Wrap { trim: false });
-    frame.render_widget(text.scroll((scroll.min(last), 0)), inner);
+    frame.render_widget(Paragraph::new(shown).wrap(Wrap { trim: false }), inner);
 }

@@ -4,8 +4,7 @@ use super::charts::{letter, look};
 use crate::contact::Control;
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
-use crate::tui::stroke::Stroke;
-use crate::tui::theme::Theme;
+use crate::tui::theme::{Palette, Theme};
 
 /// The legends of a figure, each shorter than the one before: the least wanted words go first.
 pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
@@ -18,12 +17,10 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
     let mut lines: Vec<_> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
     // Stable first, overlays behind, pins last.
     lines.sort_by_key(|line| std::cmp::Reverse(line.role));
-    lines.sort_by_key(|line| rank(line.role) == 0);
+    lines.sort_by_key(|line| rank(line.role, theme) == 0);
     for line in lines {
-        if !matches!(line.role, Role::Walk | Role::Jump) {
-            let (stroke, _) = look(line.role);
-            add(rank(line.role), format!("{} {}", glyph(stroke, theme), theme.symbols(&line.name)));
-        }
+        let (stroke, _) = look(line.role, theme.styles());
+        add(rank(line.role, theme), format!("{} {}", stroke.glyph(theme), theme.symbols(&line.name)));
     }
     for mark in &figure.marks {
         if let Some((rank, word)) = meaning(mark.sign) {
@@ -40,8 +37,10 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
 }
 
 /// How much a line's name is wanted, 0 the most.
-fn rank(role: Role) -> u8 {
+fn rank(role: Role, theme: Theme) -> u8 {
     match role {
+        // What colour would tell needs a word without it.
+        Role::Stable | Role::Unstable if theme.palette == Palette::Mono => 1,
         Role::Pin(_) => 0,
         Role::Inadmissible
         | Role::Exact
@@ -50,6 +49,7 @@ fn rank(role: Role) -> u8 {
         | Role::Barrier
         | Role::Device => 1,
         Role::Smooth => 3,
+        Role::Walk | Role::Jump => 5,
         _ => 4,
     }
 }
@@ -72,19 +72,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     })
 }
 
-fn glyph(stroke: Stroke, theme: Theme) -> &'static str {
-    match stroke {
-        Stroke::Solid => theme.glyph("━", "o"),
-        Stroke::Dotted => theme.glyph("┈", "."),
-        Stroke::Sparse => theme.glyph("· ·", ". ."),
-        Stroke::Dashed => theme.glyph("╌", "--"),
-        Stroke::ShortDashed => theme.glyph("┅", "::"),
-        Stroke::LongDashed => theme.glyph("━ ━", "~~"),
-        Stroke::Lettered(letter) | Stroke::Repeated(letter) => letter,
-    }
-}
-
-/// The cross-hair in words: both coordinates, and on a curve the nearest state.
+/// The cross-hair in words: on a curve the state near to it, then both coordinates.
 pub fn reading(model: &Model) -> Option<String> {
     let (share, view) = (model.cross?, model.view);
     let subject = Subject::of(model)?;
@@ -93,7 +81,8 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     Some(match nearest(&subject, view, &bounds, at) {
-        Some(nearest) => format!("+ {here}; * {}", nearest.text(&subject.curve.setting.preset.units)),
+        // What it is first: that is new, and narrow screens cut the end.
+        Some(nearest) => format!("* {}; + {here}", nearest.text(&subject.curve.setting.preset.units)),
         None => format!("+ {here}"),
     })
 }

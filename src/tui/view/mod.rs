@@ -11,10 +11,11 @@ pub mod status;
 pub mod walker;
 
 use super::app::App;
-use super::layout::{SMALLEST, regions};
+use super::keymap::Keymap;
+use super::layout::{Regions, SMALLEST, regions};
 use super::overlay::Overlay;
 use super::theme::Theme;
-use crate::explorer::Panel;
+use crate::explorer::{Id, Panel};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -27,8 +28,7 @@ const PARTS: usize = 3;
 pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
-    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
-    let Some(regions) = regions(area, app.model.view, events) else {
+    let Some(regions) = places(app, area) else {
         let (width, height) = SMALLEST;
         let text = format!("pulloff needs {width}x{height}, this is {}x{}", area.width, area.height);
         frame.render_widget(Line::raw(text), Rect { height: area.height.min(1), ..area });
@@ -50,10 +50,16 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     status::draw(frame, regions.status, regions.footer, app);
     match &app.overlay {
         None => {}
-        Some(Overlay::Help(scroll)) => help::draw(frame, area, app, *scroll),
+        Some(Overlay::Help(shown)) => help::draw(frame, area, app, shown),
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
     regions.charts.len()
+}
+
+/// Where the regions of a screen of this size are.
+pub fn places(app: &App, area: Rect) -> Option<Regions> {
+    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
+    regions(area, app.model.view, events)
 }
 
 /// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
@@ -66,12 +72,23 @@ fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
     Block::bordered()
         .border_set(theme.border())
         .border_style(theme.frame(selected))
-        .title(Span::styled(theme.text(title), theme.strong()))
+        .title(Span::styled(theme.text(title), theme.title(selected)))
 }
 
 /// Whether a panel is the selected one, and nothing lies over it.
 fn is_selected(app: &App, panel: Panel) -> bool {
     app.model.panel == panel && app.overlay.is_none()
+}
+
+/// `text` as far as there is room for it; where it is cut, or more is to be told, the key of the help, which has all.
+fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> String {
+    if more.is_empty() && text.chars().count() <= room {
+        return text.to_owned();
+    }
+    let rest = if more.is_empty() { "...".to_owned() } else { format!("... {more}") };
+    let rest = format!("{rest} {}: all", keymap.label(Id::Help));
+    let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
+    format!("{}{rest}", kept.trim_end())
 }
 
 /// `key value` with the key dim.

@@ -6,7 +6,7 @@ use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Confirm, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
 use ratatui::Frame;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
@@ -41,7 +41,7 @@ fn lower(area: Rect, width: u16, height: u16) -> Rect {
 }
 
 fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
-    let place = if matches!(prompt.purpose, Purpose::Formula(_)) { lower } else { middle };
+    let place = if matches!(prompt.purpose, Purpose::Formula(_) | Purpose::Line) { lower } else { middle };
     let area = place(area, 76, if prompt.error.is_some() { 7 } else { 5 });
     let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
@@ -73,11 +73,30 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
     }
 }
 
-fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
+/// Where a list lies on the screen.
+fn place_of(choose: &Choose, area: Rect) -> Rect {
     let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
     let (width, height) = if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (76, height) };
-    let area = middle(area, width, height);
-    let block = panel(theme, &format!("{}: Enter takes, Esc closes", choose.title), true);
+    middle(area, width, height)
+}
+
+/// The first line of it shown in so many rows.
+fn first(choose: &Choose, rows: usize) -> usize {
+    (choose.selected + 1).saturating_sub(rows)
+}
+
+/// The line of a list at this place of the screen.
+pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
+    let inner = place_of(choose, area).inner(Margin::new(1, 1));
+    let line = first(choose, usize::from(inner.height)) + usize::from(at.y.checked_sub(inner.y)?);
+    (inner.contains(at) && line < choose.items.len()).then_some(line)
+}
+
+fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
+    let area = place_of(choose, area);
+    let can_delete = choose.items.get(choose.selected).is_some_and(|item| item.delete.is_some());
+    let delete = if can_delete { ", D deletes" } else { "" };
+    let block = panel(theme, &format!("{}: Enter takes{delete}, Esc closes", choose.title), true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
@@ -90,7 +109,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         inner.width = LIST;
     }
     let rows = usize::from(inner.height);
-    let first = (choose.selected + 1).saturating_sub(rows);
+    let first = first(choose, rows);
     let lines: Vec<Line> = choose
         .items
         .iter()
@@ -108,7 +127,9 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
 }
 
 fn draw_confirm(frame: &mut Frame<'_>, area: Rect, theme: Theme, confirm: &Confirm) {
-    let area = middle(area, 70, 5);
+    // A long path takes more lines.
+    let lines = u16::try_from(confirm.question.chars().count() / 60).unwrap_or(u16::MAX);
+    let area = middle(area, 70, 5u16.max(lines.saturating_add(3)));
     let block = panel(theme, "Sure?", true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);

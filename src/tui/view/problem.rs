@@ -2,8 +2,8 @@
 
 use super::{is_selected, pair, side_panel};
 use crate::contact::{Control, Groups};
-use crate::explorer::Panel;
-use crate::preset::{Parameter, Value};
+use crate::explorer::{Model, Panel};
+use crate::preset::{Parameter, Row, Value, groups};
 use crate::report::number::{short, with_unit};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -13,52 +13,76 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
-/// Draws the parameters and the groups.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+/// Parameters that are seen above the groups, unless one of these is selected.
+const ABOVE: usize = 5;
+
+/// How the panel is filled.
+struct Arranged {
+    /// Inside the frame, which takes the top line and the left column.
+    inner: Rect,
+    /// How many parameters there are, the groups behind them not counted.
+    parameters: usize,
+    /// The first one shown: the list scrolls so that the selected line is seen.
+    first: usize,
+    /// So many lines have parameters.
+    rows: usize,
+    /// The lines below.
+    groups: Vec<Line<'static>>,
+}
+
+fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let (model, theme) = (&app.model, app.theme);
     let selected = is_selected(app, Panel::Problem);
-    // The frame takes the top line and the left column.
     let inner = Rect {
         x: area.x + 1,
         y: area.y + 1,
         width: area.width.saturating_sub(1),
         height: area.height.saturating_sub(1),
     };
-    let groups =
-        group_lines(theme, &Groups::of(&model.preset.problem(), model.preset.range_of_action()), inner.width);
-    let knobs = model.knobs();
-    // The groups stand below as far as there is room for five parameters above them.
-    let shown_groups = groups.len().min(usize::from(inner.height).saturating_sub(knobs.len().min(5)));
-    let rows = usize::from(inner.height).saturating_sub(shown_groups);
-    let title = if rows < knobs.len() {
-        format!("Problem {}/{}", model.parameter + 1, knobs.len())
+    // The groups that can be set stand behind the parameters, among those that cannot.
+    let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
+    let chosen = model.selected_knob().filter(|_| selected).map(|(row, _)| row.key.clone());
+    let in_groups = model.parameter >= parameters && selected;
+    let mut groups = group_lines(theme, model, &all[parameters..], chosen.as_deref(), inner.width);
+    let height = usize::from(inner.height);
+    // Both are seen in part where they have no room; what is selected, whole.
+    let above = if in_groups { 2 } else { ABOVE };
+    groups.truncate(height.saturating_sub(parameters.min(above)));
+    let rows = height - groups.len();
+    let first = (model.parameter + 1).saturating_sub(rows).min(parameters.saturating_sub(rows));
+    Arranged { inner, parameters, first, rows, groups }
+}
+
+/// Draws the parameters and the groups.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, app.theme);
+    let selected = is_selected(app, Panel::Problem);
+    let all = model.knobs();
+    let Arranged { inner, parameters, first, rows, groups } = arrange(app, area, &all);
+    let title = if rows < parameters {
+        format!("Problem {}/{}", model.parameter + 1, all.len())
     } else {
         "Problem".to_owned()
     };
     frame.render_widget(side_panel(theme, &title, selected), area);
-    // The list scrolls so that the selected line is seen.
-    let first = (model.parameter + 1).saturating_sub(rows).min(knobs.len().saturating_sub(rows));
-    let mut lines: Vec<Line> = knobs
-        .iter()
-        .enumerate()
-        .skip(first)
-        .take(rows)
+    let units = &model.preset.units;
+    let shown = all[..parameters].iter().enumerate().skip(first).take(rows);
+    let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
-            knob_line(
-                theme,
-                &model.preset.units,
-                row,
-                value.as_ref(),
-                i == model.parameter && selected,
-                inner.width,
-            )
+            knob_line(theme, units, row, value.as_ref(), i == model.parameter && selected, inner.width)
         })
         .collect();
-    while lines.len() < rows {
-        lines.push(Line::default());
-    }
-    lines.extend(groups.into_iter().take(shown_groups));
+    lines.resize(rows, Line::default());
+    lines.extend(groups);
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The parameter in this row of the screen, in the panel `area`.
+pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
+    let Arranged { inner, parameters, first, rows, .. } = arrange(app, area, &app.model.knobs());
+    let below = usize::from(row.checked_sub(inner.y)?);
+    let line = first + below;
+    (below < rows && line < parameters).then_some(line)
 }
 
 fn knob_line(
@@ -69,7 +93,14 @@ fn knob_line(
     selected: bool,
     width: u16,
 ) -> Line<'static> {
-    let shown = |quantity, x, digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
+    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
+    let label = format!("{mark}{:<9} ", theme.symbols(&row.label));
+    let room = usize::from(width).saturating_sub(label.chars().count() + ends.len());
+    // As many digits as there is room for, so that no unit is cut.
+    let shown = |quantity, x, most: usize| {
+        let text = |digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
+        (4..=most).rev().map(text).find(|text| text.chars().count() <= room).unwrap_or_else(|| text(3))
+    };
     let text = match value {
         None => "auto".to_owned(),
         Some(Value::Number(x)) => shown(row.quantity, *x, 7),
@@ -78,31 +109,47 @@ fn knob_line(
         }
         Some(value) => theme.text(&value.to_string()),
     };
-    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
-    let room = usize::from(width).saturating_sub(10 + ends.len());
+    // A word is worth more than the sign that it can be turned.
+    let (ends, room) = if text.chars().count() > room { ("", room + ends.len()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
-    let line = format!("{mark}{:<8} {text}{ends}", theme.symbols(&row.label));
+    let line = format!("{label}{text}{ends}");
     let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }
 
-fn group_lines(theme: Theme, groups: &Groups, width: u16) -> Vec<Line<'static>> {
-    let mut items: Vec<(&str, f64)> = Vec::new();
-    let mut add = |name, value: Option<f64>| items.extend(value.map(|value| (name, value)));
-    add("A/λ ", groups.amplitude_over_wavelength);
-    add("λ/R ", groups.wavelength_over_radius);
-    add("λ²/AR ", groups.connectivity);
-    add("γ' ", groups.adhesion);
-    add("α ", groups.johnson);
-    add("μ ", groups.tabor);
+/// The groups, as many on a line as fit; the one with the key `chosen` is selected.
+fn group_lines(
+    theme: Theme,
+    model: &Model,
+    settable: &[(Row, Option<Value>)],
+    chosen: Option<&str>,
+    width: u16,
+) -> Vec<Line<'static>> {
+    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
+    let mut items: Vec<(String, f64, bool)> = settable
+        .iter()
+        .filter_map(|(row, value)| match value {
+            Some(Value::Number(x)) => Some((theme.symbols(&row.label), *x, chosen == Some(&row.key))),
+            _ => None,
+        })
+        .collect();
+    for (name, value) in [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)] {
+        items.extend(value.map(|value| (theme.text(name), value, false)));
+    }
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
-    for (name, value) in items {
-        let spans: Vec<Span<'static>> = pair(theme, name, &format!("{}  ", short(value, 4))).to_vec();
+    for (name, value, is_chosen) in items {
+        let spans = if is_chosen {
+            vec![Span::styled(format!(">{name} {} < >", short(value, 4)), theme.selection()), Span::raw(" ")]
+        } else {
+            let [name, value] = pair(theme, &format!(" {name} "), &format!("{} ", short(value, 4)));
+            vec![name, value]
+        };
         let length: usize = spans.iter().map(Span::width).sum();
-        if used.saturating_add(length) > usize::from(width) + 2 {
-            lines.push(Line::from(" "));
-            used = 1;
+        // The blank behind the last one may be cut.
+        if used.saturating_add(length) > usize::from(width) + 1 {
+            lines.push(Line::default());
+            used = 0;
         }
         used += length;
         if let Some(line) = lines.last_mut() {

@@ -1,11 +1,11 @@
 //! What the state is and which key is next; and the keys.
 
+use super::fitted;
 use super::legend::reading;
 use crate::explorer::Id;
 use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
 use crate::tui::app::App;
-use crate::tui::keymap;
 use crate::tui::overlay::Overlay;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -33,6 +33,7 @@ const FOOTER: &[Id] = &[
     Id::Run,
     Id::Reverse,
     Id::Restart,
+    Id::CommandLine,
 ];
 
 /// Draws the status line and the footer.
@@ -40,13 +41,17 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let theme = app.theme;
     // The cross-hair is read while nothing else is to be told.
     let reading = if app.model.message.is_none() { reading(&app.model) } else { None };
+    let is_reading = reading.is_some();
     let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
-    let count = app.count.map_or_else(String::new, |count| format!("{count} "));
-    let line = Line::from(vec![
-        Span::styled(format!(" {count}"), theme.key()),
-        Span::styled(theme.text(&text), style),
-    ]);
+    let count = app.count.map_or_else(|| " ".to_owned(), |count| format!(" {count} "));
+    let room = usize::from(status.width).saturating_sub(count.len());
+    // The help has the status whole, and can be opened while nothing else is open.
+    let text = match theme.text(&text) {
+        text if app.overlay.is_some() || is_reading => text,
+        text => fitted(&app.keymap, &text, "", room),
+    };
+    let line = Line::from(vec![Span::styled(count, theme.key()), Span::styled(text, style)]);
     frame.render_widget(line, status);
 
     let mut spans = vec![Span::raw(" ")];
@@ -65,7 +70,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
         if app.overlay.is_none() && !(row.enabled)(&app.model) {
             continue;
         }
-        let key = keymap::keys(id).first().map_or_else(String::new, |key| key.label());
+        let key = app.keymap.first(id);
         let word = match (id, &app.overlay) {
             (Id::Edit, Some(_)) => "accept",
             _ => row.short,

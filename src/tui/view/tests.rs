@@ -1,20 +1,28 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
-use crate::explorer::{Command, Id, Inline, Panel, View};
+use crate::explorer::{Command, Id, Inline, Panel, View, update};
+mod looks;
+mod reach;
+
 use crate::preset::Store;
 use crate::tui::app::App;
-use crate::tui::theme::Theme;
+use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 
+mod line;
+
+/// Dark, and in ASCII.
+const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, ascii: true };
+
 /// The explorer with its effects done inline.
 struct Screen {
     app: App,
     driver: Inline,
-    _folder: tempfile::TempDir,
+    folder: tempfile::TempDir,
 }
 
 impl Screen {
@@ -22,8 +30,8 @@ impl Screen {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
-        let (app, effects) = App::new(loaded, Theme { ascii: false });
-        (Self { app, driver: Inline::new(store), _folder: folder }, effects)
+        let (app, effects) = App::new(loaded, Theme::default());
+        (Self { app, driver: Inline::new(store), folder }, effects)
     }
 
     fn new(preset: &str) -> Self {
@@ -181,7 +189,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     }
     assert_eq!(text.matches("(t: radius-force)").count(), 1);
     // A jump's loss is hatched, in ASCII as well.
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
     screen.keys("T");
@@ -215,7 +223,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("i");
     let text = screen.text(120, 40);
-    assert!(text.contains("+ δ ") && text.contains("; * δ ") && text.contains("stable"), "{text}");
+    assert!(text.contains("* δ ") && text.contains("; + δ ") && text.contains("stable"), "{text}");
     let before = screen.app.model.cross;
     screen.press(KeyCode::Up);
     screen.press(KeyCode::Right);
@@ -228,7 +236,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     // On a view of the state only its own coordinates.
     screen.keys("ttt");
     let text = screen.text(120, 40);
-    assert!(text.contains("+ r/λ ") && !text.contains("; * δ "), "{text}");
+    assert!(text.contains("+ r/λ ") && !text.contains("* δ "), "{text}");
     screen.keys("\x1b");
     assert!(screen.app.model.cross.is_none());
 }
@@ -251,7 +259,7 @@ fn pins_are_listed_and_taken_away_one_by_one() {
 #[test]
 fn an_ascii_terminal_gets_nothing_else() {
     let mut screen = Screen::new("wavy-sphere");
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     for keys in ["", "n", "x", "t", "?", "\x1bo", "\x1b\r", "\x1bp}i+", "tttttty\r", "\x1bP"] {
         screen.keys(keys);
         for (width, height) in [(80, 24), (120, 40)] {
@@ -289,7 +297,7 @@ fn inadmissible_parts_need_no_colour() {
     let effects = crate::explorer::update(&mut screen.app.model, weak);
     screen.settle(effects);
     for ascii in [false, true] {
-        screen.app.theme = Theme { ascii };
+        screen.app.theme = if ascii { PLAIN } else { Theme::default() };
         let text = screen.text(160, 50);
         // In the legend and in the log; the others stand on the curves.
         let told = text.matches("! inadmissible").count();
@@ -386,7 +394,7 @@ fn shapes_are_chosen_by_their_pictures() {
             screen.draw(width, height);
         }
     }
-    screen.app.theme = Theme { ascii: true };
+    screen.app.theme = PLAIN;
     let text = screen.text(100, 30);
     assert!(text.is_ascii() && text.contains("> exact-sphere  R - sqrt(R2 - r2), up to R"), "{text}");
     let row = text.lines().find(|line| line.contains("random-waves")).unwrap();
@@ -437,4 +445,58 @@ fn a_formula_shows_where_it_is_wrong() {
     screen.keys("\r");
     assert!(screen.app.model.preset.get("gap.formula").unwrap().to_string().ends_with("lambda)) + 0*r"));
     assert!(screen.app.model.untried.is_none() && screen.app.model.is_unsaved());
+}
+
+#[test]
+fn a_warning_cut_in_the_header_is_whole_in_the_help() {
+    let mut screen = Screen::new("wavy-sphere");
+    for (key, text) in [("basis.kind", "rings"), ("basis.rings", "40")] {
+        let effects = update(&mut screen.app.model, Command::Set { key: key.into(), text: text.to_owned() });
+        screen.settle(effects);
+    }
+    let warning = screen.app.model.curve.as_ref().unwrap().sweep.warnings[0].clone();
+    let text = screen.text(80, 24);
+    assert!(text.lines().next().unwrap().ends_with("... ?: all"), "{text}");
+    assert!(!text.contains(&warning));
+    screen.keys("?");
+    let unwrapped: String = screen.text(80, 24).chars().filter(|c| !c.is_whitespace() && *c != '│').collect();
+    let wanted: String = warning.chars().filter(|c| !c.is_whitespace()).collect();
+    assert!(unwrapped.contains(&wanted), "{unwrapped}");
+}
+
+#[test]
+fn groups_are_selected_where_they_stand() {
+    let mut screen = Screen::new("wavy-sphere");
+    let knobs = screen.app.model.knobs().len();
+    for (key, label) in [("amplitude_over_wavelength", ">A/λ 0.05 < >"), ("adhesion", ">γ' 0.025 < >")] {
+        screen.app.model.parameter = 0;
+        screen.keys(&"j".repeat(knobs));
+        while screen.app.model.selected_knob().unwrap().0.key != format!("groups.{key}") {
+            screen.keys("k");
+        }
+        for (width, height) in [(80, 24), (100, 30), (200, 60)] {
+            let buffer = screen.draw(width, height);
+            assert!(find(&buffer, label).modifier.contains(Modifier::REVERSED), "{label} {width}x{height}");
+        }
+    }
+    screen.keys(">");
+    assert!(screen.text(80, 24).contains(">γ' 0.02525 < >"), "{}", screen.text(80, 24));
+}
+
+#[test]
+fn every_column_of_the_events_is_in_its_unit() {
+    let screen = Screen::new("fig-9-si");
+    for (width, radius) in [(80, " 2459 "), (120, " 2459.2 ")] {
+        let text = screen.text(width, 40);
+        assert!(text.contains("in µm") && text.contains(radius), "{text}");
+    }
+    let mut rough = Screen::new("fig-9-si");
+    rough.keys("\r").keys("40\r");
+    let text = rough.text(120, 60);
+    assert!(text.contains("! inadmissible s = ") && text.contains("at the crest r = "), "{text}");
+    let part = text.lines().find(|line| line.contains("! inadmissible s = ")).unwrap();
+    assert_eq!(part.matches(" µm").count(), 3, "{part}");
+    // A cone has no P_c: its forces are forces, and the head says so.
+    let text = Screen::new("cone").text(80, 24);
+    assert!(!text.contains("P/Pc") && text.contains("-0.000239"), "{text}");
 }

@@ -101,8 +101,7 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     if let Some(crest) = wave_index(s, wave) {
         last.extend(pair(theme, " crest ", &crest.to_string()));
     }
-    last.extend(pair(theme, " iter ", &node.point.rounds.to_string()));
-    last.extend(pair(theme, " dig. ", &fixed(node.digits, 1)));
+    last.extend(pair(theme, " digits ", &fixed(node.digits, 1)));
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
     lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
@@ -122,17 +121,16 @@ fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
-/// `P_δ`, dP/dδ and dA/dδ.
-fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 2] {
+/// dP/dδ, `P_δ` and dA/dδ; and the iterations, which nobody needs where there is no room.
+fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 3] {
     let stiffness = node.stiffness.in_units(node.setting.case.units());
     // At a limit point of the approach the slopes have no bound.
     let slope = |quantity, x: f64| {
         if x.is_infinite() { "infinite".to_owned() } else { shown(theme, node, quantity, x, 4) }
     };
-    let mut tangent = pair(theme, " dP/dδ ", &slope(Quantity::ForcePerLength, stiffness.tangent)).to_vec();
-    tangent.extend(pair(theme, "  s held ", &slope(Quantity::ForcePerLength, stiffness.contact)));
-    [
-        Line::from(tangent),
-        Line::from(pair(theme, " dA/dδ ", &slope(Quantity::Length, stiffness.area_slope)).to_vec()),
-    ]
+    let tangent = pair(theme, " dP/dδ ", &slope(Quantity::ForcePerLength, stiffness.tangent));
+    let contact = pair(theme, "   with s held ", &slope(Quantity::ForcePerLength, stiffness.contact));
+    let mut area = pair(theme, " dA/dδ ", &slope(Quantity::Length, stiffness.area_slope)).to_vec();
+    area.extend(pair(theme, "  iterations ", &node.point.rounds.to_string()));
+    [Line::from(tangent.to_vec()), Line::from(contact.to_vec()), Line::from(area)]
 }

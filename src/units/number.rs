@@ -1,6 +1,6 @@
 //! How numbers are written for people.
 
-use crate::units::{Quantity, UnitSystem};
+use super::{Quantity, UnitSystem};
 
 /// `x` with `digits` significant digits: plain where that is short, with an exponent otherwise.
 pub fn significant(x: f64, digits: usize) -> String {
@@ -59,6 +59,11 @@ pub fn with_unit(
 ) -> String {
     let shown = units.shown(quantity, x);
     shown.text(&number(shown.number), ascii)
+}
+
+/// A value as a message tells it: six digits, in ASCII, since a message may go anywhere.
+pub fn said(units: &UnitSystem, quantity: Quantity, x: f64) -> String {
+    with_unit(units, quantity, x, true, |x| short(x, 6))
 }
 
 #[cfg(test)]

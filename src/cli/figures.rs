@@ -1,0 +1,54 @@
+//! `pulloff figures`: every figure of the paper, computed again.
+
+use super::{Failure, output};
+use crate::plot::{Width, paper, svg, table};
+use crate::preset::{Overwrite, write_atomically};
+use clap::Args;
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The arguments of `pulloff figures`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The folder they are written to: for each figure its numbers as CSV and its picture as SVG, and captions.md
+    #[arg(short, value_name = "DIR", default_value = "figures")]
+    output: PathBuf,
+    /// Write the pictures as PNG too
+    #[cfg(feature = "png")]
+    #[arg(long)]
+    png: bool,
+}
+
+/// The captions, in this file.
+const CAPTIONS: &str = "captions.md";
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let folder = &arguments.output;
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::Usage(format!("-o {}: {error}", output::shown(folder))))?;
+    let sheets = paper::sheets(|name| {
+        let _ = writeln!(std::io::stderr(), "pulloff: {name}");
+    })?;
+    let mut captions = String::from("# The figures of the paper, computed again\n");
+    for sheet in &sheets {
+        let file = |ending: &str| folder.join(sheet.name).with_extension(ending);
+        save(&file("csv"), table::csv(&sheet.chart)?.as_bytes())?;
+        let picture = svg::svg(&sheet.chart, Width::ONE_COLUMN);
+        save(&file("svg"), picture.as_bytes())?;
+        #[cfg(feature = "png")]
+        if arguments.png {
+            save(&file("png"), &crate::plot::png::png(&picture)?)?;
+        }
+        // Writing to a String cannot fail.
+        let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);
+    }
+    save(&folder.join(CAPTIONS), captions.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn save(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    write_atomically(path, bytes, Overwrite::Always)?;
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! `pulloff man`: the manual page, made from the command line and the command table.
+
+use super::{Cli, Failure, output};
+use crate::explorer::command::ROWS;
+use clap::CommandFactory;
+use clap_mangen::Man;
+use clap_mangen::roff::{Roff, bold, roman};
+use std::io;
+use std::process::ExitCode;
+
+pub fn run() -> Result<ExitCode, Failure> {
+    let page = page().map_err(Failure::Output)?;
+    output::write(&String::from_utf8_lossy(&page), None)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn page() -> io::Result<Vec<u8>> {
+    let mut command = Cli::command();
+    command.build();
+    let mut page = Vec::new();
+    Man::new(command.clone()).render(&mut page)?;
+    for subcommand in command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help") {
+        write_subcommand(subcommand, &mut page)?;
+    }
+    commands().to_writer(&mut page)?;
+    Ok(page)
+}
+
+/// The sections of a subcommand, one level lower than those of the page.
+fn write_subcommand(subcommand: &clap::Command, page: &mut Vec<u8>) -> io::Result<()> {
+    let name = subcommand.get_bin_name().unwrap_or(subcommand.get_name()).to_uppercase();
+    Roff::new().control("SH", [&*name]).to_writer(page)?;
+    let man = Man::new(subcommand.clone());
+    let mut sections = Vec::new();
+    man.render_synopsis_section(&mut sections)?;
+    man.render_description_section(&mut sections)?;
+    if subcommand.get_arguments().next().is_some() {
+        man.render_options_section(&mut sections)?;
+    }
+    if subcommand.has_subcommands() {
+        man.render_subcommands_section(&mut sections)?;
+    }
+    let text = String::from_utf8_lossy(&sections).into_owned();
+    // Each section repeats the preamble of a page, which it needs once.
+    for line in text.lines().filter(|line| !line.starts_with(".ie ") && !line.starts_with(".el ")) {
+        let line = line.strip_prefix(".SH ").map_or_else(|| line.to_owned(), |title| format!(".SS {title}"));
+        page.extend(line.bytes());
+        page.push(b'\n');
+    }
+    Ok(())
+}
+
+/// The commands of the explorer and of scripts, with the keys that the person has for them.
+fn commands() -> Roff {
+    let (mut roff, keys) = (Roff::new(), keys());
+    roff.control("SH", ["COMMANDS OF THE EXPLORER"]);
+    roff.text([roman("Their names in scripts, in the settings and behind the key of command-line.")]);
+    for row in ROWS {
+        let argument = row.argument.map_or_else(String::new, |argument| format!(" [{argument}]"));
+        roff.control("TP", []);
+        roff.text([bold(row.name), roman(argument), roman(keys(row.id))]);
+        roff.text([roman(row.help)]);
+    }
+    roff
+}
+
+/// The keys of a command in brackets.
+#[cfg(feature = "tui")]
+fn keys() -> impl Fn(crate::explorer::Id) -> String {
+    let keymap = super::explore::settings(None).unwrap_or_default().keymap;
+    move |id| match keymap.keys(id) {
+        [] => String::new(),
+        keys => format!(" ({})", keys.iter().map(|key| key.label()).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+#[cfg(not(feature = "tui"))]
+fn keys() -> impl Fn(crate::explorer::Id) -> String {
+    |_| String::new()
+}

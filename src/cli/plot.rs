@@ -1,0 +1,183 @@
+//! `pulloff plot`: a view of the explorer as a figure for print.
+
+use super::{Failure, Problem, output, warn};
+use crate::explorer::profile::{Ask, Inside};
+use crate::explorer::{Axes, CurveData, Overlays, View, Window};
+use crate::figure::Subject;
+use crate::plot::{Chart, Width, svg, table};
+use crate::preset::{Overwrite, Preset, write_atomically};
+use crate::quasistatic::jump::Run;
+use crate::units::Quantity;
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// The arguments of `pulloff plot`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// What is drawn
+    #[arg(long, value_enum, default_value = "force-approach")]
+    view: Shown,
+    /// Draw the exact solution and the envelope of Kesari and Lew as well, where they exist
+    #[arg(long)]
+    theory: bool,
+    /// Axes in the preset's own units instead of P/Pc and s/lambda
+    #[arg(long)]
+    raw: bool,
+    /// The state whose pressure, gap or energy is drawn, by its contact radius; the start when left out
+    #[arg(long, value_name = "RADIUS")]
+    contact_radius: Option<String>,
+    /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
+    #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
+    width: Width,
+    /// Write the data beside the figure too, to FILE.csv
+    #[arg(long, requires = "output")]
+    data: bool,
+    /// Write to this file, as SVG or PNG by its ending, instead of SVG to standard output
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// A view by the name the explorer gives it.
+#[derive(Debug, Clone, Copy)]
+struct Shown(View);
+
+impl ValueEnum for Shown {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [Shown; View::ALL.len()] = {
+            let mut all = [Shown(View::ForceApproach); View::ALL.len()];
+            let mut i = 0;
+            while i < all.len() {
+                all[i] = Shown(View::ALL[i]);
+                i += 1;
+            }
+            all
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(self.0.name()))
+    }
+}
+
+fn width(text: &str) -> Result<Width, String> {
+    let (lo, hi) = (Width::RANGE.start(), Width::RANGE.end());
+    match text {
+        "one-column" => Some(Width::ONE_COLUMN),
+        "two-columns" => Some(Width::TWO_COLUMNS),
+        text => text.trim_end_matches("mm").trim().parse().ok().and_then(Width::millimetres),
+    }
+    .ok_or_else(|| format!("expected one-column, two-columns, or a width from {lo} to {hi} mm"))
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let format = Format::of(arguments.output.as_deref())?;
+    let preset = arguments.problem.load()?.preset;
+    let curve = CurveData::compute(&preset, |_| true)?;
+    let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
+    warn(&curve.sweep.warnings);
+    let view = arguments.view.0;
+    let inside = if view.is_state() {
+        Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
+    } else if arguments.contact_radius.is_some() {
+        return Err(Failure::Usage(format!(
+            "--contact-radius: {} shows the whole curve; pressure, gap and energy show a state",
+            view.name()
+        )));
+    } else {
+        None
+    };
+    let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
+    let subject = Subject {
+        curve: &curve,
+        walk: Vec::new(),
+        inside: inside.as_ref(),
+        device: None,
+        pins: &[],
+        preset: &preset,
+        overlays,
+        axes: if arguments.raw { Axes::Raw } else { Axes::Reduced },
+    };
+    let chart = Chart::of(&subject.figure(view), &Window::WHOLE);
+    write(&chart, arguments.width, format, arguments.output.as_deref())?;
+    if let (Some(path), true) = (&arguments.output, arguments.data) {
+        let text = table::csv(&chart)?;
+        write_atomically(&path.with_extension("csv"), text.as_bytes(), Overwrite::Always)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The inside of the state of this contact radius, or of the start.
+fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<Inside, Failure> {
+    let setting = Arc::clone(&curve.setting);
+    let case = &setting.case;
+    let unit = case.units().length;
+    let s = match radius {
+        Some(text) => length(&setting.preset, text)? / unit,
+        None => case.start,
+    };
+    if !(case.end..=case.start).contains(&s) {
+        return Err(Failure::Usage(format!(
+            "--contact-radius = {:e} is outside the curve, which goes from {:e} to {:e}",
+            s * unit,
+            case.end * unit,
+            case.start * unit
+        )));
+    }
+    let point = setting.equilibrium.explicit(s).ok_or_else(|| {
+        Failure::Usage(format!("there is no equilibrium at the contact radius {:e}", s * unit))
+    })?;
+    let state = setting.equilibrium.state(&point);
+    let curve = Arc::clone(curve);
+    Ok(Inside::compute(&Ask { id: 0, setting, curve, state, exact, barrier: Some(Run::Inward) }))
+}
+
+/// A length as typed, in the units of the preset.
+fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
+    let row = preset.row("path.start_contact_radius");
+    let typed = row.map(|row| preset.typed(&row, text)).transpose();
+    match typed.map_err(|invalid| Failure::Usage(format!("--contact-radius: {invalid}")))? {
+        Some(crate::preset::Value::Number(s)) => Ok(s),
+        _ => Err(Failure::Usage(format!("--contact-radius: expected a {}", Quantity::Length.name()))),
+    }
+}
+
+/// The format of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl Format {
+    fn of(path: Option<&Path>) -> Result<Self, Failure> {
+        let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(Self::Svg) };
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") if cfg!(feature = "png") => Ok(Self::Png),
+            Some("png") => {
+                Err(Failure::Usage("this build writes no PNG (feature `png` is off); use .svg".to_owned()))
+            }
+            _ => {
+                Err(Failure::Usage(format!("{}: a figure's file ends in .svg or .png", output::shown(path))))
+            }
+        }
+    }
+}
+
+fn write(chart: &Chart, width: Width, format: Format, path: Option<&Path>) -> Result<(), Failure> {
+    let text = svg::svg(chart, width);
+    match (format, path) {
+        #[cfg(feature = "png")]
+        (Format::Png, Some(path)) => {
+            write_atomically(path, &crate::plot::png::png(&text)?, Overwrite::Always)?;
+            Ok(())
+        }
+        (_, path) => output::write(&text, path),
+    }
+}

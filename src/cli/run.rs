@@ -1,0 +1,88 @@
+//! `pulloff run`: a script of the explorer's commands, without a terminal.
+
+use super::{Failure, Problem, store};
+use crate::explorer::script::{self, Line, Permission, play};
+use crate::explorer::{Inline, Model, open};
+use crate::preset::file::{FileError, read_text};
+use crate::preset::text::{sanitize, show_path};
+use clap::Args;
+use std::ffi::OsString;
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The arguments of `pulloff run`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The script, one command a line; - reads standard input
+    script: PathBuf,
+    /// The preset it begins with, by name or file; the wavy sphere when left out
+    #[arg(long, value_name = "PRESET|FILE.toml")]
+    preset: Option<OsString>,
+    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    assignments: Vec<String>,
+    /// Let the script replace files
+    #[arg(long)]
+    overwrite: bool,
+    /// Let the script write files outside the current folder
+    #[arg(long)]
+    anywhere: bool,
+    /// Say on standard error what became of each line
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+/// Longest account of a line.
+const ACCOUNT: usize = 200;
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let (name, text) = source(&arguments.script)?;
+    let lines = script::read(&name, &text).map_err(|error| Failure::Usage(error.to_string()))?;
+    let chosen = arguments.preset.is_some() || !arguments.assignments.is_empty();
+    if chosen && lines.first().is_some_and(|line| script::play::opens(&line.command)) {
+        let text = format!("{name}: opens a preset of its own: --preset and --set would be lost");
+        return Err(Failure::Usage(text));
+    }
+    let problem = Problem { preset: arguments.preset.clone(), assignments: arguments.assignments.clone() };
+    let (mut model, effects) = open(problem.load()?);
+    let permission = Permission { overwrite: arguments.overwrite, anywhere: arguments.anywhere };
+    let mut told = |line: &Line, model: &Model| {
+        if arguments.verbose {
+            account(line, model);
+        }
+    };
+    play(&mut model, &Inline::new(store()), effects, &lines, permission, &mut told)
+        .map_err(|failed| Failure::Script(format!("{name}:{failed}")))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The script's name for messages, and its text.
+fn source(path: &Path) -> Result<(String, String), Failure> {
+    let unread = |error: FileError| Failure::Usage(error.to_string());
+    if path != Path::new("-") {
+        let (text, _) = read_text(path, script::LARGEST).map_err(unread)?;
+        return Ok((show_path(path), text));
+    }
+    let name = "standard input".to_owned();
+    let mut text = String::new();
+    let read = io::stdin().lock().take(script::LARGEST + 1).read_to_string(&mut text);
+    match read {
+        Ok(bytes) if bytes as u64 > script::LARGEST => {
+            Err(Failure::Usage(format!("{name}: has more than the {} bytes that are read", script::LARGEST)))
+        }
+        Ok(_) => Ok((name, text)),
+        Err(error) if error.kind() == ErrorKind::InvalidData => {
+            Err(Failure::Usage(format!("{name}: is not UTF-8 text")))
+        }
+        Err(error) => Err(Failure::Usage(format!("{name}: cannot read: {error}"))),
+    }
+}
+
+/// What became of a line, in one line.
+fn account(line: &Line, model: &Model) {
+    let command = script::line(&line.command).unwrap_or_default();
+    let text = format!("{}: {command}: {}", line.number, model.status().1);
+    // Nobody may be listening.
+    let _ = writeln!(io::stderr(), "{}", sanitize(&text, ACCOUNT));
+}

@@ -1,0 +1,308 @@
+//! The person's settings: `pulloff/config.toml` below the XDG configuration folder. Read and never written.
+//!
+//! ```toml
+//! [keys]
+//! next-limit = "n"
+//! step = ["Space", "F2"]
+//!
+//! [look]
+//! theme = "light"
+//! ```
+//!
+//! The names are those of the [command table](crate::explorer::command::ROWS); what is not named keeps its keys. A table
+//! of settings is a row of `TABLES` and a reader of its own.
+
+use crate::explorer::Id;
+use crate::explorer::command::ROWS;
+use crate::preset::file::{FileError, read_text};
+use crate::preset::suggest::closest;
+use crate::preset::text::{quote, show_path};
+use etcetera::BaseStrategy;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The largest file, in bytes.
+pub const LARGEST: u64 = 1 << 16;
+/// The most keys of one command.
+pub const MOST_KEYS: usize = 8;
+
+/// What a person has set.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Config {
+    /// The file, safe to show; empty where there is none.
+    pub name: String,
+    /// Keys of commands, in the order of the file.
+    pub keys: Vec<Binding>,
+    /// How the screen is to look: rows of [`LOOK`] with one of their words, in the order of the file.
+    pub look: Vec<(&'static str, &'static str)>,
+}
+
+/// The rows of `[look]` with the words each takes; `true` and `false` stand there without quotes.
+pub const LOOK: [(&str, &[&str]); 4] = [
+    ("theme", &["dark", "light", "mono"]),
+    ("charts", &["braille", "block", "ascii"]),
+    ("ascii", &["true", "false"]),
+    ("mouse", &["true", "false"]),
+];
+
+/// The keys of one command.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Binding {
+    /// The command.
+    pub id: Id,
+    /// Its keys as written; none takes away those it has.
+    pub keys: Vec<String>,
+    /// The line, from 1.
+    pub line: usize,
+}
+
+/// What is wrong with a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mistake {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong, safe to show.
+    pub what: String,
+}
+
+/// Why there are no settings.
+#[derive(Debug, Error)]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Lines of it are wrong; at least one.
+    #[error("{name}:{}", Listed(.mistakes))]
+    Mistakes {
+        /// The file, safe to show.
+        name: String,
+        /// What is wrong.
+        mistakes: Vec<Mistake>,
+    },
+}
+
+/// The first mistake, and how many more there are.
+struct Listed<'a>(&'a [Mistake]);
+
+impl fmt::Display for Listed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(first) = self.0.first() {
+            write!(f, "{}: {}", first.line, first.what)?;
+        }
+        match self.0.len() {
+            0 | 1 => Ok(()),
+            2 => f.write_str(" (and 1 more mistake)"),
+            n => write!(f, " (and {} more mistakes)", n - 1),
+        }
+    }
+}
+
+/// Reads a table into the settings.
+type Reader = fn(&mut Config, &DeTable<'_>, &mut Sheet<'_>);
+
+/// The tables of the file.
+const TABLES: [(&str, Reader); 2] = [("keys", keys), ("look", look)];
+
+/// The file of this person, which need not exist; `None` where there is no home.
+#[must_use]
+pub fn path() -> Option<PathBuf> {
+    let folder = etcetera::base_strategy::Xdg::new().ok()?.config_dir();
+    Some(folder.join("pulloff/config.toml"))
+}
+
+/// The settings of a file.
+///
+/// # Errors
+/// It cannot be read, or lines of it are wrong.
+pub fn load(path: &Path) -> Result<Config, ConfigError> {
+    let (text, _) = read_text(path, LARGEST)?;
+    read(&show_path(path), &text)
+}
+
+/// The same, where a file that is not there has none.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
+    match load(path) {
+        Err(ConfigError::File(FileError::Io { cause, .. }))
+            if matches!(cause.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) =>
+        {
+            Ok(Config::default())
+        }
+        result => result,
+    }
+}
+
+/// The settings of a text; `name` names it in messages.
+///
+/// # Errors
+/// Every line that is wrong.
+pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
+    let mut config = Config { name: name.to_owned(), ..Config::default() };
+    let mut sheet = Sheet { text, mistakes: Vec::new() };
+    match DeTable::parse(text) {
+        Err(error) => {
+            let at = error.span().map_or(0, |span| span.start);
+            sheet.wrong(at, error.message().lines().next().unwrap_or_default().to_owned());
+        }
+        Ok(document) => {
+            for (table, value) in document.get_ref() {
+                let known = TABLES.iter().find(|(known, _)| *known == &**table.get_ref());
+                match (known, value.get_ref()) {
+                    (Some((_, reader)), DeValue::Table(rows)) => reader(&mut config, rows, &mut sheet),
+                    (Some((known, _)), _) => {
+                        sheet.wrong(table.span().start, format!("{known} is a table: [{known}]"));
+                    }
+                    (None, _) => {
+                        let known = TABLES.map(|(known, _)| known);
+                        sheet.unknown(table.span().start, "table", table.get_ref(), &known);
+                    }
+                }
+            }
+        }
+    }
+    if sheet.mistakes.is_empty() {
+        return Ok(config);
+    }
+    sheet.mistakes.sort_by_key(|mistake| mistake.line);
+    Err(ConfigError::Mistakes { name: config.name, mistakes: sheet.mistakes })
+}
+
+/// The text, and what is wrong with it so far.
+struct Sheet<'a> {
+    text: &'a str,
+    mistakes: Vec<Mistake>,
+}
+
+impl Sheet<'_> {
+    /// The line of a byte, from 1.
+    fn line(&self, at: usize) -> usize {
+        1 + self.text.bytes().take(at).filter(|byte| *byte == b'\n').count()
+    }
+
+    fn wrong(&mut self, at: usize, what: String) {
+        self.mistakes.push(Mistake { line: self.line(at), what });
+    }
+
+    fn unknown(&mut self, at: usize, what: &str, word: &str, known: &[&str]) {
+        let meant = closest(word, known.iter().copied());
+        let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+        self.wrong(at, format!("no {what} is called \"{}\"{hint}", quote(word)));
+    }
+}
+
+/// `[keys]`: a command's name, and a key or a list of keys.
+fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
+    for (name, value) in table {
+        let at = name.span().start;
+        let Some(row) = ROWS.iter().find(|row| row.name == &**name.get_ref()) else {
+            let names: Vec<&str> = ROWS.iter().map(|row| row.name).collect();
+            sheet.unknown(at, "command", name.get_ref(), &names);
+            continue;
+        };
+        let text = |value: &Spanned<DeValue<'_>>| match value.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            _ => None,
+        };
+        let keys: Option<Vec<String>> = match value.get_ref() {
+            DeValue::Array(all) if all.len() <= MOST_KEYS => all.iter().map(text).collect(),
+            _ => text(value).map(|key| vec![key]),
+        };
+        match keys {
+            Some(keys) => config.keys.push(Binding { id: row.id, keys, line: sheet.line(at) }),
+            None => sheet.wrong(
+                at,
+                format!("{} takes a key in quotes, or a list of at most {MOST_KEYS} such keys", row.name),
+            ),
+        }
+    }
+}
+
+/// `[look]`: how the screen looks.
+fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
+    for (name, value) in table {
+        let at = name.span().start;
+        let Some((row, words)) = LOOK.iter().find(|(row, _)| *row == &**name.get_ref()) else {
+            sheet.unknown(at, "part of [look]", name.get_ref(), &LOOK.map(|(row, _)| row));
+            continue;
+        };
+        let word = match value.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            DeValue::Boolean(yes) => Some(yes.to_string()),
+            _ => None,
+        };
+        match words.iter().find(|known| word.as_deref() == Some(**known)) {
+            Some(word) => config.look.push((row, word)),
+            None => sheet.wrong(at, format!("{row} is one of {}", words.join(", "))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        read("config.toml", text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn keys_are_read_with_their_lines() {
+        let config =
+            read("c", "# mine\n[keys]\nstep = [\"Space\", \"F2\"]\njump = []\nundo = \"z\"\n").unwrap();
+        let mut bindings = config.keys;
+        bindings.sort_by_key(|binding| binding.line);
+        let binding = |id, keys: &[&str], line| Binding {
+            id,
+            keys: keys.iter().map(ToString::to_string).collect(),
+            line,
+        };
+        let expected =
+            [binding(Id::Step, &["Space", "F2"], 3), binding(Id::Jump, &[], 4), binding(Id::Undo, &["z"], 5)];
+        assert_eq!(bindings, expected);
+        assert_eq!(read("c", "").unwrap().keys, []);
+        let look = read("c", "[look]\ntheme = \"light\"\nmouse = true").unwrap().look;
+        assert!(look.contains(&("theme", "light")) && look.contains(&("mouse", "true")), "{look:?}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_line_and_the_nearest_name() {
+        for (text, expected) in [
+            ("[keys]\nstepp = \"x\"", "config.toml:2: no command is called \"stepp\"; did you mean step?"),
+            ("[look]\ntheme = \"drak\"", "config.toml:2: theme is one of dark, light, mono"),
+            (
+                "[look]\nthemes = 3",
+                "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",
+            ),
+            ("[kys]", "config.toml:1: no table is called \"kys\"; did you mean keys?"),
+            ("\nkeys = 3", "config.toml:2: keys is a table: [keys]"),
+            ("[keys]\nstep = 3", "config.toml:2: step takes a key in quotes"),
+            ("[keys]\nstep = [\"a\", 3]", "config.toml:2: step takes a key in quotes"),
+            ("[keys]\nstep = \"x\nundo = 3", "config.toml:2: "),
+            ("[keys]\na = 1\nb = 2\nc = 3", "(and 2 more mistakes)"),
+            ("[keys]\nstep = \"a\"\nstep = \"b\"", "config.toml:3: duplicate key"),
+        ] {
+            assert!(error(text).contains(expected), "{text}: {}", error(text));
+        }
+        let many = format!("[keys]\nstep = [{}]", "\"x\",".repeat(MOST_KEYS + 1));
+        assert!(error(&many).contains("at most 8"));
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_has_no_settings_and_one_that_is_none_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("config.toml");
+        assert_eq!(load_if_there(&path).unwrap(), Config::default());
+        assert!(load(&path).unwrap_err().to_string().contains("cannot read"));
+        std::fs::create_dir(&path).unwrap();
+        assert!(load_if_there(&path).unwrap_err().to_string().contains("is a folder"));
+        let large = folder.path().join("large.toml");
+        std::fs::write(&large, " ".repeat(1 + usize::try_from(LARGEST).unwrap())).unwrap();
+        assert!(load(&large).unwrap_err().to_string().contains("65537 bytes"));
+    }
+}

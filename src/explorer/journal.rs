@@ -1,0 +1,278 @@
+//! What was done in a session, as the lines of a script that does it again.
+//!
+//! A line is written when something took effect, not when it was asked for: the answer to a walk says how many states it
+//! made, and only then are they a line. What a walk depends on besides the walker's state (the values, the way, the step
+//! length) is compared with what a replay has at that place, and set before it where it differs. So values tried and taken
+//! back, a way reversed twice and what only a screen shows leave nothing, and the order is that in which states were made,
+//! whatever the timing was.
+
+use super::command::{Command, Id, MOST_STEPS};
+use super::curve::CurveData;
+use super::history::{Node, NodeKind};
+use super::model::{FIRST_LENGTH, Model};
+use super::script;
+use super::walk::{Action, Outcome};
+use crate::preset::changes::changes;
+use crate::preset::{Preset, Source};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Most lines kept, and bytes in them: half of what a script may have.
+const LINES: usize = script::MOST_LINES / 2;
+const BYTES: usize = 1 << 19;
+
+/// What was done since a preset was opened.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(from = "Vec<String>", into = "Vec<String>")]
+pub struct Journal {
+    lines: Vec<String>,
+    bytes: usize,
+    start: Option<Box<Start>>,
+    replay: Option<Box<Replay>>,
+    /// The steps of the last line, where more of them would be the same walk.
+    steps: Option<usize>,
+    walking: Option<Walking>,
+    /// Why the lines do not lead here any more.
+    broken: Option<String>,
+}
+
+/// Where the walk began.
+#[derive(Debug, Clone)]
+pub struct Start {
+    /// Where the preset came from.
+    pub source: Source,
+    /// The preset of the first state.
+    pub preset: Preset,
+}
+
+/// What a replay of the lines has at their end.
+#[derive(Debug, Clone)]
+struct Replay {
+    preset: Preset,
+    inward: bool,
+    length: f64,
+}
+
+/// A walk that is not over.
+#[derive(Debug, Clone)]
+struct Walking {
+    action: Action,
+    curve: Arc<CurveData>,
+    inward: bool,
+    length: f64,
+    made: usize,
+}
+
+impl From<Vec<String>> for Journal {
+    fn from(lines: Vec<String>) -> Self {
+        Self { bytes: lines.iter().map(String::len).sum(), lines, ..Self::default() }
+    }
+}
+
+impl From<Journal> for Vec<String> {
+    fn from(journal: Journal) -> Self {
+        journal.lines
+    }
+}
+
+impl Journal {
+    /// Its lines so far; a walk that goes on is not in them yet.
+    pub fn lines(&self) -> &[String] {
+        &self.lines
+    }
+
+    /// Where the walk began; nothing before the first state.
+    pub fn start(&self) -> Option<&Start> {
+        self.start.as_deref()
+    }
+
+    /// The lines that lead to where `model` is now.
+    ///
+    /// # Errors
+    /// Why there are none, in words.
+    pub fn so_far(model: &Model) -> Result<Vec<String>, String> {
+        let mut journal = model.journal.clone();
+        journal.abandoned();
+        journal.sync(&model.preset, Some((model.inward, model.length)), model.curve_error.is_some());
+        journal.broken.map_or(Ok(journal.lines), Err)
+    }
+
+    /// The first state is there.
+    pub(super) fn begin(&mut self, source: Source, preset: Preset) {
+        let replay = Replay { preset: preset.clone(), inward: true, length: FIRST_LENGTH };
+        let (start, replay) = (Some(Box::new(Start { source, preset })), Some(Box::new(replay)));
+        *self = Self { start, replay, ..Self::default() };
+    }
+
+    /// A walk was asked for.
+    pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
+        self.walking = Some(Walking { action, curve, inward, length, made: 0 });
+    }
+
+    /// It made so many states.
+    pub(super) fn made(&mut self, states: usize) {
+        if let Some(walking) = &mut self.walking {
+            walking.made += states;
+        }
+    }
+
+    /// It is over; nobody waits for what it might still make.
+    pub(super) fn abandoned(&mut self) {
+        self.ended(&Outcome::Paused);
+    }
+
+    /// It is over.
+    pub(super) fn ended(&mut self, outcome: &Outcome) {
+        let Some(walking) = self.walking.take() else { return };
+        let preset = &walking.curve.setting.preset;
+        let way = Some((walking.inward, walking.length));
+        let failed = matches!(outcome, Outcome::Stopped(_));
+        if walking.made == 0 && !(failed && matches!(walking.action, Action::Solve { .. })) {
+            return;
+        }
+        match walking.action {
+            Action::Solve { .. } => self.sync(preset, None, failed),
+            Action::Steps(_) => {
+                self.sync(preset, way, false);
+                // Beyond a limit point, or the end, a further step is a walk of its own.
+                self.step(walking.made, matches!(outcome, Outcome::Done | Outcome::Paused));
+            }
+            Action::ToLimit | Action::Run(_) => {
+                self.sync(preset, way, false);
+                self.write(&match (outcome, walking.action) {
+                    (Outcome::AtLimit, _) | (Outcome::Ended(_), Action::ToLimit) => Id::NextLimit.into(),
+                    _ => Command::RunOf(walking.made),
+                });
+            }
+            Action::Jump => {
+                self.sync(preset, way, false);
+                self.write(&Id::Jump.into());
+            }
+            Action::MoveTo(s) => {
+                let case = &walking.curve.setting.case;
+                self.sync(preset, None, false);
+                if s.total_cmp(&case.start).is_eq() {
+                    self.write(&Id::Restart.into());
+                    self.turned_inward();
+                } else {
+                    self.write(&Command::MoveTo(product(s, case.units().length)));
+                }
+            }
+            Action::MoveToEvent { event, .. } => {
+                self.sync(preset, None, false);
+                self.write(&Command::SelectEvent(event + 1));
+                self.turned_inward();
+            }
+        }
+    }
+
+    /// The walker stands on `node` after an undo or redo, with the values of its state.
+    pub(super) fn travelled(&mut self, id: Id, node: Option<&Node>) {
+        self.write(&id.into());
+        let (Some(replay), Some(node)) = (&mut self.replay, node) else { return };
+        if !matches!(node.kind, NodeKind::Stale(_)) {
+            let mut preset = node.setting.preset.clone();
+            preset.title.clone_from(&replay.preset.title);
+            preset.path.control = replay.preset.path.control;
+            replay.preset = preset;
+        }
+    }
+
+    fn turned_inward(&mut self) {
+        if let Some(replay) = &mut self.replay {
+            replay.inward = true;
+        }
+    }
+
+    /// Sets what a replay has otherwise: the values, and the way and length of steps.
+    fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
+        let Some(mut replay) = self.replay.take() else { return };
+        if replay.preset != *preset {
+            match changes(&replay.preset, preset) {
+                Some(all) => self.write_line(may_fail, &Command::Assign(all)),
+                None => self.broken = Some("a value that was given up cannot be said in a script".to_owned()),
+            }
+            replay.preset = preset.clone();
+        }
+        if let Some((inward, length)) = way {
+            if replay.inward != inward {
+                self.write(&Id::Reverse.into());
+                replay.inward = inward;
+            }
+            if replay.length.to_bits() != length.to_bits() {
+                self.write(&Command::StepLength(length));
+                replay.length = length;
+            }
+        }
+        self.replay = Some(replay);
+    }
+
+    fn step(&mut self, count: usize, goes_on: bool) {
+        let merged = self.steps.map(|before| before + count).filter(|all| *all <= MOST_STEPS);
+        if merged.is_some()
+            && let Some(last) = self.lines.pop()
+        {
+            self.bytes -= last.len();
+        }
+        let count = merged.unwrap_or(count);
+        self.write(&Command::Steps(count));
+        self.steps = goes_on.then_some(count);
+    }
+
+    fn write(&mut self, command: &Command) {
+        self.write_line(false, command);
+    }
+
+    fn write_line(&mut self, may_fail: bool, command: &Command) {
+        self.steps = None;
+        if self.replay.is_none() && self.start.is_none() {
+            return;
+        }
+        let Some(line) = script::line(command) else {
+            self.broken = Some("a value of the session cannot be written in a line".to_owned());
+            return;
+        };
+        let line = if may_fail { format!("try {line}") } else { line };
+        if self.lines.len() >= LINES || self.bytes + line.len() > BYTES || line.len() > script::LONGEST {
+            self.broken = Some("the session is longer than a script can be".to_owned());
+            return;
+        }
+        self.bytes += line.len();
+        self.lines.push(line);
+    }
+}
+
+/// The number that is `x` again when it is divided by `unit`, where rounding leaves one.
+fn product(x: f64, unit: f64) -> f64 {
+    let near = x * unit;
+    let all = [near, near.next_up(), near.next_down()];
+    all.into_iter().find(|y| (y / unit).total_cmp(&x).is_eq()).unwrap_or(near)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explorer::nudge::{Amount, nudge};
+    use crate::preset::{SHIPPED, read};
+
+    #[test]
+    fn every_turn_of_every_knob_is_one_assignment_with_the_exact_value() {
+        let mut turned = 0;
+        for shipped in SHIPPED {
+            let preset = read(shipped.name, shipped.text).unwrap();
+            for row in preset.knobs() {
+                let Ok(to) = nudge(&preset, &row, true, Amount::Coarse, 1.0) else { continue };
+                if to == preset {
+                    continue;
+                }
+                let all = changes(&preset, &to).unwrap_or_default();
+                assert_eq!(all.len(), 1, "{} {}: {all:?}", shipped.name, row.key);
+                let mut back = preset.clone();
+                back.assign(&all[0].0, &all[0].1).unwrap();
+                assert_eq!(back, to, "{} {}", shipped.name, row.key);
+                turned += 1;
+            }
+        }
+        assert!(turned > SHIPPED.len() * 4, "{turned}");
+    }
+}

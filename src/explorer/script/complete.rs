@@ -1,0 +1,117 @@
+//! What a line begun could go on with.
+
+use super::parse::RUN_TO;
+use super::print::overlay_name;
+use super::words::quoted;
+use crate::explorer::command::ROWS;
+use crate::explorer::files::Document;
+use crate::explorer::view::Overlay;
+use crate::preset::Preset;
+use crate::preset::groups::GROUPS;
+use crate::preset::schema::{AUTO, Kind, NONE};
+use crate::preset::shipped::SHIPPED;
+
+/// A line gone on with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Completion {
+    /// The line, with as much more as all offers have in common.
+    pub line: String,
+    /// The words that can stand at its end.
+    pub offers: Vec<String>,
+}
+
+/// Completes the last word of `line` for a session on `preset`; `presets` are the names known, the shipped ones where
+/// there are none.
+pub fn complete(line: &str, preset: &Preset, presets: &[String]) -> Completion {
+    let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
+    let (before, word) = line.split_at(start);
+    let words: Vec<&str> = before.split_whitespace().collect();
+    // Inside quotes anything may be meant.
+    let is_quoted = line.matches('"').count() % 2 == 1;
+    let all = if is_quoted { Vec::new() } else { candidates(&words, word, preset, presets) };
+    let offers: Vec<String> = all.into_iter().filter(|offer| offer.starts_with(word)).collect();
+    let end = match &*offers {
+        [] => word.to_owned(),
+        [one] if one.ends_with('=') => one.clone(),
+        [one] => format!("{one} "),
+        [first, rest @ ..] => {
+            let same = |a: &str, b: &str| a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count();
+            let shared = rest.iter().map(|other| same(first, other)).min().unwrap_or(0);
+            first.chars().take(shared).collect()
+        }
+    };
+    Completion { line: format!("{before}{end}"), offers }
+}
+
+fn owned<'a>(words: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    words.into_iter().map(str::to_owned).collect()
+}
+
+/// The words that can follow `words`, whatever `word` begins with.
+fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -> Vec<String> {
+    match words {
+        [] => owned(ROWS.iter().map(|row| row.name).chain([RUN_TO.0])),
+        ["open"] if presets.is_empty() => owned(SHIPPED.iter().map(|shipped| shipped.name)),
+        ["open"] => presets.iter().filter_map(|name| quoted(name)).collect(),
+        ["set" | "open", ..] => assignments(word, preset),
+        ["control"] => owned(["displacement", "force", "stiffness="]),
+        ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
+        ["pins"] => owned(["all"]),
+        ["export"] => owned(Document::ALL.map(Document::name)),
+        ["export", _, _] | ["save"] => owned(["replace"]),
+        ["save-as", _, ..] => owned(["with-data", "replace"]),
+        [name] if *name == RUN_TO.0 => owned(RUN_TO.1),
+        _ => Vec::new(),
+    }
+}
+
+/// The keys of `preset`, or the words that the key begun takes.
+fn assignments(word: &str, preset: &Preset) -> Vec<String> {
+    let Some((key, _)) = word.split_once('=') else {
+        let rows = preset.rows().filter(|row| row.key != "format").map(|row| row.key.clone());
+        let all = rows.chain(GROUPS.iter().map(|row| row.key.clone()));
+        // Those that have or could have a value here.
+        return all.map(|key| format!("{key}=")).collect();
+    };
+    let values: Vec<&str> = match preset.row(key).map(|row| row.kind) {
+        Some(Kind::Choice(words)) => words.to_vec(),
+        Some(Kind::Count { .. }) => vec![AUTO],
+        Some(Kind::Smoothing) => vec![AUTO, NONE],
+        Some(Kind::Control) => vec!["displacement", "force", "stiffness="],
+        _ => Vec::new(),
+    };
+    values.into_iter().map(|value| format!("{key}={value}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::{read, shipped};
+
+    fn completed(line: &str) -> (String, usize) {
+        let preset = read("t", shipped::find("wavy-sphere").unwrap().text).unwrap();
+        let Completion { line, offers } = complete(line, &preset, &["lab-3".to_owned(), "lab-4".to_owned()]);
+        (line, offers.len())
+    }
+
+    #[test]
+    fn commands_keys_values_presets_and_documents_are_completed() {
+        for (line, expected, offers) in [
+            ("ste", "step", 2),
+            ("step-", "step-length ", 1),
+            ("set gap.am", "set gap.amplitude=", 1),
+            ("set gap.amplitude=1 path.c", "set gap.amplitude=1 path.control", 2),
+            ("set gap.shape=po", "set gap.shape=power-law ", 1),
+            ("open l", "open lab-", 2),
+            ("open lab-3 basis.k", "open lab-3 basis.kind=", 1),
+            ("export sc", "export script ", 1),
+            ("export curve x.csv r", "export curve x.csv replace ", 1),
+            ("control f", "control force ", 1),
+            ("run-to in", "run-to instability ", 1),
+            ("zzz", "zzz", 0),
+            ("set title=\"a ", "set title=\"a ", 0),
+        ] {
+            assert_eq!(completed(line), (expected.to_owned(), offers), "{line}");
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Words → a command.
+
+use super::Fault;
+use super::print::overlay_name;
+use super::words::{Word, split};
+use crate::explorer::command::{Assignment, Command, Id, MOST_STEPS, ROWS, row_of};
+use crate::explorer::files::Document;
+use crate::explorer::model::LENGTHS;
+use crate::explorer::pins;
+use crate::explorer::view::Overlay;
+use crate::preset::groups::{self, GROUPS};
+use crate::preset::suggest::{closest, closest_key};
+use crate::preset::text::quote;
+use crate::preset::{PARAMETERS, parameter};
+
+/// The word before a command that may fail.
+const TRY: &str = "try";
+/// What a synonym of `next-limit` runs to.
+pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
+
+/// The command of a line; `None` where there is none.
+///
+/// # Errors
+/// What is wrong, where, and what is allowed.
+pub fn parse(line: &str) -> Result<Option<Command>, Fault> {
+    let words = split(line)?;
+    let Some((name, rest)) = words.split_first() else { return Ok(None) };
+    command(name, Rest { words: rest, end: line.trim_end().chars().count() + 2 }).map(Some)
+}
+
+/// The command of a script's line and whether it may fail.
+pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, Fault> {
+    let words = split(line)?;
+    let may_fail = words.first().is_some_and(|word| word.text == TRY);
+    let Some((name, rest)) = words[usize::from(may_fail)..].split_first() else {
+        return if may_fail { Err(Fault::new(1, "try stands before a command")) } else { Ok(None) };
+    };
+    let command = command(name, Rest { words: rest, end: line.trim_end().chars().count() + 2 })?;
+    match for_script(&command) {
+        Ok(()) => Ok(Some((may_fail, command))),
+        Err(what) => Err(Fault::new(name.column, what)),
+    }
+}
+
+/// Whether a command means something without a screen.
+///
+/// # Errors
+/// Why not, in words.
+pub fn for_script(command: &Command) -> Result<(), String> {
+    let row = row_of(command.id());
+    let missing = |what: &str| Err(format!("{} needs {what}", row.name));
+    match command {
+        Command::Plain(Id::Open) => missing("a preset"),
+        Command::Plain(Id::SaveAs) => missing("a name"),
+        Command::Plain(Id::Export) => missing("a document and a file"),
+        Command::Plain(Id::Pins) => missing("the number of a pin, or all"),
+        Command::Plain(Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Edit) => {
+            Err(format!("{} needs a selection on the screen; a script says set KEY=VALUE", row.name))
+        }
+        command if is_of_screen(command.id()) => {
+            Err(format!("{} only changes what a screen shows", row.name))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a command only changes what a screen shows.
+fn is_of_screen(id: Id) -> bool {
+    matches!(
+        id,
+        Id::Up
+            | Id::Down
+            | Id::Left
+            | Id::Right
+            | Id::NextPanel
+            | Id::PreviousPanel
+            | Id::NextView
+            | Id::PreviousView
+            | Id::ZoomIn
+            | Id::ZoomOut
+            | Id::Fit
+            | Id::CrossHair
+            | Id::Axes
+            | Id::Device
+            | Id::Overlays
+            | Id::CommandLine
+            | Id::Copy
+            | Id::Mouse
+            | Id::Help
+            | Id::Cancel
+    )
+}
+
+/// What stands behind the name of a command.
+struct Rest<'a> {
+    words: &'a [Word],
+    /// The column where a missing word would stand.
+    end: usize,
+}
+
+impl<'a> Rest<'a> {
+    fn next(&mut self) -> Option<&'a Word> {
+        let (first, rest) = self.words.split_first()?;
+        self.words = rest;
+        Some(first)
+    }
+
+    fn need(&mut self, what: &str) -> Result<&'a Word, Fault> {
+        let end = self.end;
+        self.next().ok_or_else(|| Fault::new(end, format!("{what} is missing")))
+    }
+
+    /// Takes the next word if it is this one.
+    fn takes(&mut self, word: &str) -> bool {
+        let is_next = self.words.first().is_some_and(|next| next.text == word);
+        if is_next {
+            self.words = &self.words[1..];
+        }
+        is_next
+    }
+
+    /// Nothing more may stand there.
+    fn done(self, command: Command) -> Result<Command, Fault> {
+        match self.words.first() {
+            None => Ok(command),
+            Some(word) => {
+                let name = row_of(command.id()).name;
+                Err(Fault::new(word.column, format!("{name} takes no \"{}\" here", quote(&word.text))))
+            }
+        }
+    }
+}
+
+fn unknown(word: &Word, what: &str, known: &[&str]) -> Fault {
+    let meant = closest(&word.text, known.iter().copied());
+    let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+    let allowed = if known.len() <= 12 { format!(": it is {}", known.join(", ")) } else { String::new() };
+    Fault::new(word.column, format!("no {what} is called \"{}\"{allowed}{hint}", quote(&word.text)))
+}
+
+fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
+    if name.text == RUN_TO.0 {
+        let word = rest.need("instability")?;
+        if !RUN_TO.1.contains(&&*word.text) {
+            return Err(unknown(word, "such end of a run", &RUN_TO.1));
+        }
+        return rest.done(Id::NextLimit.into());
+    }
+    if name.text == TRY {
+        return Err(Fault::new(name.column, "try stands in a script, once, before a command"));
+    }
+    let Some(row) = ROWS.iter().find(|row| row.name == name.text) else {
+        let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([RUN_TO.0, TRY]).collect();
+        return Err(unknown(name, "command", &names));
+    };
+    let bare = rest.words.is_empty();
+    let command = match row.id {
+        Id::Step if !bare => Command::Steps(count(rest.need("a number of steps")?, MOST_STEPS)?),
+        Id::Run if !bare => Command::RunOf(count(rest.need("a number of states")?, MOST_STEPS)?),
+        Id::StepLength => Command::StepLength(length(rest.need("a length")?)?),
+        Id::SelectEvent => Command::SelectEvent(count(rest.need("the number of an event")?, MOST_STEPS)?),
+        Id::MoveTo => Command::MoveTo(radius(rest.need("a contact radius")?)?),
+        Id::Assign => {
+            let first = assignment(rest.need("KEY=VALUE")?)?;
+            Command::Assign(assignments(vec![first], &mut rest)?)
+        }
+        Id::Control if !bare => {
+            let word = rest.need("a control")?;
+            Command::Assign(vec![("path.control".into(), word.text.clone())])
+        }
+        Id::Overlays if !bare => {
+            let word = rest.need("a theory")?;
+            let found = Overlay::ALL.into_iter().find(|overlay| overlay_name(*overlay) == word.text);
+            let names = Overlay::ALL.map(overlay_name);
+            Command::Overlay(found.ok_or_else(|| unknown(word, "theory", &names))?)
+        }
+        Id::Pins if !bare => {
+            let word = rest.need("a number")?;
+            Command::Unpin(if word.text == "all" { None } else { Some(count(word, pins::MOST)?) })
+        }
+        Id::Open if !bare => {
+            let name = rest.need("a preset")?.text.clone();
+            match assignments(Vec::new(), &mut rest)? {
+                none if none.is_empty() => Command::Open(name),
+                assignments => Command::OpenWith { name, assignments },
+            }
+        }
+        Id::Save if rest.takes("replace") => Command::SaveAnyway,
+        Id::SaveAs if !bare => {
+            let name = rest.need("a name")?.text.clone();
+            let with_data = rest.takes("with-data");
+            Command::SaveAs { name, with_data, replace: rest.takes("replace") }
+        }
+        Id::Export if !bare => {
+            let word = rest.need("a document")?;
+            let names = Document::ALL.map(Document::name);
+            let what = Document::ALL.into_iter().find(|what| what.name() == word.text);
+            let what = what.ok_or_else(|| unknown(word, "document", &names))?;
+            let path = rest.need("a file")?.text.clone();
+            Command::Export { what, path, replace: rest.takes("replace") }
+        }
+        id => id.into(),
+    };
+    rest.done(command)
+}
+
+fn count(word: &Word, most: usize) -> Result<usize, Fault> {
+    let found = word.text.parse().ok().filter(|count| (1..=most).contains(count));
+    found.ok_or_else(|| {
+        Fault::new(word.column, format!("\"{}\" is no number from 1 to {most}", quote(&word.text)))
+    })
+}
+
+fn radius(word: &Word) -> Result<f64, Fault> {
+    let found = word.text.parse().ok().filter(|radius: &f64| radius.is_finite() && *radius > 0.0);
+    found.ok_or_else(|| {
+        let quoted = quote(&word.text);
+        Fault::new(
+            word.column,
+            format!("\"{quoted}\" is no contact radius: a positive number in the preset's units"),
+        )
+    })
+}
+
+fn length(word: &Word) -> Result<f64, Fault> {
+    let found = word.text.parse().ok().filter(|length| LENGTHS.contains(length));
+    found.ok_or_else(|| {
+        let (least, most) = (LENGTHS.start(), LENGTHS.end());
+        Fault::new(word.column, format!("\"{}\" is no length from {least:?} to {most:?}", quote(&word.text)))
+    })
+}
+
+fn assignments(mut all: Vec<Assignment>, rest: &mut Rest<'_>) -> Result<Vec<Assignment>, Fault> {
+    while let Some(word) = rest.next() {
+        all.push(assignment(word)?);
+    }
+    Ok(all)
+}
+
+fn assignment(word: &Word) -> Result<Assignment, Fault> {
+    let Some((key, text)) = word.text.split_once('=') else {
+        let what = format!(
+            "\"{}\" is no KEY=VALUE, as in gap.amplitude=0.002; a value with spaces stands in quotes",
+            quote(&word.text)
+        );
+        return Err(Fault::new(word.column, what));
+    };
+    if parameter(key).is_none() && groups::row(key).is_none() {
+        let known = PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label));
+        let meant = closest_key(key, known);
+        let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+        return Err(Fault::new(word.column, format!("unknown key {}{hint}", quote(key))));
+    }
+    Ok((key.to_owned().into(), text.to_owned()))
+}

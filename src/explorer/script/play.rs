@@ -1,0 +1,87 @@
+//! A script driven through a model, without a terminal: each line is over before the next begins.
+
+use super::borders::allowed;
+use super::{Line, line};
+use crate::explorer::command::Command;
+use crate::explorer::driver::{Effect, Inline};
+use crate::explorer::model::{Level, Model};
+use crate::explorer::update::update;
+use thiserror::Error;
+
+/// What a script may do to files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Permission {
+    /// Replace files.
+    pub overwrite: bool,
+    /// Write outside the current folder.
+    pub anywhere: bool,
+}
+
+/// The line that failed, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{number}: {command}: {reason}")]
+pub struct Failed {
+    /// The line's number, from 1.
+    pub number: usize,
+    /// The command.
+    pub command: String,
+    /// Why it failed, in words.
+    pub reason: String,
+}
+
+/// Does `effects`, and then the lines one after another; `told` hears of each that was done.
+///
+/// What ends a run (a limit point, the end of the path) is no failure.
+///
+/// # Errors
+/// The first line that fails; those behind it are not done.
+pub fn play(
+    model: &mut Model,
+    driver: &Inline,
+    effects: Vec<Effect>,
+    lines: &[Line],
+    permission: Permission,
+    told: &mut dyn FnMut(&Line, &Model),
+) -> Result<(), Failed> {
+    // A script that opens a preset of its own needs no curve of the one before.
+    if !lines.first().is_some_and(|line| opens(&line.command) && !line.may_fail) {
+        driver.settle(model, effects);
+        if let Some(reason) = refusal(model) {
+            return Err(Failed { number: 0, command: "the preset".to_owned(), reason });
+        }
+    }
+    for each in lines {
+        let result = obey(model, driver, each, permission);
+        if let (Err(reason), false) = (result, each.may_fail) {
+            let command = line(&each.command).unwrap_or_default();
+            return Err(Failed { number: each.number, command, reason });
+        }
+        told(each, model);
+        if model.quit {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a command leaves nothing of the preset before it.
+pub fn opens(command: &Command) -> bool {
+    matches!(command, Command::Open(_) | Command::OpenWith { .. })
+}
+
+fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission) -> Result<(), String> {
+    let command = allowed(model, line.command.clone(), permission)?;
+    let effects = update(model, command);
+    driver.settle(model, effects);
+    // What a screen would ask now, nobody answers.
+    model.question = None;
+    refusal(model).map_or(Ok(()), Err)
+}
+
+/// What was told, if it is an error.
+fn refusal(model: &Model) -> Option<String> {
+    let (_, text) = model.message.as_ref().filter(|(level, _)| *level == Level::Error)?;
+    // Nothing is computed any more: where there is no curve, it could not be.
+    let cause = model.curve_error.as_ref().filter(|_| model.curve.is_none());
+    Some(cause.unwrap_or(text).clone())
+}

@@ -1,0 +1,57 @@
+//! A command → its line.
+
+use super::words::quoted;
+use crate::explorer::command::{Assignment, Command, row_of};
+use crate::explorer::view::Overlay;
+
+/// The line of a command: what reads back as the same command. `None` for what only a screen can mean: values as typed
+/// beside a unit, tried or taken back, folders, places of a chart.
+pub fn line(command: &Command) -> Option<String> {
+    let name = row_of(command.id()).name;
+    let rest = match command {
+        Command::Plain(_) => String::new(),
+        Command::Steps(count) | Command::RunOf(count) | Command::SelectEvent(count) => format!(" {count}"),
+        Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
+        Command::Assign(all) => assignments(all)?,
+        Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
+        Command::Unpin(None) => " all".to_owned(),
+        Command::Unpin(Some(number)) => format!(" {number}"),
+        Command::Open(name) => format!(" {}", quoted(name)?),
+        Command::OpenWith { name, assignments: all } => format!(" {}{}", quoted(name)?, assignments(all)?),
+        Command::SaveAs { name, replace, with_data } => {
+            let with_data = if *with_data { " with-data" } else { "" };
+            format!(" {}{with_data}{}", quoted(name)?, replacing(*replace))
+        }
+        Command::SaveAnyway => replacing(true).to_owned(),
+        Command::Export { what, path, replace } => {
+            format!(" {} {}{}", what.name(), quoted(path)?, replacing(*replace))
+        }
+        Command::Set { .. }
+        | Command::Try { .. }
+        | Command::TakeBack
+        | Command::Browse(_)
+        | Command::Pick { .. }
+        | Command::Delete(_)
+        | Command::ExportText { .. }
+        | Command::Zoom { .. } => return None,
+    };
+    Some(format!("{name}{rest}"))
+}
+
+fn replacing(replace: bool) -> &'static str {
+    if replace { " replace" } else { "" }
+}
+
+/// The word for an overlay.
+pub(super) fn overlay_name(overlay: Overlay) -> &'static str {
+    match overlay {
+        Overlay::Smooth => "smooth",
+        Overlay::Exact => "exact",
+        Overlay::Envelope => "envelope",
+    }
+}
+
+/// ` KEY=VALUE` for each.
+fn assignments(all: &[Assignment]) -> Option<String> {
+    all.iter().map(|(key, text)| Some(format!(" {key}={}", quoted(text)?))).collect()
+}

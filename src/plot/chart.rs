@@ -1,0 +1,84 @@
+//! What is drawn on paper.
+
+use crate::explorer::Window;
+use crate::figure::{Area, Bounds, Figure, Line, Mark};
+
+/// How an axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Run {
+    /// Equal steps.
+    #[default]
+    Linear,
+    /// Equal factors; what is not positive is not drawn.
+    Logarithmic,
+}
+
+/// An axis of a chart.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Axis {
+    /// What stands beside it: `δ (µm)`.
+    pub title: String,
+    /// How it runs.
+    pub run: Run,
+}
+
+/// A chart: what a figure shows, without what only a screen needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// The axis to the right.
+    pub x: Axis,
+    /// The axis upwards.
+    pub y: Axis,
+    /// The part that is shown.
+    pub bounds: Bounds,
+    /// The lines, in the order of drawing; those of one name are one entry of the legend.
+    pub lines: Vec<Line>,
+    /// The signs, the last on top.
+    pub marks: Vec<Mark>,
+    /// The hatched areas.
+    pub areas: Vec<Area>,
+    /// Why it is empty.
+    pub missing: Option<String>,
+}
+
+impl Chart {
+    /// A figure of the explorer in the part of it that `window` shows.
+    pub fn of(figure: &Figure, window: &Window) -> Self {
+        let axis = |title| Axis { title, run: Run::Linear };
+        Self {
+            x: axis(figure.x.title()),
+            y: axis(figure.y.title()),
+            bounds: figure.bounds.part(window),
+            lines: figure.lines.clone(),
+            marks: figure.marks.clone(),
+            areas: figure.areas.clone(),
+            missing: figure.missing.clone(),
+        }
+    }
+
+    /// A chart of `lines` over all their points; a logarithmic axis passes over what is not positive.
+    pub fn new(x: Axis, y: Axis, lines: Vec<Line>) -> Self {
+        let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
+        let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
+        let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };
+        Self { x, y, bounds, lines, marks: Vec::new(), areas: Vec::new(), missing: None }
+    }
+}
+
+impl Run {
+    /// Where a value stands on the axis, in steps of it; no number where it has no place.
+    fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Logarithmic => value.log10(),
+        }
+    }
+
+    /// The value at a place.
+    fn value(self, place: f64) -> f64 {
+        match self {
+            Self::Linear => place,
+            Self::Logarithmic => 10.0_f64.powf(place),
+        }
+    }
+}

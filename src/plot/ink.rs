@@ -1,0 +1,115 @@
+//! The look of the roles on paper.
+//!
+//! The colours are those of Okabe and Ito, told apart by people with any of the common colour vision deficiencies; no
+//! two roles that meet in one chart have the same dashes, so a grey print reads as well.
+
+use crate::contact::Control;
+use crate::figure::{Role, Sign};
+use kuva::plot::scatter::MarkerShape;
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    /// Its colour, `#rrggbb`.
+    pub color: &'static str,
+    /// Its width in units of 1/96 inch.
+    pub width: f64,
+    /// The lengths of dashes and gaps in the same units; empty for a solid line.
+    pub dashes: &'static str,
+}
+
+/// How a sign is drawn, and what it means in a legend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stamp {
+    /// Its shape.
+    pub shape: MarkerShape,
+    /// Its colour.
+    pub color: &'static str,
+    /// Half its width in units of 1/96 inch.
+    pub size: f64,
+    /// Its name.
+    pub name: &'static str,
+}
+
+const BLACK: &str = "#000000";
+const GREY: &str = "#7a7a7a";
+const ORANGE: &str = "#e69f00";
+const SKY: &str = "#56b4e9";
+const GREEN: &str = "#009e73";
+const BLUE: &str = "#0072b2";
+const VERMILLION: &str = "#d55e00";
+const PURPLE: &str = "#cc79a7";
+
+/// The strokes of the numbered curves: pins, loads, members of a family.
+const NUMBERED: [Stroke; 6] = [
+    Stroke { color: ORANGE, width: 1.2, dashes: "6 2" },
+    Stroke { color: SKY, width: 1.2, dashes: "2 2" },
+    Stroke { color: PURPLE, width: 1.2, dashes: "8 2 2 2" },
+    Stroke { color: GREEN, width: 1.2, dashes: "4 1.5" },
+    Stroke { color: VERMILLION, width: 1.2, dashes: "1.5 1.5" },
+    Stroke { color: BLUE, width: 1.2, dashes: "10 3" },
+];
+
+/// The stroke of a role.
+pub fn stroke(role: Role) -> Stroke {
+    let stroke = |color, width, dashes| Stroke { color, width, dashes };
+    match role {
+        Role::Zero => stroke(GREY, 0.5, ""),
+        Role::Undeformed => stroke(GREY, 1.0, "1 2"),
+        Role::Smooth => stroke(GREY, 1.0, "7 3"),
+        Role::Envelope => stroke(GREEN, 1.0, "9 2 2 2"),
+        Role::Pin(number) => NUMBERED[number.saturating_sub(1) % NUMBERED.len()],
+        // Over the curve: the dots stand on the line that they agree with.
+        Role::Exact => stroke(BLACK, 1.0, "0.8 3.2"),
+        Role::Unstable => stroke(VERMILLION, 1.0, "3 2"),
+        Role::Stable => stroke(BLUE, 1.6, ""),
+        Role::Inadmissible => stroke(PURPLE, 3.0, "0.8 2.4"),
+        Role::Body => stroke(BLUE, 1.4, ""),
+        Role::Contact => stroke(BLACK, 2.0, ""),
+        Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
+        Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
+        Role::Walk => stroke(BLACK, 0.8, ""),
+        Role::Jump => stroke(VERMILLION, 0.8, ""),
+    }
+}
+
+/// The stamp of a sign.
+pub fn stamp(sign: Sign) -> Stamp {
+    let stamp = |shape, color, size, name| Stamp { shape, color, size, name };
+    match sign {
+        Sign::OtherLimit(Control::Force) => stamp(MarkerShape::Square, ORANGE, 1.8, "limit of P"),
+        Sign::OtherLimit(_) => stamp(MarkerShape::Diamond, ORANGE, 1.8, "limit of δ"),
+        Sign::Limit => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
+        Sign::PullOff => stamp(MarkerShape::Cross, VERMILLION, 2.8, "pull-off"),
+        Sign::Landing => stamp(MarkerShape::Circle, GREEN, 2.2, "landing"),
+        Sign::Crest => stamp(MarkerShape::Triangle, GREY, 2.2, "crest"),
+        Sign::Edge => stamp(MarkerShape::Plus, BLACK, 3.0, "edge"),
+        Sign::Minimum => stamp(MarkerShape::Circle, BLUE, 2.4, "minimum"),
+        Sign::Maximum => stamp(MarkerShape::Diamond, VERMILLION, 2.4, "maximum"),
+        Sign::Barrier => stamp(MarkerShape::Star, VERMILLION, 3.0, "barrier"),
+        Sign::Stray | Sign::Walker => stamp(MarkerShape::Hexagon, BLACK, 2.6, "state"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn lines_that_meet_differ_without_their_colours() {
+        let curve = [Role::Smooth, Role::Envelope, Role::Exact, Role::Unstable, Role::Stable];
+        let more = [Role::Inadmissible, Role::Device, Role::Undeformed, Role::Barrier];
+        let looks: Vec<(String, &str)> = curve
+            .into_iter()
+            .chain(more)
+            .chain((1..=6).map(Role::Pin))
+            .map(|role| {
+                let stroke = stroke(role);
+                (format!("{:.1}", stroke.width), stroke.dashes)
+            })
+            .collect();
+        let distinct: HashSet<_> = looks.iter().map(|(_, dashes)| dashes).collect();
+        assert_eq!(distinct.len(), looks.len(), "{looks:?}");
+    }
+}

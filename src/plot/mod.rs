@@ -1,0 +1,45 @@
+//! Figures for print: a figure, or any chart of lines and marks, as SVG and PNG.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`chart`] | what is drawn: axes, lines, marks, areas; made from a figure of the explorer or by hand |
+//! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
+//! | [`paper`] | the figures of the paper, computed again |
+//! | [`svg`] | the one place that knows the drawing library |
+//! | [`png`] | the SVG as pixels (feature `png`) |
+//! | [`table`] | the data of a chart as CSV |
+//!
+//! A chart is drawn in its size on paper: 86 mm for one column of a journal, 178 mm for two, letters of 8 points.
+
+pub mod chart;
+pub mod ink;
+pub mod paper;
+#[cfg(feature = "png")]
+pub mod png;
+pub mod svg;
+pub mod table;
+
+pub use chart::Chart;
+
+/// The width of a figure on paper, in millimetres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Width(f64);
+
+impl Width {
+    /// One column of a journal.
+    pub const ONE_COLUMN: Self = Self(86.0);
+    /// Two columns, a whole page.
+    pub const TWO_COLUMNS: Self = Self(178.0);
+    /// What can be asked for: below it the letters leave no room for the curve, above it is no paper.
+    pub const RANGE: std::ops::RangeInclusive<f64> = 50.0..=500.0;
+
+    /// A width in millimetres; `None` outside [`Width::RANGE`].
+    pub fn millimetres(mm: f64) -> Option<Self> {
+        Self::RANGE.contains(&mm).then_some(Self(mm))
+    }
+
+    /// In millimetres.
+    pub fn get(self) -> f64 {
+        self.0
+    }
+}

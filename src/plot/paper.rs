@@ -1,0 +1,342 @@
+//! The figures of the paper, computed again: each with our numbers, the exact theory, and a caption that says how well
+//! they agree. Fig. 6 is a sketch of the problem and has no numbers.
+//!
+//! | figure | what it shows |
+//! |---|---|
+//! | 1, 3 | the contact pressure of the smooth sphere without and with adhesion |
+//! | 2, 4 | its force and contact radius |
+//! | 5 | the error over the number of rings |
+//! | 7 | the pressure on waves without adhesion, under rising load |
+//! | 8, 9 | force and contact radius on slight and on steep waves |
+//! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
+
+use super::chart::{Axis, Chart, Run};
+use crate::case::{Case, CaseError};
+use crate::contact::Control;
+use crate::explorer::{Axes, CurveData, Overlays, View, Window};
+use crate::figure::{Line, Role, Subject};
+use crate::preset::{Preset, ReadError, read_with, shipped};
+use crate::quasistatic::Profile;
+use crate::report::number::significant;
+use crate::ritz::{BasisError, Grading, NewtonSettings, Rings, solve};
+use crate::theory::Exact;
+use crate::verify::cases::{smooth, sphere};
+use crate::verify::convergence::radius_at;
+
+/// A figure of the paper.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// The name of its files: `fig-9a`.
+    pub name: &'static str,
+    /// What is drawn.
+    pub chart: Chart,
+    /// What it shows, and how well we and the theory agree.
+    pub caption: String,
+}
+
+/// Why a figure could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PaperError {
+    /// A shipped preset is not what it was.
+    #[error("a shipped preset cannot be read: {0}")]
+    Preset(#[from] ReadError),
+    /// A shipped preset is missing.
+    #[error("the shipped preset {0} is missing")]
+    Missing(&'static str),
+    /// A problem could not be computed.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A basis could not be made.
+    #[error(transparent)]
+    Basis(#[from] BasisError),
+    /// There is no equilibrium where the paper shows one.
+    #[error("there is no equilibrium at the contact radius {0}")]
+    NoState(f64),
+}
+
+/// The rings of the pressures: few enough to see each.
+const FEW_RINGS: &str = "basis.rings=20";
+/// δ/R of the errors of Fig. 5.
+const APPROACH: f64 = 0.1;
+/// The numbers of rings of Fig. 5.
+const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
+/// Of the contact this share counts in the differences of pressures: at an adhesive edge they have no bound.
+const COMPARED: f64 = 0.9;
+
+/// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
+///
+/// # Errors
+/// [`PaperError`] when a figure cannot be computed.
+pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
+    let mut sheets = Vec::new();
+    begin("Fig. 1");
+    sheets.push(smooth_pressure("fig-1", "fig-1-hertz", 0.3, "Hertz's theory")?);
+    begin("Fig. 2");
+    sheets.extend(curves(["fig-2a", "fig-2b"], "fig-1-hertz", "Smooth sphere without adhesion")?);
+    begin("Fig. 3");
+    sheets.push(smooth_pressure("fig-3", "fig-3-jkr", 0.3, "the theory of Johnson, Kendall and Roberts")?);
+    begin("Fig. 4");
+    sheets.extend(curves(["fig-4a", "fig-4b"], "fig-3-jkr", "Smooth sphere with adhesion, γ' = 0.05")?);
+    begin("Fig. 5");
+    sheets.push(errors()?);
+    begin("Fig. 7");
+    sheets.push(loads("fig-7a", "0.001", "A/λ = 0.01, λ/R = 0.1", &[0.12, 0.24, 0.36, 0.48])?);
+    sheets.push(loads("fig-7b", "0.01", "A/λ = 0.1, λ/R = 0.1", &[0.4, 0.6, 0.8])?);
+    begin("Fig. 8");
+    sheets.extend(curves(["fig-8a", "fig-8b"], "fig-8", "Slight waves, A/λ = 0.01, λ/R = 0.1, γ' = 0.05")?);
+    begin("Fig. 9");
+    sheets.extend(curves(["fig-9a", "fig-9b"], "fig-9", "Steep waves, A/λ = 0.05, λ/R = 0.05, γ' = 0.025")?);
+    begin("Fig. 10");
+    sheets.push(losses("fig-10a", Control::Displacement)?);
+    sheets.push(losses("fig-10b", Control::Force)?);
+    Ok(sheets)
+}
+
+/// Force over approach and contact radius over force of a shipped preset, in the paper's rings, over the exact solution.
+fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result<[Sheet; 2], PaperError> {
+    let preset = shipped(preset, &[])?;
+    let data = checked(&preset)?;
+    let case = &data.setting.case;
+    let theory = Exact::of(&case.problem).name();
+    let sheet = |name, view, what: &str| {
+        let chart = chart(&data, &preset, view);
+        let caption = format!(
+            "{title}: {what}. {} rings, stable parts solid, unstable ones dashed under displacement control, limit points \
+             marked. {theory} (dots): our curve is nowhere further from it than {} of the picture.",
+            case.basis.size(),
+            significant(furthest(&chart), 2)
+        );
+        Sheet { name, chart, caption }
+    };
+    Ok([
+        sheet(names[0], View::ForceApproach, "the force over the approach"),
+        sheet(names[1], View::RadiusForce, "the contact radius over the force"),
+    ])
+}
+
+/// The largest distance of the computed curve from the exact one, in shares of the picture.
+fn furthest(chart: &Chart) -> f64 {
+    let share = |(x, y): &(f64, f64)| {
+        let share = |[lo, hi]: [f64; 2], value: f64| (value - lo) / (hi - lo);
+        (share(chart.bounds.x, *x), share(chart.bounds.y, *y))
+    };
+    let points = |wanted: &dyn Fn(Role) -> bool| -> Vec<(f64, f64)> {
+        chart
+            .lines
+            .iter()
+            .filter(|line| wanted(line.role))
+            .flat_map(|line| line.points.iter().map(share))
+            .collect()
+    };
+    let ours = points(&|role| matches!(role, Role::Stable | Role::Unstable));
+    let exact = points(&|role| role == Role::Exact);
+    let from = |(x, y): (f64, f64)| {
+        exact.windows(2).map(|ends| distance((x, y), ends[0], ends[1])).fold(f64::INFINITY, f64::min)
+    };
+    ours.into_iter().map(from).fold(0.0, f64::max)
+}
+
+/// The distance of a point from the line between two others.
+fn distance((x, y): (f64, f64), (ax, ay): (f64, f64), (bx, by): (f64, f64)) -> f64 {
+    let (dx, dy) = (bx - ax, by - ay);
+    let length = dx * dx + dy * dy;
+    let share = if length > 0.0 { (((x - ax) * dx + (y - ay) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (x - ax - share * dx).hypot(y - ay - share * dy)
+}
+
+/// A view of a curve with the exact solution.
+fn chart(data: &CurveData, preset: &Preset, view: View) -> Chart {
+    let overlays = Overlays { smooth: true, exact: true, envelope: false };
+    let subject = Subject {
+        curve: data,
+        walk: Vec::new(),
+        inside: None,
+        device: None,
+        pins: &[],
+        preset,
+        overlays,
+        axes: Axes::Reduced,
+    };
+    Chart::of(&subject.figure(view), &Window::WHOLE)
+}
+
+/// The quasi-static path of Fig. 9 and what it dissipates, in the eigenfunctions, whose energies are good to rounding.
+fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
+    let word = if control == Control::Force { "force" } else { "displacement" };
+    let set = [format!("path.control={word}"), "basis.kind=spectral".to_owned()];
+    let preset = shipped("fig-9", &[&set[0], &set[1]])?;
+    let data = checked(&preset)?;
+    let events = data.report.as_ref().map_or(&[][..], |report| &report.events);
+    let total: f64 = events.iter().filter_map(|event| event.dissipated).sum();
+    let apart = events
+        .iter()
+        .filter_map(|event| Some((event.dissipated? - event.dissipated_by_area?).abs() / event.dissipated?))
+        .fold(0.0, f64::max);
+    let caption = format!(
+        "The instabilities of Fig. 9 under {word} control: the path followed (solid), the jumps, and the energy each \
+         dissipates (hatched), {} E*R³ in the {} of them that lose a defined energy. The drop of the potential and the \
+         hatched area, found independently, differ by at most {}.",
+        significant(total, 5),
+        events.iter().filter(|event| event.dissipated.is_some()).count(),
+        significant(apart, 2)
+    );
+    Ok(Sheet { name, chart: chart(&data, &preset, View::Unloading), caption })
+}
+
+/// The contact pressure of the smooth sphere in a few rings, over theory.
+fn smooth_pressure(
+    name: &'static str,
+    preset: &'static str,
+    s: f64,
+    theory: &str,
+) -> Result<Sheet, PaperError> {
+    let preset = shipped(preset, &[FEW_RINGS])?;
+    let case = Case::new(&preset)?;
+    let pressure = Pressure::at(&case, s)?;
+    let rings = case.basis.size();
+    let caption = format!(
+        "The contact pressure of the smooth sphere at s = {s} R in {rings} rings (steps) and {theory} (dots). Within \
+         {COMPARED} s they differ by at most {} of the pressure on the axis.",
+        significant(pressure.apart, 2)
+    );
+    let lines = vec![
+        Line::new(Role::Zero, "", vec![(0.0, 0.0), (1.0, 0.0)]),
+        Line::new(Role::Body, format!("{rings} rings"), pressure.steps(rings)),
+        Line::new(Role::Exact, Exact::of(&case.problem).name(), pressure.exact),
+    ];
+    Ok(Sheet { name, chart: pressure_chart(lines), caption })
+}
+
+/// The pressure on waves without adhesion at these contact radii.
+fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Result<Sheet, PaperError> {
+    let last = radii.iter().copied().fold(0.0, f64::max);
+    let set = [
+        "material.work_of_adhesion=0".to_owned(),
+        format!("gap.amplitude={amplitude}"),
+        "basis.kind=spectral".to_owned(),
+        format!("path.start_contact_radius={last}"),
+    ];
+    let preset = shipped("fig-8", &[&set[0], &set[1], &set[2], &set[3]])?;
+    let case = Case::new(&preset)?;
+    let mut lines = vec![Line::new(Role::Zero, "", vec![(0.0, 0.0), (last, 0.0)])];
+    let (mut apart, mut smallest) = (0.0_f64, f64::INFINITY);
+    for (i, &s) in radii.iter().enumerate() {
+        let pressure = Pressure::at(&case, s)?;
+        apart = apart.max(pressure.apart);
+        smallest = pressure.ours.iter().map(|(_, p)| *p).fold(smallest, f64::min);
+        let load = format!("P = {} E*R²", significant(pressure.force, 3));
+        let at_radius = |line: Vec<(f64, f64)>| line.into_iter().map(|(r, p)| (r * s, p)).collect();
+        lines.push(Line::new(Role::Pin(i + 1), load, at_radius(pressure.ours)));
+        lines.push(Line::new(Role::Exact, Exact::of(&case.problem).name(), at_radius(pressure.exact)));
+    }
+    let sign = if smallest < 0.0 {
+        "Where the waves are steep the pressure is negative in the troughs: without adhesion the disc would come apart \
+         there, and one connected disc is an assumption."
+    } else {
+        "It is positive everywhere, so the contact is one connected disc."
+    };
+    let caption = format!(
+        "The contact pressure on waves without adhesion, {title}, under rising load: eigenfunctions (lines) and the exact \
+         solution (dots). {sign} The two differ by at most {} of the pressure on the axis.",
+        significant(apart, 2)
+    );
+    let mut chart = pressure_chart(lines);
+    chart.x.title = "r/R".to_owned();
+    Ok(Sheet { name, chart, caption })
+}
+
+fn pressure_chart(lines: Vec<Line>) -> Chart {
+    let axis = |title: &str| Axis { title: title.to_owned(), run: Run::Linear };
+    Chart::new(axis("r/s"), axis("p/E*"), lines)
+}
+
+/// A pressure and the exact one, over r/s.
+struct Pressure {
+    ours: Vec<(f64, f64)>,
+    exact: Vec<(f64, f64)>,
+    /// P.
+    force: f64,
+    /// The largest difference within `COMPARED`, in the exact pressures on the axis.
+    apart: f64,
+}
+
+impl Pressure {
+    /// At the equilibrium of contact radius `s`, in the problem's own units, which are reduced ones here.
+    fn at(case: &Case, s: f64) -> Result<Self, PaperError> {
+        let curve = case.sweep(|| true)?;
+        let point = curve.equilibrium.explicit(s).ok_or(PaperError::NoState(s))?;
+        let state = curve.equilibrium.state(&point);
+        let profile = Profile::of(&case.reduced, &*case.basis, s, state.approach);
+        let exact = Exact::of(&case.problem);
+        let ours: Vec<(f64, f64)> =
+            profile.inside.iter().map(|inside| (inside.radius / s, inside.pressure)).collect();
+        let axis = exact.pressure(s, 0.0).abs();
+        let apart = ours
+            .iter()
+            .filter(|(r, _)| *r <= COMPARED)
+            .map(|(r, p)| (p - exact.pressure(s, r * s)).abs() / axis)
+            .fold(0.0, f64::max);
+        // Up to the last radius of ours: beyond it the exact one falls without bound.
+        let last = ours.last().map_or(0.0, |(r, _)| *r);
+        let fine = (0..=400).map(|i| last * f64::from(i) / 400.0);
+        let exact = fine.map(|r| (r, exact.pressure(s, r * s))).collect();
+        Ok(Self { ours, exact, force: state.force, apart })
+    }
+
+    /// The pressure of uniform rings as the steps it is.
+    fn steps(&self, rings: usize) -> Vec<(f64, f64)> {
+        let half = 0.5 / rings as f64;
+        self.ours.iter().flat_map(|(r, p)| [(r - half, *p), (r + half, *p)]).collect()
+    }
+}
+
+/// The errors of force and contact radius over the number of rings.
+fn errors() -> Result<Sheet, PaperError> {
+    let mut lines = Vec::new();
+    let mut words = Vec::new();
+    for (i, (title, work_of_adhesion)) in [("Hertz", 0.0), ("JKR", 0.01)].into_iter().enumerate() {
+        let exact = smooth(work_of_adhesion);
+        let radius = radius_at(&exact, APPROACH);
+        let force = exact.force(radius);
+        let problem = sphere(work_of_adhesion).reduced();
+        let mut found = Vec::new();
+        for rings in RINGS {
+            let basis =
+                Rings::shared_with(rings, Grading::Uniform, &mut |_| true).map_err(BasisError::from)?;
+            let start = 3.0 * radius;
+            let solved =
+                solve(&*basis, &problem, Control::Displacement, APPROACH, start, NewtonSettings::default());
+            let state = solved.map_err(|_| PaperError::NoState(radius))?.evaluation;
+            let errors =
+                [((state.contact_radius - radius) / radius).abs(), ((state.force - force) / force).abs()];
+            found.push((rings as f64, errors));
+        }
+        for (k, quantity) in ["contact radius", "force"].into_iter().enumerate() {
+            let points: Vec<(f64, f64)> = found.iter().map(|(rings, errors)| (*rings, errors[k])).collect();
+            if let [.., (before, larger), (after, smaller)] = points[..] {
+                let order = (larger / smaller).ln() / (after / before).ln();
+                words.push(format!("{title}, {quantity}: {}", significant(order, 2)));
+            }
+            lines.push(Line::new(Role::Pin(2 * i + k + 1), format!("{title}, {quantity}"), points));
+        }
+    }
+    let axis = |title: &str| Axis { title: title.to_owned(), run: Run::Logarithmic };
+    let caption = format!(
+        "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
+         number of rings N. The observed orders at the finest meshes are {}.",
+        words.join("; ")
+    );
+    let chart = Chart::new(axis("N"), axis("relative error"), lines);
+    Ok(Sheet { name: "fig-5", chart, caption })
+}
+
+/// A shipped preset with other values.
+fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperError> {
+    let found = shipped::find(name).ok_or(PaperError::Missing(name))?;
+    Ok(read_with(name, found.text, assignments)?)
+}
+
+fn checked(preset: &Preset) -> Result<CurveData, PaperError> {
+    let data = CurveData::compute(preset, |_| true)?;
+    Ok(data.checked(&mut || true).unwrap_or(data))
+}

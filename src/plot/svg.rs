@@ -1,0 +1,270 @@
+//! A chart as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
+
+use super::Width;
+use super::chart::{Chart, Run};
+use super::ink::{self, Stroke};
+use crate::figure::{Line, Mark, Role};
+use kuva::plot::fill_pattern::FillPattern;
+use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
+use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
+use kuva::prelude::{Layout, Plot, SvgBackend, TextAnnotation, Theme, TickAlign};
+use kuva::render::color::Color;
+use kuva::render::layout::ComputedLayout;
+use kuva::render::plots::Plot as Drawn;
+use kuva::render::render::{PathData, Primitive, Scene, render_multiple};
+use std::fmt::Write;
+
+/// The library counts in units of 1/96 inch.
+const UNITS_PER_MM: f64 = 96.0 / 25.4;
+/// The library leaves more room below the axis and below the legend than paper has.
+const NEARER: f64 = 8.0;
+const CROPPED: f64 = 18.0;
+/// The height of the field of the axes over its width.
+const ASPECT: f64 = 0.72;
+/// Letters of 8 and 7 points in the library's units.
+const LETTERS: u32 = 11;
+const SMALL_LETTERS: u32 = 9;
+/// Families with like widths, the first the one the library reckons with.
+const FONT: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
+/// The name of the field's outline in the document; the library's own would change from figure to figure.
+const FIELD: &str = "field";
+
+/// `chart` as an SVG document of this width; the height follows from what the legend needs.
+pub fn svg(chart: &Chart, width: Width) -> String {
+    let wide = width.get() * UNITS_PER_MM;
+    let legend = legend(chart);
+    // What surrounds the field does not depend on the height: one trial tells it.
+    let trial = ComputedLayout::from_layout(&layout(chart, &legend, wide, wide));
+    let high = (wide - trial.plot_height() + ASPECT * trial.plot_width()).round();
+    let layout = layout(chart, &legend, wide, high);
+    let field = ComputedLayout::from_layout(&layout);
+    let mut scene = render_multiple(plots(chart), layout);
+    hatch(chart, &field, &mut scene);
+    let own_name = scene.elements.iter().find_map(|element| match element {
+        Primitive::ClipStart { id, .. } => Some(id.clone()),
+        _ => None,
+    });
+    let mut text = SvgBackend::new().with_pretty(true).render_scene(&scene);
+    if let Some(name) = own_name {
+        text = text.replace(&format!("\"{name}\""), &format!("\"{FIELD}\""));
+        text = text.replace(&format!("#{name})"), &format!("#{FIELD})"));
+    }
+    in_millimetres(&text, wide, high - if legend.is_empty() { 0.0 } else { CROPPED })
+}
+
+/// The document with its size on paper: the library knows only its own units.
+fn in_millimetres(text: &str, wide: f64, high: f64) -> String {
+    let mm = |units: f64| (units / UNITS_PER_MM * 100.0).round() / 100.0;
+    let (head, rest) = text.split_once('>').unwrap_or((text, ""));
+    let kept = head.split(" width=").next().unwrap_or("<svg xmlns=\"http://www.w3.org/2000/svg\"");
+    let mut svg = String::with_capacity(text.len() + 100);
+    // Writing to a String cannot fail.
+    let _ = write!(
+        svg,
+        r#"{kept} width="{}mm" height="{}mm" viewBox="0 0 {wide:.2} {high:.2}" font-family="{FONT}">"#,
+        mm(wide),
+        mm(high)
+    );
+    svg.push_str(rest);
+    svg
+}
+
+fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout {
+    let ([x, y], bounds) = ([&chart.x, &chart.y], &chart.bounds);
+    let theme = Theme { show_grid: false, legend_border: "none".to_owned(), ..Theme::light() };
+    let mut layout = Layout::new((bounds.x[0], bounds.x[1]), (bounds.y[0], bounds.y[1]))
+        .with_theme(theme)
+        .with_width(wide)
+        .with_height(high)
+        .with_x_label(plain(&x.title))
+        .with_y_label(plain(&y.title))
+        .with_label_size(LETTERS)
+        .with_tick_size(SMALL_LETTERS)
+        .with_body_size(SMALL_LETTERS)
+        .with_font_family(FONT)
+        .with_x_label_offset(0.0, -NEARER)
+        .with_ticks(5)
+        .with_tick_length(3.5)
+        .with_tick_align(TickAlign::Inside)
+        .with_axis_line_width(0.7)
+        .with_tick_width(0.7)
+        .with_box_axes()
+        .with_show_grid(false)
+        .with_x_axis_min(bounds.x[0])
+        .with_x_axis_max(bounds.x[1])
+        .with_y_axis_min(bounds.y[0])
+        .with_y_axis_max(bounds.y[1]);
+    if x.run == Run::Logarithmic {
+        layout = layout.with_log_x();
+    }
+    if y.run == Run::Logarithmic {
+        layout = layout.with_log_y();
+    }
+    if !legend.is_empty() {
+        layout = layout
+            .with_legend_entries(legend.to_vec())
+            .with_legend_position(LegendPosition::OutsideBottomColumns)
+            .with_legend_box(false);
+    }
+    if let Some(reason) = &chart.missing {
+        let [x, y] = [bounds.x, bounds.y].map(|[lo, hi]| 0.5 * lo + 0.5 * hi);
+        layout =
+            layout.with_annotation(TextAnnotation::new(plain(reason), x, y).with_font_size(SMALL_LETTERS));
+    }
+    layout
+}
+
+/// A text as it stands: to the library a dollar sign begins a formula, and no document holds control characters.
+fn plain(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).collect::<String>().replace('$', "\\$")
+}
+
+fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -> LegendEntry {
+    let dasharray = (!dashes.is_empty()).then(|| dashes.to_owned());
+    LegendEntry { label: plain(name), color: color.to_owned(), shape, dasharray }
+}
+
+/// Every name once, the lines before the signs.
+fn legend(chart: &Chart) -> Vec<LegendEntry> {
+    let mut named: Vec<&Line> = chart.lines.iter().filter(|line| !line.name.is_empty()).collect();
+    // The computed curve first, as on the screen.
+    named.sort_by_key(|line| match line.role {
+        Role::Pin(number) => (1, std::cmp::Reverse(Role::Pin(usize::MAX - number))),
+        role => (0, std::cmp::Reverse(role)),
+    });
+    let mut entries: Vec<LegendEntry> = Vec::new();
+    let mut add = |entry: LegendEntry| {
+        if !entries.iter().any(|other| other.label == entry.label) {
+            entries.push(entry);
+        }
+    };
+    for line in named {
+        let Stroke { color, dashes, .. } = ink::stroke(line.role);
+        add(entry(&line.name, color, LegendShape::Line, dashes));
+    }
+    for mark in &chart.marks {
+        let stamp = ink::stamp(mark.sign);
+        add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
+    }
+    if !chart.areas.is_empty() {
+        add(entry("energy lost", HATCH, LegendShape::Rect, ""));
+    }
+    entries
+}
+
+/// The tint under a hatched area.
+const HATCH: &str = "#f3d9e6";
+
+fn plots(chart: &Chart) -> Vec<Plot> {
+    // The dots of the exact solution stand on the line that they agree with.
+    let (exact, others): (Vec<&Line>, Vec<&Line>) =
+        chart.lines.iter().partition(|line| line.role == Role::Exact);
+    let mut plots: Vec<Drawn> = others.into_iter().chain(exact).flat_map(line).collect();
+    plots.extend(chart.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()).map(mark));
+    if plots.is_empty() {
+        // Without anything to draw the library draws no axes either.
+        plots.push(LinePlot::new().into());
+    }
+    plots
+}
+
+/// A line as its finite pieces.
+fn line(line: &Line) -> Vec<Drawn> {
+    let Stroke { color, width, dashes } = ink::stroke(line.role);
+    line.points
+        .split(|(x, y)| !(x.is_finite() && y.is_finite()))
+        .filter(|piece| piece.len() > 1)
+        .map(|piece| {
+            let plot =
+                LinePlot::new().with_data(piece.iter().copied()).with_color(color).with_stroke_width(width);
+            let style =
+                if dashes.is_empty() { LineStyle::Solid } else { LineStyle::Custom(dashes.to_owned()) };
+            plot.with_line_style(style).into()
+        })
+        .collect()
+}
+
+fn mark(mark: &Mark) -> Drawn {
+    let stamp = ink::stamp(mark.sign);
+    ScatterPlot::new()
+        .with_data([mark.at])
+        .with_color(stamp.color)
+        .with_size(stamp.size)
+        .with_marker(stamp.shape)
+        .into()
+}
+
+/// Puts the hatched areas below the lines, inside the field.
+fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
+    let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
+    let (Some(begin), false) = (begin, chart.areas.is_empty()) else { return };
+    let pattern = FillPattern::DiagonalForward;
+    scene.defs.push(pattern.svg_def().to_owned());
+    let fills = [Color::from(HATCH), Color::from(format!("url(#{})", pattern.id()))];
+    let paths = chart.areas.iter().flat_map(|area| {
+        let mut outline = String::new();
+        for (i, (x, y)) in area.outline.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).enumerate() {
+            let letter = if i == 0 { 'M' } else { 'L' };
+            // Writing to a String cannot fail.
+            let _ = write!(outline, "{letter}{:.2},{:.2} ", field.map_x(*x), field.map_y(*y));
+        }
+        outline.push('Z');
+        fills.clone().map(|fill| {
+            Primitive::Path(Box::new(PathData {
+                d: outline.clone(),
+                fill: Some(fill),
+                stroke: Color::None,
+                stroke_width: 0.0,
+                opacity: None,
+                stroke_dasharray: None,
+            }))
+        })
+    });
+    let paths: Vec<Primitive> = paths.collect();
+    scene.elements.splice(begin + 1..=begin, paths);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Area, Role, Sign};
+    use crate::plot::chart::Axis;
+
+    fn chart(lines: Vec<Line>) -> Chart {
+        Chart::new(Axis::default(), Axis::default(), lines)
+    }
+
+    #[test]
+    fn nothing_a_point_and_numbers_that_are_none_are_valid_documents() {
+        let nan = f64::NAN;
+        let missing = Chart { missing: Some("no path: $1 <&> \u{1b}".to_owned()), ..chart(Vec::new()) };
+        let broken =
+            Line::new(Role::Stable, "a < b & \"c\"", vec![(0.0, 1.0), (nan, 2.0), (1.0, 2.0), (2.0, 1e300)]);
+        let mut full = chart(vec![broken]);
+        full.areas.push(Area { outline: vec![(0.0, 0.0), (nan, 1.0), (1.0, 1.0)], lost: None });
+        full.marks.push(Mark { sign: Sign::Limit, at: (0.5, nan) });
+        let log = Axis { title: String::new(), run: Run::Logarithmic };
+        let negative =
+            Chart::new(log.clone(), log, vec![Line::new(Role::Body, "", vec![(-1.0, 2.0), (1.0, 0.0)])]);
+        for chart in [
+            chart(Vec::new()),
+            chart(vec![Line::new(Role::Stable, "one", vec![(1.0, 2.0)])]),
+            missing,
+            full,
+            negative,
+        ] {
+            for width in [Width::ONE_COLUMN, Width::TWO_COLUMNS] {
+                let text = svg(&chart, width);
+                let document = roxmltree::Document::parse(&text).unwrap();
+                assert_eq!(document.root_element().tag_name().name(), "svg");
+                assert!(!text.contains("NaN"), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_chart_is_the_same_document_every_time() {
+        let chart = chart(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
+        assert_eq!(svg(&chart, Width::ONE_COLUMN), svg(&chart, Width::ONE_COLUMN));
+    }
+}

@@ -1,0 +1,141 @@
+//! The preset changed by dotted key: a change is refused as a whole or made as a whole.
+
+use super::Preset;
+use crate::contact::{Control, Shape};
+use crate::preset::build::{Values, build};
+use crate::preset::groups;
+use crate::preset::invalid::Invalid;
+use crate::preset::measured;
+use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, parameter};
+use crate::preset::shape;
+use crate::preset::value::Value;
+use crate::units::{Quantity, parse_quantity};
+
+impl Preset {
+    /// Gives a key another value.
+    ///
+    /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
+    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
+    /// parameters it has in common with the old one, its others begin with 1; a `basis.kind` drops the keys of the old
+    /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. A `gap.file` is
+    /// read here, relative to the folder of the one before.
+    ///
+    /// # Errors
+    /// The key is unknown, or the preset would no longer be valid; it is left as it was.
+    pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let value = row.check(self.located(&row, value)?)?;
+        if groups::row(key).is_some() {
+            return self.set_group(&row, value);
+        }
+        let mut values = self.keyed();
+        if CHOOSERS.contains(&&*row.key) {
+            values.retain(|key, _| {
+                parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
+            });
+        }
+        match &*row.key {
+            "gap.shape" => {
+                let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
+                shape::begin(&mut values, &value.to_string(), radius, self.gap.wave());
+            }
+            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
+            _ => {}
+        }
+        put(&mut values, &row, value);
+        if row.key == "gap.formula" {
+            shape::fit_parameters(&mut values, |_| false);
+        }
+        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        Ok(())
+    }
+
+    fn set_group(&mut self, row: &Parameter, value: Value) -> Result<(), Invalid> {
+        let x = match value {
+            Value::Number(x) => x,
+            other => {
+                let text = other.to_string();
+                let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
+                parse_quantity(&text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)?
+            }
+        };
+        let mut changed = self.clone();
+        for (key, value) in groups::changes(self, row, x)? {
+            changed.set(&key, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`] and [`Preset::set`].
+    pub fn assign(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let value = row.parse(text)?;
+        self.set(key, value)
+    }
+
+    /// The value of a row as a person types it beside its unit: in SI a bare number counts in the unit shown there.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`].
+    pub fn typed(&self, row: &Parameter, text: &str) -> Result<Value, Invalid> {
+        let quantity = if row.kind == Kind::Control { Quantity::ForcePerLength } else { row.quantity };
+        let (Some(unit), true) =
+            (self.units.unit(quantity), row.kind.is_number() || row.kind == Kind::Control)
+        else {
+            return row.parse(text);
+        };
+        let number = text.trim();
+        let number = if row.kind == Kind::Control {
+            number.strip_prefix("stiffness=").unwrap_or(number)
+        } else {
+            number
+        };
+        match parse_quantity(number) {
+            Ok(value) if value.unit.is_none() => row.parse(&format!("{number} {}", unit.ascii())),
+            _ => row.parse(text),
+        }
+    }
+
+    /// Lets an optional key follow from others again, or takes its default.
+    ///
+    /// # Errors
+    /// The key is unknown or required.
+    pub fn reset(&mut self, key: &str) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let mut values = self.keyed();
+        let parent = row.table().filter(|_| row.is_part());
+        values.remove(parent.unwrap_or(&row.key));
+        if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&&*row.key)) {
+            values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(&row.key, word)));
+        }
+        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        Ok(())
+    }
+
+    /// A value as it is to be checked: the file of a profile is read from the folder of the one before.
+    fn located(&self, row: &Parameter, value: Value) -> Result<Value, Invalid> {
+        match &self.gap {
+            Shape::Profile(before) => measured::located(row, value, before.rows().folder.as_deref()),
+            _ => Ok(value),
+        }
+    }
+}
+
+/// Stores a checked value; a part of a value becomes the whole.
+pub(in crate::preset) fn put(values: &mut Values, row: &Parameter, value: Value) {
+    match (&*row.key, value) {
+        ("path.control.stiffness", Value::Number(k)) => {
+            values.insert("path.control".into(), Control::Stiffness(k).into());
+        }
+        ("path.control.stiffness", Value::Typed(text)) => {
+            values.insert("path.control".into(), Value::Typed(text));
+        }
+        (_, value) => {
+            values.insert(row.key.clone(), value);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The preset by dotted key: its values and its rows.
+
+use super::{BasisSpec, Functions, Preset, start_key};
+use crate::contact::Control;
+use crate::preset::build::Values;
+use crate::preset::family;
+use crate::preset::groups;
+use crate::preset::invalid::Invalid;
+use crate::preset::schema::{AUTO, CHOOSERS, DISPLAY, FORMAT, PARAMETERS, Row, SYSTEMS, parameter};
+use crate::preset::shape;
+use crate::preset::suggest::closest_key;
+use crate::preset::text::quote;
+use crate::preset::value::Value;
+use crate::units::UnitSystem;
+
+impl Preset {
+    /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset or is left
+    /// to follow from others.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<Value> {
+        let Self { title, units, material, gap, basis, path } = self;
+        Some(match key {
+            "format" => FORMAT.into(),
+            "title" => title.as_str().into(),
+            // Reduced units are what a preset has when it says nothing.
+            "units" => match units {
+                UnitSystem::Reduced => return None,
+                UnitSystem::Si(_) => SYSTEMS[1].into(),
+            },
+            key if key.starts_with("display.") => {
+                let (_, quantity) = DISPLAY.iter().find(|(known, _)| *known == key)?;
+                units.unit(*quantity)?.ascii().as_str().into()
+            }
+            "material.effective_modulus" => material.effective_modulus.into(),
+            "material.work_of_adhesion" => material.work_of_adhesion.into(),
+            "material.range_of_action" => material.range_of_action?.into(),
+            key if key.starts_with("gap.") => return shape::get(gap, key),
+            "basis.kind" => match basis {
+                BasisSpec::Rings { .. } => "rings".into(),
+                BasisSpec::Spectral { .. } => "spectral".into(),
+            },
+            "basis.rings" | "basis.functions" => match (key, *basis) {
+                ("basis.rings", BasisSpec::Rings { rings: n, .. })
+                | ("basis.functions", BasisSpec::Spectral { functions: Functions::Count(n) }) => {
+                    i64::try_from(n).ok()?.into()
+                }
+                ("basis.functions", BasisSpec::Spectral { functions: Functions::Auto }) => AUTO.into(),
+                _ => return None,
+            },
+            "basis.grading" => match basis {
+                BasisSpec::Rings { grading, .. } => grading.name().into(),
+                BasisSpec::Spectral { .. } => return None,
+            },
+            key if groups::row(key).is_some() => return groups::get(self, key),
+            "path.control" => path.control.into(),
+            "path.control.stiffness" => match path.control {
+                Control::Stiffness(k) => k.into(),
+                Control::Displacement | Control::Force => return None,
+            },
+            "path.end_contact_radius" => path.end_contact_radius?.into(),
+            key if key == start_key(path.start) => path.start.value().into(),
+            _ => return None,
+        })
+    }
+
+    /// The rows of this preset, in the order in which files and screens show them: those of the table, and those
+    /// that it makes itself.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
+        let (before, rest) = PARAMETERS.split_at(after);
+        let own = shape::rows(&self.gap).into_iter().map(Row::Owned);
+        before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest.iter().map(Row::Borrowed))
+    }
+
+    /// The row of a key: with the range and the quantity that this preset gives it, where it does.
+    #[must_use]
+    pub fn row(&self, key: &str) -> Option<Row> {
+        self.rows()
+            .find(|row| row.key == key)
+            .or_else(|| parameter(key))
+            .or_else(|| groups::row(key).map(Row::Borrowed))
+    }
+
+    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, and the waves
+    /// after the first [`WAVE_KNOBS`](family::WAVE_KNOBS).
+    pub fn knobs(&self) -> impl Iterator<Item = Row> {
+        self.rows().filter(|row| {
+            row.key != "format"
+                && !is_of_units(&row.key)
+                && !shape::is_range(&row.key)
+                && family::has_knob(&row.key)
+        })
+    }
+
+    /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
+    #[must_use]
+    pub fn values(&self) -> Vec<(Row, Value)> {
+        self.rows().filter_map(|row| self.get(&row.key).map(|value| (row, value))).collect()
+    }
+
+    pub(super) fn unknown_key(&self, key: &str) -> Invalid {
+        let rows: Vec<Row> = self.rows().collect();
+        let meant = closest_key(key, rows.iter().map(|row| (&*row.key, &*row.label)));
+        Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
+    }
+
+    pub(super) fn keyed(&self) -> Values {
+        self.values()
+            .into_iter()
+            .filter(|(row, _)| !row.is_part())
+            .map(|(row, v)| (row.key.clone(), v))
+            .collect()
+    }
+}
+
+/// Whether a key says units, not the problem.
+#[must_use]
+pub fn is_of_units(key: &str) -> bool {
+    key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
+}
+
+/// The error for a key without a row.
+pub(in crate::preset) fn unknown_key(key: &str) -> Invalid {
+    let meant = closest_key(key, PARAMETERS.iter().map(|row| (&*row.key, &*row.label)));
+    Invalid::UnknownKey { key: quote(key), meant: meant.map(Into::into) }
+}

@@ -1,0 +1,104 @@
+//! Assignments laid over a file.
+
+use super::{WAVY, edited, messages, set};
+use crate::contact::{Control, Shape, Start};
+use crate::preset::model::{BasisSpec, Functions};
+use crate::preset::{read, read_with};
+use crate::ritz::Grading;
+
+#[test]
+fn assignments_are_laid_over_the_file_in_order() {
+    assert_eq!(set(&["basis.rings=400"]).basis, BasisSpec::Rings { rings: 400, grading: Grading::Uniform });
+    assert_eq!(
+        set(&["basis.rings=400", "basis.rings = 50"]).basis,
+        BasisSpec::Rings { rings: 50, grading: Grading::Uniform }
+    );
+    assert_eq!(set(&["title=a = b"]).title, "a = b");
+    for spring in [
+        "path.control=stiffness=0.15",
+        "path.control.stiffness=0.15",
+        "path.control={stiffness=0.15}",
+        "path={control={stiffness=0.15}}",
+    ] {
+        assert_eq!(set(&[spring]).path.control, Control::Stiffness(0.15), "{spring}");
+    }
+    assert_eq!(set(&["path.control.stiffness=1", "path.control=force"]).path.control, Control::Force);
+    assert_eq!(set(&["path.start_force=0.02"]).path.start, Start::Force(0.02));
+    assert_eq!(set(&["path.start_force=0.02", "path.start_approach=1"]).path.start, Start::Approach(1.0));
+    assert_eq!(set(&["gap.shape=sphere"]).gap, Shape::Sphere { radius_of_curvature: 1.0 });
+}
+
+#[test]
+fn a_basis_drops_and_brings_its_keys() {
+    let auto = BasisSpec::Spectral { functions: Functions::Auto };
+    assert_eq!(set(&["basis.kind=spectral"]).basis, auto);
+    assert_eq!(set(&["basis.kind=spectral", "basis.functions=auto"]).basis, auto);
+    let count = BasisSpec::Spectral { functions: Functions::Count(64) };
+    assert_eq!(set(&["basis.functions=64", "basis.kind=spectral"]).basis, count);
+    let text = WAVY.replace("\"rings\"\nrings = 200", "\"spectral\"\nfunctions = \"auto\"");
+    assert_eq!(read("w.toml", &text).unwrap().basis, auto);
+    for (old, new, expected) in [
+        ("\"rings\"", "\"spectral\"", "w.toml:13: basis.rings belongs to rings, and the basis is spectral"),
+        (
+            "rings = 200",
+            "functions = 9",
+            "w.toml:13: basis.functions belongs to spectral, and the basis is rings",
+        ),
+        (
+            "\"rings\"\nrings = 200",
+            "\"spectral\"\nfunctions = 3",
+            "w.toml:13: basis.functions = 3 is out of range: it must be \"auto\" or a whole number from 4 to 4096",
+        ),
+        (
+            "\"rings\"\nrings = 200",
+            "\"spectral\"\nfunctions = \"many\"",
+            "w.toml:13: basis.functions must be \"auto\" or a whole number from 4 to 4096, not the text \"many\"",
+        ),
+    ] {
+        assert_eq!(edited(old, new), expected);
+    }
+}
+
+#[test]
+fn an_assignment_repairs_a_wrong_line() {
+    let text = WAVY.replace("= 200", "= 1");
+    assert_eq!(
+        read_with("w.toml", &text, &["basis.rings=9"]).unwrap().basis,
+        BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
+    );
+}
+
+#[test]
+fn a_wrong_assignment_is_named() {
+    for (assignment, expected) in [
+        ("gap.amplitude=-1", "--set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
+        ("gap.amplitude", "--set gap.amplitude: an assignment is KEY=VALUE"),
+        (
+            "gap.wavelenght=1",
+            "--set gap.wavelenght=1: unknown key gap.wavelenght; did you mean gap.wavelength?",
+        ),
+        ("gap=1", "--set gap=1: gap is a table, not \"1\"; set one of its keys, as gap.shape"),
+        ("=1", "--set =1: unknown key "),
+        (
+            "path.start_contact_radius=0.001",
+            "--set path.start_contact_radius=0.001: path.end_contact_radius = 0.002 is not below",
+        ),
+        (
+            "gap.radius_of_curvature=0.01",
+            "--set gap.radius_of_curvature=0.01: path.start_contact_radius = 0.5 is out of range",
+        ),
+        ("format=3", "--set format=3: format = 3 is not known"),
+    ] {
+        let lines = messages(WAVY, &[assignment]);
+        assert!(lines[0].starts_with(expected), "{lines:?}\n{expected}");
+    }
+    let lines = messages(WAVY, &["gap.shape=sphere", "gap.amplitude=1"]);
+    assert_eq!(
+        lines,
+        ["--set gap.amplitude=1: gap.amplitude belongs to wavy-sphere, and the gap is a sphere"]
+    );
+    let sphere =
+        "[material]\neffective_modulus=1\nwork_of_adhesion=0\n[gap]\nshape='sphere'\nradius_of_curvature=1";
+    let lines = messages(sphere, &["gap.shape=wavy-sphere"]);
+    assert!(lines[0].starts_with("w.toml:4: gap.amplitude is missing"), "{lines:?}");
+}

@@ -1,0 +1,144 @@
+//! Formulas, waves and measured profiles.
+
+use crate::contact::Start;
+use crate::preset::read::read_in;
+use crate::preset::{Value, read, read_with};
+
+pub const FORMULA: &str = r#"[material]
+effective_modulus = 1
+work_of_adhesion = 0.004
+[gap]
+shape = "formula"
+formula = "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))"
+[gap.parameters]
+R = 1
+A = { value = 0.0025, min = 0, max = 0.01 }
+lambda.value = 0.05
+lambda.unit = "mm"
+"#;
+
+pub const WAVES: &str = r#"[material]
+effective_modulus = 1
+work_of_adhesion = 0.004
+[gap]
+shape = "harmonics"
+radius_of_curvature = 1
+[[gap.waves]]
+amplitude = 0.001
+wavelength = 0.05
+[[gap.waves]]
+amplitude = 0.002
+wavelength = 0.1
+phase = 1
+"#;
+
+#[test]
+fn formulas_and_waves_read() {
+    let preset = read("f.toml", FORMULA).unwrap();
+    assert_eq!(preset.path.start, Start::ContactRadius(0.5));
+    for (key, value) in [
+        ("gap.parameters.R", Value::Number(1.0)),
+        ("gap.parameters.A.max", 0.01.into()),
+        ("gap.parameters.lambda", 0.05.into()),
+        ("gap.parameters.lambda.unit", "mm".into()),
+    ] {
+        assert_eq!(preset.get(key), Some(value), "{key}");
+    }
+    let with = |assignments: &[&str]| read_with("f.toml", FORMULA, assignments).unwrap();
+    assert_eq!(with(&["gap.parameters.A=0.005"]).get("gap.parameters.A"), Some(0.005.into()));
+    let other = with(&["gap.formula=r^2/(2*R) + b*r^4", "gap.parameters.R=2"]);
+    assert_eq!(other.get("gap.parameters.R"), Some(2.0.into()));
+    assert_eq!((other.get("gap.parameters.b"), other.get("gap.parameters.A")), (Some(1.0.into()), None));
+
+    let preset = read("h.toml", WAVES).unwrap();
+    assert_eq!(preset.get("gap.waves.1.phase"), Some(0.0.into()));
+    assert_eq!(preset.get("gap.waves.2.wavelength"), Some(0.1.into()));
+    let with = |assignments: &[&str]| read_with("h.toml", WAVES, assignments).unwrap();
+    assert_eq!(with(&["gap.waves.2.phase=2"]).get("gap.waves.2.phase"), Some(2.0.into()));
+    let one = with(&["gap.waves=[{amplitude=0.003, wavelength=0.2}]"]);
+    assert_eq!((one.get("gap.waves.1.wavelength"), one.get("gap.waves.2.phase")), (Some(0.2.into()), None));
+    assert_eq!(with(&["gap.waves=[]"]).gap.radius_of_curvature(), Some(1.0));
+}
+
+#[test]
+fn mistakes_in_formulas_and_waves_are_named() {
+    let many = format!("gap.waves=[{}]", "{amplitude=1,wavelength=1},".repeat(1001));
+    for (text, old, new, assignment, expected) in [
+        (FORMULA, "/lambda))", "/lambda)", "", "f.toml:6: gap.formula: column 38: the '(' at column 15"),
+        (FORMULA, "R = 1\n", "", "", "f.toml:7: gap.parameters.R is missing: it must be a number"),
+        (
+            FORMULA,
+            "R = 1\n",
+            "R = 1\nlamda = 1\n",
+            "",
+            "f.toml:9: the formula has no parameter for gap.parameters.lamda; did you mean gap.parameters.lambda?",
+        ),
+        (FORMULA, "R = 1\n", "R = 1\nr = 1\n", "", "f.toml:9: unknown key gap.parameters.r"),
+        (FORMULA, "R = 1\n", "R = true\n", "", "f.toml:8: gap.parameters.R must be a number"),
+        (
+            FORMULA,
+            "value = 0.0025",
+            "value = 0.02",
+            "",
+            "f.toml:9: gap.parameters.A = 0.02 is out of range: it must be a number from 0.0 to 0.01",
+        ),
+        (FORMULA, "min = 0", "mini = 0", "", "f.toml:9: unknown key gap.parameters.A.mini"),
+        (
+            FORMULA,
+            "r^2/(2*R)",
+            "R - sqrt(0.09*R^2 - r^2)",
+            "",
+            "f.toml:6: gap.formula: the formula is not finite at r = 0.3 (up to r = 0.5",
+        ),
+        (FORMULA, "", "", "gap.parameters=3", "--set gap.parameters=3: gap.parameters is a table"),
+        (FORMULA, "", "", "gap.parameters.x=3", "--set gap.parameters.x=3: the formula has no parameter"),
+        (WAVES, "amplitude = 0.001\n", "", "", "h.toml:7: gap.waves.1.amplitude is missing"),
+        (WAVES, "wavelength = 0.1", "wavelength = 0", "", "h.toml:12: gap.waves.2.wavelength = 0.0 is out"),
+        (WAVES, "phase = 1", "fase = 1", "", "h.toml:13: unknown key gap.waves.2.fase"),
+        (WAVES, "", "", "gap.waves.4.phase=1", "h.toml: gap.waves.3.amplitude is missing"),
+        (WAVES, "", "", &many, "--set gap.waves=[{amplitude=1,wavelength=1}...: gap.waves = 1001 waves"),
+        (WAVES, "", "", "gap.waves=[1]", "--set gap.waves=[1]: gap.waves.1 is a table"),
+    ] {
+        let name = if text == WAVES { "h.toml" } else { "f.toml" };
+        let assignments: Vec<&str> = Some(assignment).into_iter().filter(|a| !a.is_empty()).collect();
+        assert!(text.contains(old));
+        let error = read_with(name, &text.replacen(old, new, 1), &assignments).unwrap_err();
+        let message = error.mistakes[0].to_string();
+        assert!(message.starts_with(expected), "{message}\n{expected}");
+    }
+}
+
+#[test]
+fn a_profile_is_read_from_beside_its_preset() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: Vec<String> = (0..20).map(|i| format!("{i}, {}\n", i * i)).collect();
+    let rows = rows.concat();
+    std::fs::write(folder.path().join("scan.csv"), format!("r [um], h [nm]\n{rows}")).unwrap();
+    let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='scan.csv'\n                    [path]\nstart_contact_radius=5\n";
+    let read = |text: &str, assignments: &[&str]| read_in(Some(folder.path()), "p.toml", text, assignments);
+    let preset = read(text, &[]).unwrap();
+    // h = r²/1000 in µm: R = 500 µm.
+    assert!((preset.gap.radius_of_curvature().unwrap() - 500.0).abs() < 1e-6);
+    assert_eq!(preset.get("gap.smoothing"), Some("none".into()));
+    assert_eq!(read(text, &["gap.smoothing=4"]).unwrap().get("gap.smoothing"), Some(4.0.into()));
+    for (old, new, expected) in [
+        ("scan.csv", "none.csv", "p.toml:6: gap.file: "),
+        ("scan.csv", ".", "p.toml:6: gap.file: "),
+        ("scan.csv", "shipped:x", "p.toml:6: gap.file: \"shipped:x\" does not come with the program"),
+        (
+            "radius=5",
+            "radius=19",
+            "p.toml:8: path.start_contact_radius = 19.0 is out of range: the gap is known",
+        ),
+        ("[path]\nstart_contact_radius=5\n", "", "p.toml: path.start_contact_radius = 250.0"),
+    ] {
+        let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
+        assert!(message.starts_with(expected), "{message}");
+    }
+    // A copy elsewhere still finds its rows.
+    let other = tempfile::tempdir().unwrap();
+    let moved = preset.placed_in(other.path());
+    let back = read_in(Some(other.path()), "q.toml", &crate::preset::write(&moved), &[] as &[&str]).unwrap();
+    assert_eq!(back.gap.radius_of_curvature(), preset.gap.radius_of_curvature());
+    assert_eq!(preset.placed_in(folder.path()), preset);
+}

@@ -1,0 +1,241 @@
+//! The rows of the table of parameters.
+
+use super::{
+    AUTO, Applies, CHOOSERS, COEFFICIENT, DISPLAY, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
+    SYSTEMS,
+};
+use crate::units::Quantity;
+use std::borrow::Cow::Borrowed;
+
+/// The row of a pure number, a count, a text or a choice: required, in every preset.
+pub(in crate::preset) const fn row(
+    key: &'static str,
+    label: &'static str,
+    meaning: &'static str,
+    kind: Kind,
+) -> Parameter {
+    measured(key, label, meaning, kind, ("", Quantity::Number))
+}
+
+/// The same of a length.
+const fn length(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
+    measured(key, label, meaning, kind, ("length", Quantity::Length))
+}
+
+/// The same of a quantity, with its dimension in words.
+const fn measured(
+    key: &'static str,
+    label: &'static str,
+    meaning: &'static str,
+    kind: Kind,
+    (dimension, quantity): (&'static str, Quantity),
+) -> Parameter {
+    Parameter {
+        key: Borrowed(key),
+        label: Borrowed(label),
+        meaning: Borrowed(meaning),
+        dimension: Borrowed(dimension),
+        quantity,
+        kind,
+        fallback: Fallback::Required,
+        applies: Applies::Always,
+    }
+}
+
+/// The row of the unit in which a quantity is shown.
+const fn display(at: usize, label: &'static str, meaning: &'static str, fallback: &'static str) -> Parameter {
+    row(DISPLAY[at].0, label, meaning, Kind::Text { max_chars: 20 })
+        .or(Fallback::Text(fallback))
+        .only(Applies::With { key: CHOOSERS[2], words: &["SI"] })
+}
+
+impl Parameter {
+    /// The same row, with what it is when not given.
+    pub(in crate::preset) const fn or(mut self, fallback: Fallback) -> Self {
+        self.fallback = fallback;
+        self
+    }
+
+    /// The same row, where it means something.
+    pub(in crate::preset) const fn only(mut self, applies: Applies) -> Self {
+        self.applies = applies;
+        self
+    }
+
+    /// The same row, of gaps of these shapes.
+    const fn of_shape(self, words: &'static [&'static str]) -> Self {
+        self.only(Applies::With { key: CHOOSERS[0], words })
+    }
+
+    /// The same row, of these bases.
+    const fn of_basis(self, words: &'static [&'static str]) -> Self {
+        self.only(Applies::With { key: CHOOSERS[1], words })
+    }
+}
+
+/// The parameters, in the order in which files and screens show them.
+pub static PARAMETERS: &[Parameter] = &[
+    row("format", "format", "version of this file format", Kind::Integer { min: FORMAT, max: FORMAT })
+        .or(Fallback::Integer(FORMAT)),
+    row("title", "title", "one line that says what the preset shows", Kind::Text { max_chars: 100 })
+        .or(Fallback::Text("")),
+    row(
+        "units",
+        "units",
+        "reduced: any consistent units; SI: bare numbers are SI, and text such as \"30 um\" has its unit",
+        Kind::Choice(&SYSTEMS),
+    )
+    .or(Fallback::Text("reduced")),
+    measured(
+        "material.effective_modulus",
+        "E*",
+        "effective elastic modulus of the two bodies",
+        Kind::Positive,
+        ("stress", Quantity::Stress),
+    ),
+    measured(
+        "material.work_of_adhesion",
+        "gamma",
+        "work of adhesion w, the energy gained per unit area of contact (of both faces together)",
+        Kind::NonNegative,
+        ("stress x length", Quantity::EnergyPerArea),
+    ),
+    length(
+        "material.range_of_action",
+        "z0",
+        "range of action of the adhesion, for Tabor's number alone",
+        Kind::Positive,
+    )
+    .or(Fallback::Described("0.3 nm in SI; in reduced units none, and no Tabor number")),
+    row(
+        "gap.shape",
+        "gap",
+        "shape of the gap between the undeformed bodies",
+        Kind::Choice(&[
+            "sphere",
+            "wavy-sphere",
+            "exact-sphere",
+            "cone",
+            "power-law",
+            "harmonics",
+            "random-waves",
+            "formula",
+            "profile",
+        ]),
+    ),
+    length("gap.radius_of_curvature", "R", "combined radius of curvature", Kind::Positive).of_shape(&[
+        "sphere",
+        "wavy-sphere",
+        "exact-sphere",
+        "harmonics",
+        "random-waves",
+    ]),
+    length("gap.amplitude", "A", "amplitude of the wave", Kind::NonNegative).of_shape(&["wavy-sphere"]),
+    length("gap.wavelength", "lambda", "wavelength", Kind::Positive).of_shape(&["wavy-sphere"]),
+    row("gap.slope", "slope", "slope of the cone, the cotangent of its half apex angle", Kind::Positive)
+        .of_shape(&["cone"]),
+    measured(
+        COEFFICIENT,
+        "c",
+        "coefficient c of the gap c r^n",
+        Kind::Positive,
+        ("length^(1-n)", Quantity::Number),
+    )
+    .of_shape(&["power-law"]),
+    row("gap.exponent", "n", "exponent n of the gap c r^n", Kind::Between { min: 1.0, max: 100.0 })
+        .of_shape(&["power-law"]),
+    length("gap.rms", "rms", "root mean square of the random waves", Kind::NonNegative)
+        .of_shape(&["random-waves"]),
+    length("gap.longest_wavelength", "longest", "longest of the random waves", Kind::Positive)
+        .of_shape(&["random-waves"]),
+    length("gap.shortest_wavelength", "shortest", "shortest of the random waves", Kind::Positive)
+        .of_shape(&["random-waves"]),
+    row(
+        "gap.hurst",
+        "H",
+        "Hurst exponent: near 0 the short waves are as high as the long ones",
+        Kind::Between { min: 0.01, max: 1.0 },
+    )
+    .or(Fallback::Number(0.8))
+    .of_shape(&["random-waves"]),
+    row("gap.count", "waves", "number of random waves", Kind::Integer { min: 1, max: 1000 })
+        .or(Fallback::Integer(50))
+        .of_shape(&["random-waves"]),
+    row(
+        "gap.seed",
+        "seed",
+        "which of all surfaces with these numbers",
+        Kind::Integer { min: 0, max: i64::MAX },
+    )
+    .or(Fallback::Integer(1))
+    .of_shape(&["random-waves"]),
+    row(
+        "gap.formula",
+        "h(r)",
+        "the gap as a formula in r, pi, e and parameters",
+        Kind::Text { max_chars: 4096 },
+    )
+    .of_shape(&["formula"]),
+    row("gap.file", "file", "file with the columns r and h; relative to the preset's own folder", Kind::File)
+        .of_shape(&["profile"]),
+    length("gap.smoothing", "smoothing", "wavelength that passes the smoothing by half", Kind::Smoothing)
+        .or(Fallback::Text(NONE))
+        .of_shape(&["profile"]),
+    row(
+        "basis.kind",
+        "basis",
+        "functions in which the contact pressure is sought",
+        Kind::Choice(&["rings", "spectral"]),
+    )
+    .or(Fallback::Text("spectral")),
+    row("basis.rings", "N", "number of ring elements", Kind::Integer { min: 4, max: 2000 })
+        .or(Fallback::Integer(200))
+        .of_basis(&["rings"]),
+    row(
+        "basis.grading",
+        "grading",
+        "spacing of the rings: uniform as in the paper, edge crowds at most 400 towards the edge",
+        Kind::Choice(&["uniform", "edge"]),
+    )
+    .or(Fallback::Text("uniform"))
+    .of_basis(&["rings"]),
+    row(
+        "basis.functions",
+        "functions",
+        "number of eigenfunctions; auto takes enough for the waves in the largest contact",
+        Kind::Count { min: 4, max: 4096 },
+    )
+    .or(Fallback::Text(AUTO))
+    .of_basis(&["spectral"]),
+    row("path.control", "control", "what the loading device prescribes", Kind::Control)
+        .or(Fallback::Text("displacement")),
+    measured(
+        "path.control.stiffness",
+        "k",
+        "stiffness of the loading device",
+        Kind::Positive,
+        ("force / length", Quantity::ForcePerLength),
+    )
+    .or(Fallback::Described("none: the device is not a spring"))
+    .only(Applies::Spring),
+    length(START_KEYS[0], "s start", "contact radius at which the path starts", Kind::Positive)
+        .or(Fallback::Described("0.5 x the radius of curvature, if no start is given")),
+    length(START_KEYS[1], "delta start", "approach at which the path starts", Kind::Finite)
+        .or(Fallback::Described("none: another start is used")),
+    measured(
+        START_KEYS[2],
+        "P start",
+        "force at which the path starts, a preload",
+        Kind::Finite,
+        ("force", Quantity::Force),
+    )
+    .or(Fallback::Described("none: another start is used")),
+    length("path.end_contact_radius", "s end", "contact radius at which the path ends", Kind::Positive)
+        .or(Fallback::Described("0.004 x the contact radius at the start")),
+    display(0, "lengths", "unit in which lengths are shown", "um"),
+    display(1, "forces", "unit in which forces are shown", "uN"),
+    display(2, "stresses", "unit in which stresses are shown", "kPa"),
+    display(3, "adhesions", "unit in which works of adhesion are shown", "mJ/m^2"),
+    display(4, "energies", "unit in which energies are shown", "pJ"),
+    display(5, "stiffnesses", "unit in which stiffnesses are shown", "N/m"),
+];

@@ -1,0 +1,79 @@
+//! The help: scrolled, and searched with `/`, `n` and `N`.
+
+use super::App;
+use crate::explorer::Id;
+use crate::tui::overlay::{Help, Overlay};
+use crate::tui::view::help::plain;
+use crossterm::event::{Event, KeyCode, KeyEvent};
+use tui_input::Input;
+use tui_input::backend::crossterm::EventHandler;
+
+/// Longest text looked for.
+const PATTERN: usize = 60;
+/// So many lines a page.
+const PAGE: usize = 10;
+
+impl App {
+    pub(super) fn help_key(&mut self, mut help: Help, key: KeyEvent) {
+        if let Some(input) = help.typing.take() {
+            self.type_pattern(&mut help, input, key);
+            self.overlay = Some(Overlay::Help(help));
+            return;
+        }
+        let has_pattern = !help.pattern.is_empty();
+        match (self.keymap.in_list(key), key.code) {
+            (_, KeyCode::Char('/')) => help.typing = Some(Input::default()),
+            (_, KeyCode::Char('n')) if has_pattern => self.look(&mut help, true),
+            (_, KeyCode::Char('N')) if has_pattern => self.look(&mut help, false),
+            (Some(Id::Up), _) => help.line = help.line.saturating_sub(1),
+            (Some(Id::Down), _) => help.line += 1,
+            (_, KeyCode::PageUp) => help.line = help.line.saturating_sub(PAGE),
+            (Some(Id::Step), _) | (_, KeyCode::PageDown) => help.line += PAGE,
+            (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
+            _ => {}
+        }
+        help.line = help.line.min(plain(self).len());
+        self.overlay = Some(Overlay::Help(help));
+    }
+
+    fn type_pattern(&self, help: &mut Help, mut input: Input, key: KeyEvent) {
+        match key.code {
+            KeyCode::Esc => {}
+            _ if self.closes(key) => {}
+            KeyCode::Enter => {
+                if !input.value().is_empty() {
+                    input.value().clone_into(&mut help.pattern);
+                }
+                help.found = None;
+                self.look(help, true);
+            }
+            code => {
+                let is_full = input.value().chars().count() >= PATTERN && matches!(code, KeyCode::Char(_));
+                if !is_full {
+                    input.handle_event(&Event::Key(key));
+                }
+                help.typing = Some(input);
+            }
+        }
+    }
+
+    /// The next place of the pattern, or the one before, round and round; the first one not above what is shown.
+    fn look(&self, help: &mut Help, down: bool) {
+        let wanted = help.pattern.to_lowercase();
+        let lines = plain(self);
+        let places: Vec<usize> = (0..lines.len())
+            .filter(|line| !wanted.is_empty() && lines[*line].to_lowercase().contains(&wanted))
+            .collect();
+        let here = help.found.map(|(line, ..)| line);
+        let next = if down {
+            places.iter().position(|place| here.map_or(*place >= help.line, |here| *place > here)).or(Some(0))
+        } else {
+            let before = places.iter().rposition(|place| *place < here.unwrap_or(help.line));
+            before.or_else(|| places.len().checked_sub(1))
+        };
+        help.found = next.and_then(|at| Some((*places.get(at)?, at + 1, places.len())));
+        if let Some((line, ..)) = help.found {
+            help.line = line;
+        }
+    }
+}

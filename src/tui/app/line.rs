@@ -1,0 +1,150 @@
+//! The command line: the grammar of scripts, typed on the screen.
+
+use super::{App, LINE};
+use crate::explorer::command::ROWS;
+use crate::explorer::model::Level;
+use crate::explorer::script::{Completion, complete, parse};
+use crate::explorer::{Command, Effect, Id};
+use crate::preset::text::sanitize;
+use crate::tui::overlay::{Overlay, Prompt, Purpose};
+use crossterm::event::{Event, KeyCode, KeyEvent};
+use tui_input::Input;
+use tui_input::backend::crossterm::EventHandler;
+
+/// Most lines remembered.
+const MOST: usize = 100;
+/// What stands below an empty line.
+const NOTE: &str = "a command and what it takes; Tab completes, Up and Down bring lines back";
+
+/// The lines typed so far.
+#[derive(Debug, Clone, Default)]
+pub struct Typed {
+    /// The oldest first.
+    lines: Vec<String>,
+    /// The line shown; their number where it is a new one.
+    at: usize,
+    /// The new one, while an old one is shown.
+    draft: String,
+}
+
+impl Typed {
+    fn remember(&mut self, line: &str) {
+        self.lines.retain(|old| old != line);
+        self.lines.push(line.to_owned());
+        if self.lines.len() > MOST {
+            self.lines.remove(0);
+        }
+    }
+
+    /// The line before `now`, or the one after it.
+    fn recall(&mut self, older: bool, now: &str) -> Option<String> {
+        if self.at == self.lines.len() {
+            now.clone_into(&mut self.draft);
+        }
+        let at = if older { self.at.checked_sub(1)? } else { self.at + 1 };
+        if at > self.lines.len() {
+            return None;
+        }
+        self.at = at;
+        Some(self.lines.get(at).unwrap_or(&self.draft).clone())
+    }
+}
+
+impl App {
+    pub(super) fn ask_line(&mut self) -> Vec<Effect> {
+        let effects = self.run(Id::CommandLine.into());
+        self.typed.at = self.typed.lines.len();
+        self.overlay = Some(Overlay::Prompt(Prompt::new("Command", NOTE, String::new(), Purpose::Line)));
+        effects
+    }
+
+    pub(super) fn line_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
+        match key.code {
+            KeyCode::Esc => return Vec::new(),
+            KeyCode::Enter => return self.obey_line(prompt),
+            KeyCode::Tab => self.complete(&mut prompt),
+            KeyCode::Up | KeyCode::Down => {
+                if let Some(line) = self.typed.recall(key.code == KeyCode::Up, prompt.input.value()) {
+                    changed(&mut prompt, Input::new(line));
+                }
+            }
+            _ if self.closes(key) => return Vec::new(),
+            _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
+            _ => {
+                let mut input = prompt.input.clone();
+                if input.handle_event(&Event::Key(key)).is_some_and(|change| change.value) {
+                    changed(&mut prompt, input);
+                } else {
+                    prompt.input = input;
+                }
+            }
+        }
+        self.overlay = Some(Overlay::Prompt(prompt));
+        Vec::new()
+    }
+
+    /// What the text before the cursor can go on with.
+    fn complete(&self, prompt: &mut Prompt) {
+        let cursor = prompt.input.cursor();
+        let head: String = prompt.input.value().chars().take(cursor).collect();
+        let tail: String = prompt.input.value().chars().skip(cursor).collect();
+        let Completion { line, offers } = complete(&head, &self.model.preset, &self.model.preset_names);
+        let cursor = line.chars().count();
+        changed(prompt, Input::new(line + &tail).with_cursor(cursor));
+        prompt.note = match &*offers {
+            [] => "nothing begins so".to_owned(),
+            [_] => note(prompt.input.value()),
+            offers => sanitize(&offers.join("  "), 140),
+        };
+    }
+
+    fn obey_line(&mut self, mut prompt: Prompt) -> Vec<Effect> {
+        let line = prompt.input.value().to_owned();
+        let effects = match parse(&line) {
+            Ok(None) => return Vec::new(),
+            Err(fault) => {
+                prompt.error = Some(format!("column {}: {fault}", fault.column));
+                prompt.fault = Some(fault.column);
+                self.overlay = Some(Overlay::Prompt(prompt));
+                return Vec::new();
+            }
+            Ok(Some(command)) => {
+                self.typed.remember(line.trim());
+                self.typed.at = self.typed.lines.len();
+                match command {
+                    Command::Plain(id) => self.act(id, None),
+                    command => self.open_or_ask(command),
+                }
+            }
+        };
+        // What was refused stays to be mended.
+        if self.overlay.is_none()
+            && let Some((_, reason)) = self.model.message.take_if(|(level, _)| *level == Level::Error)
+        {
+            prompt.error = Some(reason);
+            self.overlay = Some(Overlay::Prompt(prompt));
+        }
+        effects
+    }
+}
+
+/// Another text: what was wrong with the last is forgotten.
+fn changed(prompt: &mut Prompt, input: Input) {
+    prompt.note = note(input.value());
+    prompt.input = input;
+    prompt.error = None;
+    prompt.fault = None;
+}
+
+/// What the command begun takes and does.
+fn note(line: &str) -> String {
+    let name = line.split_whitespace().next().unwrap_or_default();
+    let row = ROWS.iter().find(|row| row.name == name);
+    row.map_or_else(
+        || NOTE.to_owned(),
+        |row| match row.argument {
+            Some(argument) => format!("{argument}: {}", row.help),
+            None => row.help.to_owned(),
+        },
+    )
+}

@@ -1,0 +1,163 @@
+//! What the mouse does, each of which a key does too; nothing unless the mouse was taken.
+//!
+//! | | click | wheel |
+//! |---|---|---|
+//! | Problem | selects the value | turns it finely |
+//! | Charts | the walker goes to the state of the curve there | zooms about the pointer |
+//! | Events | selects; once more goes to the event | selects the one above or below |
+//! | a list | selects; once more takes it | selects the one above or below |
+//!
+//! A place outside of the screen, or of what is drawn, does nothing. A question is answered by keys alone.
+
+use super::{App, Over};
+use crate::explorer::model::Level;
+use crate::explorer::{Command, Effect, Id, Panel, View};
+use crate::figure::{Subject, nearest};
+use crate::tui::layout::Regions;
+use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
+use crate::tui::view::{charts, events, overlays, places, problem};
+use ratatui::layout::{Position, Rect};
+
+/// A click goes to a state of the curve within so many character widths, a row counting twice.
+const NEAR: f64 = 6.0;
+
+/// A plot, and a place on it in shares of its window.
+type Place = (Rect, (f64, f64));
+
+impl App {
+    /// Takes the mouse, or leaves it to the terminal.
+    pub(super) fn switch_mouse(&mut self) {
+        self.mouse = !self.mouse;
+        let told = if self.mouse {
+            "the mouse is taken: click and wheel; m leaves it to the terminal again"
+        } else {
+            "the mouse is left to the terminal, to select text"
+        };
+        self.model.message = Some((Level::Info, told.to_owned()));
+    }
+
+    /// The mouse was pressed or its wheel turned.
+    pub fn mouse(&mut self, mouse: MouseEvent) -> Vec<Effect> {
+        let at = Position::new(mouse.column, mouse.row);
+        if !self.mouse || !self.screen.contains(at) {
+            return Vec::new();
+        }
+        let up = match mouse.kind {
+            MouseEventKind::ScrollUp => Some(true),
+            MouseEventKind::ScrollDown => Some(false),
+            _ => None,
+        };
+        match (&self.overlay, up) {
+            (None, Some(up)) => self.wheel(at, up),
+            (None, None) => self.click(at),
+            (Some(Over::Choose(_) | Over::Help(_)), Some(up)) => {
+                self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
+            }
+            (Some(Over::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
+                Some(line) if line == choose.selected => self.key(KeyCode::Enter.into()),
+                Some(line) => {
+                    self.select_item(line);
+                    Vec::new()
+                }
+                None => Vec::new(),
+            },
+            _ => Vec::new(),
+        }
+    }
+
+    /// Another line of the list that lies over the screen.
+    fn select_item(&mut self, line: usize) {
+        let Some(Over::Choose(mut choose)) = self.overlay.take() else { return };
+        choose.selected = line;
+        choose.picture = choose.items.get(line).and_then(|item| self.picture(&item.action));
+        self.overlay = Some(Over::Choose(choose));
+    }
+
+    fn pick(&mut self, panel: Panel, line: Option<usize>) -> Vec<Effect> {
+        self.run(Command::Pick { panel, line })
+    }
+
+    fn click(&mut self, at: Position) -> Vec<Effect> {
+        let Some(regions) = places(self, self.screen) else { return Vec::new() };
+        let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
+        if let Some(area) = inside(regions.problem) {
+            let line = problem::line_at(self, area, at.y);
+            return self.pick(Panel::Problem, line);
+        }
+        if inside(regions.walker).is_some() {
+            return self.pick(Panel::Walker, None);
+        }
+        if let Some(area) = inside(regions.events) {
+            let line = events::line_at(&self.model, area, at.y);
+            if line == Some(self.model.event) && self.model.panel == Panel::Events {
+                return self.run(Id::Edit.into());
+            }
+            return self.pick(Panel::Events, line);
+        }
+        let Some((view, place)) = self.place(&regions, at) else { return Vec::new() };
+        let mut effects = self.pick(Panel::Charts, None);
+        if let Some((plot, share)) = place {
+            effects.extend(self.go_to(view, share, Some(plot)));
+        }
+        effects
+    }
+
+    fn wheel(&mut self, at: Position, up: bool) -> Vec<Effect> {
+        let Some(regions) = places(self, self.screen) else { return Vec::new() };
+        let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
+        if let Some(area) = inside(regions.problem) {
+            let Some(line) = problem::line_at(self, area, at.y) else { return Vec::new() };
+            let mut effects = self.pick(Panel::Problem, Some(line));
+            effects.extend(self.run(if up { Id::More } else { Id::Less }.into()));
+            return effects;
+        }
+        if inside(regions.events).is_some() {
+            let line = if up { self.model.event.saturating_sub(1) } else { self.model.event + 1 };
+            return self.pick(Panel::Events, Some(line));
+        }
+        match self.place(&regions, at) {
+            Some((view, Some((_, about)))) => self.run(Command::Zoom { view, closer: up, about }),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The chart at a place of the screen, and if it is on the plot, the plot and the place in shares of the window.
+    fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<Place>)> {
+        let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
+        let subject = Subject::of(&self.model);
+        let plot = subject.and_then(|subject| {
+            charts::chart(&subject.figure(*view), &self.model.window(*view), self.theme).plot(*area)
+        });
+        let share = |at: u16, from: u16, count: u16| (f64::from(at - from) + 0.5) / f64::from(count);
+        let place = plot
+            .filter(|plot| plot.contains(at))
+            .map(|plot| (plot, (share(at.x, plot.x, plot.width), 1.0 - share(at.y, plot.y, plot.height))));
+        Some((*view, place))
+    }
+
+    /// The walker goes to the state of the curve at the cross-hair.
+    pub(super) fn go_to_cross_hair(&mut self) -> Vec<Effect> {
+        match self.model.cross {
+            Some(share) => self.go_to(self.model.view, share, None),
+            None => self.run(Id::Edit.into()),
+        }
+    }
+
+    /// The walker goes to the state of the curve nearest to a place of a view, if it is near in the plot.
+    fn go_to(&mut self, view: View, share: (f64, f64), plot: Option<Rect>) -> Vec<Effect> {
+        let Some(subject) = Subject::of(&self.model) else { return Vec::new() };
+        let bounds = subject.figure(view).bounds.part(&self.model.window(view));
+        let Some(found) = nearest(&subject, view, &bounds, bounds.at(share)) else { return Vec::new() };
+        let is_near = plot.is_none_or(|plot| {
+            bounds.share(found.at).is_some_and(|(x, y)| {
+                let across = (x - share.0) * f64::from(plot.width);
+                across.hypot(2.0 * (y - share.1) * f64::from(plot.height)) <= NEAR
+            })
+        });
+        if is_near {
+            return self.run(Command::MoveTo(found.contact_radius));
+        }
+        self.model.message = Some((Level::Info, "no state of the curve is near there".to_owned()));
+        Vec::new()
+    }
+}

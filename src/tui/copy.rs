@@ -1,0 +1,133 @@
+//! The state, the events, a chart and the screen as text, for the clipboard of the person's own terminal (OSC 52).
+//!
+//! Whether a terminal takes it cannot be asked: xterm needs `allowWindowOps`, tmux `set-clipboard on`, GNU screen
+//! passes nothing. So the same text can be exported to a file.
+
+use super::app::App;
+use super::view;
+use crate::contact::Control;
+use crate::explorer::{Model, Node};
+use crate::preset::text::sanitize;
+use crate::report::number::{significant, with_unit};
+use crate::report::rows;
+use crate::report::unload::COLUMNS;
+use crate::units::Quantity;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// As many bytes as terminals take: 100 000 of a sequence, a third more in base64 than the text.
+pub const LONGEST: usize = 74_994;
+
+/// A line longer than this is cut.
+const LINE: usize = 4096;
+
+/// Digits of a copied value.
+const DIGITS: usize = 10;
+
+/// What can be copied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// The state of the walker, a quantity a line.
+    State,
+    /// The events shown, with tabs.
+    Events,
+    /// The first chart.
+    Chart,
+    /// The whole screen.
+    Screen,
+}
+
+impl Content {
+    /// All, in the order they are offered.
+    pub const ALL: [Self; 4] = [Self::State, Self::Events, Self::Chart, Self::Screen];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::State => "state",
+            Self::Events => "events",
+            Self::Chart => "chart",
+            Self::Screen => "screen",
+        }
+    }
+
+    /// What it is.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::State => "the walker's state: δ, P, s and what belongs to them",
+            Self::Events => "the events listed, with tabs, as a spreadsheet takes them",
+            Self::Chart => "the first chart as text",
+            Self::Screen => "the whole screen as text",
+        }
+    }
+}
+
+/// Content as text in which nothing steers a terminal.
+pub fn text(app: &App, content: Content) -> String {
+    let text = match content {
+        Content::State => app.theme.text(&state(&app.model)),
+        // The columns are this program's, and a row always fits them.
+        Content::Events => rows::tsv(COLUMNS, &app.model.shown_events()).unwrap_or_default(),
+        Content::Chart | Content::Screen => drawn(app, content),
+    };
+    let cell = |cell: &str| sanitize(cell, LINE);
+    let line = |line: &str| line.split('\t').map(cell).collect::<Vec<_>>().join("\t") + "\n";
+    text.lines().map(line).collect()
+}
+
+/// The state of the walker, a quantity a line.
+fn state(model: &Model) -> String {
+    let name = format!("{}\n", model.source.shown());
+    match model.history.current() {
+        Some(node) if node.is_apart() => format!("{name}the bodies are apart\n"),
+        Some(node) => name + &quantities(node),
+        None => name,
+    }
+}
+
+fn quantities(node: &Node) -> String {
+    let case = &node.setting.case;
+    let state = node.state.in_units(case.units());
+    let shown =
+        |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, DIGITS));
+    let pure = |x| significant(x, DIGITS);
+    let word = |control| match (node.is_limit(control), node.stability().under(control)) {
+        (true, _) => "limit point",
+        (false, true) => "stable",
+        (false, false) => "unstable",
+    };
+    let mut lines = vec![
+        ("δ", shown(Quantity::Length, state.approach)),
+        ("P", shown(Quantity::Force, state.force)),
+        ("s", shown(Quantity::Length, state.contact_radius)),
+        ("U", shown(Quantity::Energy, state.energy)),
+    ];
+    lines.extend(case.critical_force().map(|critical| ("P/Pc", pure(state.force / critical))));
+    let wave = case.reduced.gap.feature_length();
+    lines.extend(wave.map(|wave| ("s/λ", pure(node.state.contact_radius / wave))));
+    lines.push(("control", case.shown_control(node.control).to_string()));
+    lines.push(("δ held", word(Control::Displacement).to_owned()));
+    lines.push(("P held", word(Control::Force).to_owned()));
+    lines.push(("step", node.step.to_string()));
+    lines.into_iter().map(|(name, value)| [name, "\t", &value, "\n"].concat()).collect()
+}
+
+/// The screen, or its first chart; what was asked with a list has closed it before.
+fn drawn(app: &App, content: Content) -> String {
+    let size = app.screen;
+    let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
+    let Ok(_) = terminal.draw(|frame| {
+        view::draw(frame, app);
+    });
+    let buffer = terminal.backend().buffer();
+    let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));
+    lines(buffer, if content == Content::Chart { chart.unwrap_or(size) } else { size })
+}
+
+/// A part of the screen as lines.
+fn lines(buffer: &Buffer, area: Rect) -> String {
+    let row = |y| (area.left()..area.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (area.top()..area.bottom()).map(|y| row(y).trim_end().to_owned() + "\n").collect()
+}

@@ -1,0 +1,131 @@
+//! The command line, the search in the help, and a person's own keys, on the screen.
+
+use super::Screen;
+use crate::config;
+use crate::contact::Control;
+use crate::explorer::Id;
+use crate::tui::keymap::Keymap;
+use crate::tui::overlay::Overlay;
+use crossterm::event::KeyCode;
+
+fn prompt(screen: &Screen) -> (String, Option<String>, Option<usize>) {
+    match &screen.app.overlay {
+        Some(Overlay::Prompt(prompt)) => {
+            (prompt.input.value().to_owned(), prompt.error.clone(), prompt.fault)
+        }
+        other => unreachable!("no line to type: {other:?}"),
+    }
+}
+
+#[test]
+fn a_typed_command_does_what_its_key_does() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":step 3\r");
+    assert_eq!(screen.app.model.history.nodes().len(), 4);
+    assert!(screen.app.overlay.is_none());
+    screen.keys(":control force\r:set gap.amplitude=0.003 title=\"two  words\"\r:run-to instability\r");
+    let model = &screen.app.model;
+    assert_eq!(model.preset.path.control, Control::Force);
+    assert_eq!(model.preset.title, "two  words");
+    assert!(model.history.current().unwrap().is_limit(Control::Force));
+    // What a screen only shows is a command here too; what it asks for, it asks for.
+    screen.keys(":help\r");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Help(_))));
+    screen.keys("\x1b:export\r");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Choose(_))));
+    screen.keys("\x1b:quit\r");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Confirm(_))) && !screen.app.model.quit);
+    screen.keys("\x1b:open fig-3-jkr\r");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Confirm(_))), "unsaved changes are not lost unasked");
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":step 3 x\r");
+    let (line, error, fault) = prompt(&screen);
+    assert_eq!((line.as_str(), fault), ("step 3 x", Some(8)));
+    assert_eq!(error.as_deref(), Some("column 8: step takes no \"x\" here"));
+    let text = screen.text(80, 24);
+    let row = text.lines().position(|row| row.contains("> step 3 x")).unwrap();
+    let caret = text.lines().nth(row + 1).unwrap();
+    let at = |line: &str, c: char| line.chars().position(|found| found == c).unwrap();
+    assert_eq!(at(caret, '^'), at(text.lines().nth(row).unwrap(), 'x'));
+    // Mended, it is done; refused by the model, it stays as well.
+    screen.press(KeyCode::Backspace);
+    screen.keys("\r:jump\r");
+    assert!(prompt(&screen).1.unwrap().contains("the state is stable"));
+    screen.keys("\x1b:\r");
+    assert!(screen.app.overlay.is_none());
+}
+
+#[test]
+fn tab_completes_and_up_and_down_bring_lines_back() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":ha\t\r:set gap.am\t0.003\r:set gap.shape=exp");
+    assert_eq!(screen.app.model.preset.gap.wave(), Some((0.003, 0.05)));
+    let line = |screen: &Screen| prompt(screen).0;
+    screen.press(KeyCode::Up);
+    assert_eq!(line(&screen), "set gap.amplitude=0.003");
+    screen.press(KeyCode::Up);
+    screen.press(KeyCode::Up);
+    assert_eq!(line(&screen), "halve-step");
+    for _ in 0..5 {
+        screen.press(KeyCode::Down);
+    }
+    assert_eq!(line(&screen), "set gap.shape=exp");
+    // Offers are listed; before the cursor is completed, behind it nothing is lost.
+    screen.keys("\x1b:open fig-\t");
+    assert!(screen.text(80, 24).contains("fig-3-jkr"), "{}", screen.text(80, 24));
+    screen.keys("\x1b: 5");
+    screen.press(KeyCode::Home);
+    screen.keys("step\t");
+    assert_eq!(line(&screen), "step 5");
+    let shown = screen.text(80, 24);
+    assert!(shown.contains("step  step-length"), "{shown}");
+}
+
+#[test]
+fn the_help_is_searched() {
+    let mut screen = Screen::new("fig-3-jkr");
+    let found = |screen: &Screen| match &screen.app.overlay {
+        Some(Overlay::Help(help)) => help.found,
+        other => unreachable!("no help: {other:?}"),
+    };
+    screen.keys("?/PRESET\r");
+    let (first, at, of) = found(&screen).unwrap();
+    assert!(at == 1 && of > 2, "{at} of {of}");
+    assert!(screen.text(80, 24).contains(&format!("/PRESET: 1 of {of}")));
+    screen.keys("n");
+    assert!(found(&screen).unwrap().0 > first);
+    screen.keys("NN");
+    assert_eq!(found(&screen).unwrap().1, of);
+    screen.keys("n");
+    assert_eq!(found(&screen), Some((first, 1, of)));
+    screen.keys("/qqq\r");
+    assert!(found(&screen).is_none() && screen.text(80, 24).contains("/qqq: not found"));
+    // Typed text is no command, and Esc leaves the text first.
+    screen.keys("/nx\x1b");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Help(_))));
+    screen.keys("\x1b");
+    assert!(screen.app.overlay.is_none());
+}
+
+#[test]
+fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
+    let mut screen = Screen::new("wavy-sphere");
+    let text = "[keys]\nstep = \"F4\"\nundo = [\"w\", \"Ctrl-U\"]\njump = []\nedit = \"m\"\n";
+    screen.app.keymap = Keymap::of(&config::read("c", text).unwrap()).unwrap();
+    screen.press(KeyCode::F(4));
+    assert_eq!(screen.app.model.history.nodes().len(), 2);
+    screen.keys("wu ");
+    assert_eq!(screen.app.model.history.cursor(), Some(0));
+    assert!(screen.text(80, 24).contains("F4 step"));
+    screen.keys("?");
+    let help = screen.text(100, 60);
+    assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains(":jump"), "{help}");
+    // A list is chosen from with Enter all the same.
+    screen.keys("\x1be\r");
+    assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
+    assert_eq!(screen.app.keymap.first(Id::Edit), "m");
+}

@@ -1,0 +1,249 @@
+//! The mouse, the clipboard, and presets deleted.
+
+use super::{PLAIN, Screen};
+use crate::explorer::{Panel, View, Window};
+use crate::preset::{Overwrite, Store};
+use crate::tui::copy::{Content, text};
+use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::layout::{Position, Rect};
+
+const SIZE: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
+
+fn screen(preset: &str) -> Screen {
+    let mut screen = Screen::new(preset);
+    let effects = screen.app.make_room(SIZE, 2);
+    screen.settle(effects);
+    screen.app.mouse = true;
+    screen
+}
+
+/// Where `text` stands on the screen.
+fn place(screen: &Screen, text: &str) -> Position {
+    let drawn = screen.text(SIZE.width, SIZE.height);
+    let found = drawn.lines().enumerate().find_map(|(y, line)| Some((line.find(text)?, y, line)));
+    let (at, y, line) = found.unwrap_or_else(|| unreachable!("no {text} in {drawn}"));
+    Position::new(u16::try_from(line[..at].chars().count()).unwrap(), u16::try_from(y).unwrap())
+}
+
+fn mouse(screen: &mut Screen, kind: MouseEventKind, at: Position) {
+    let event = MouseEvent { kind, column: at.x, row: at.y, modifiers: KeyModifiers::NONE };
+    let effects = screen.app.mouse(event);
+    screen.settle(effects);
+}
+
+fn click(screen: &mut Screen, at: Position) {
+    mouse(screen, MouseEventKind::Down(MouseButton::Left), at);
+}
+
+#[test]
+fn a_click_selects_and_once_more_goes_there() {
+    let mut screen = screen("wavy-sphere");
+    let at = place(&screen, "γ  ");
+    click(&mut screen, at);
+    assert_eq!(screen.app.model.selected_knob().unwrap().0.key, "material.work_of_adhesion");
+    let at = place(&screen, "Walker, step");
+    click(&mut screen, at);
+    assert_eq!(screen.app.model.panel, Panel::Walker);
+    let at = place(&screen, " 2 snap");
+    click(&mut screen, at);
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Events, 1));
+    assert_eq!(screen.app.model.history.current().unwrap().step, 0);
+    click(&mut screen, at);
+    let event = &screen.app.model.shown_events()[1];
+    let node = screen.app.model.history.current().unwrap();
+    let s = node.state.in_units(node.setting.case.units()).contact_radius;
+    assert!((s - event.before.contact_radius).abs() < 1e-6 * s, "{s}");
+    // In a list too.
+    screen.keys("o");
+    let at = place(&screen, "fig-3-jkr");
+    click(&mut screen, at);
+    assert!(screen.text(120, 40).contains("> fig-3-jkr"));
+    click(&mut screen, at);
+    assert!(screen.app.overlay.is_none());
+    assert_eq!(screen.app.model.source.shown(), "fig-3-jkr");
+}
+
+#[test]
+fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
+    let mut screen = screen("wavy-sphere");
+    screen.app.theme = PLAIN;
+    // The letter of the pull-off stands on the curve.
+    let at = place(&screen, "X");
+    click(&mut screen, at);
+    let at_pull_off = screen.app.model.history.current().unwrap().state.contact_radius;
+    let limits = screen.app.model.curve.clone().unwrap();
+    let last = limits.report.as_ref().unwrap().events.last().unwrap().before.contact_radius;
+    let units = *limits.setting.case.units();
+    assert!((at_pull_off * units.length - last).abs() < 0.1 * last, "{at_pull_off} {last}");
+    assert_eq!(screen.app.model.panel, Panel::Charts);
+    // Far from the curve nothing moves.
+    let (before, title) = (at_pull_off, place(&screen, "P/Pc over"));
+    click(&mut screen, Position::new(title.x + 12, title.y + 2));
+    let now = screen.app.model.history.current().unwrap().state.contact_radius;
+    assert!(now.total_cmp(&before).is_eq());
+    assert!(screen.app.model.status().1.contains("no state of the curve"));
+    // By keys: the cross-hair, and Enter.
+    screen.keys("i\r");
+    let now = screen.app.model.history.current().unwrap().state.contact_radius;
+    assert!(!now.total_cmp(&before).is_eq());
+}
+
+#[test]
+fn the_wheel_turns_zooms_and_scrolls() {
+    let mut screen = screen("wavy-sphere");
+    let at = place(&screen, "γ  ");
+    let before = screen.app.model.preset.material.work_of_adhesion;
+    mouse(&mut screen, MouseEventKind::ScrollUp, at);
+    let now = screen.app.model.preset.material.work_of_adhesion;
+    assert!(now > before && now < 1.02 * before, "{now}");
+    mouse(&mut screen, MouseEventKind::ScrollDown, at);
+    let events = place(&screen, " 2 snap");
+    mouse(&mut screen, MouseEventKind::ScrollDown, events);
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Events, 1));
+    for _ in 0..50 {
+        mouse(&mut screen, MouseEventKind::ScrollDown, events);
+    }
+    assert_eq!(screen.app.model.event, 5);
+    // Each chart zooms about the pointer: what lies under it stays.
+    for (title, view) in [("P/Pc over δ", View::ForceApproach), ("s/λ over P/Pc", View::RadiusForce)] {
+        let title = place(&screen, title);
+        let at = Position::new(title.x + 30, title.y + 3);
+        mouse(&mut screen, MouseEventKind::ScrollUp, at);
+        let window = screen.app.model.window(view);
+        assert!((window.magnification() - 2.0).abs() < 1e-9, "{view:?}");
+        assert!(window.x[0] > 0.0 && window.x[1] < 1.0 && window.y[0] > 0.3, "{window:?}");
+        mouse(&mut screen, MouseEventKind::ScrollDown, at);
+        assert!((screen.app.model.window(view).magnification() - 1.0).abs() < 1e-9);
+    }
+    // In the help it scrolls.
+    screen.keys("?");
+    let first = screen.text(120, 40);
+    mouse(&mut screen, MouseEventKind::ScrollDown, Position::new(20, 20));
+    assert_ne!(screen.text(120, 40), first);
+}
+
+#[test]
+fn the_mouse_does_nothing_unasked_or_outside_and_answers_no_question() {
+    let mut screen = screen("wavy-sphere");
+    let places = [(0, 0), (u16::MAX, u16::MAX), (u16::MAX, 0), (120, 39), (119, 40), (119, 39), (0, 39)];
+    let kinds =
+        [MouseEventKind::Down(MouseButton::Left), MouseEventKind::ScrollUp, MouseEventKind::ScrollDown];
+    let before = screen.text(120, 40);
+    for kind in kinds {
+        for (x, y) in places {
+            mouse(&mut screen, kind, Position::new(x, y));
+        }
+    }
+    assert_eq!(screen.text(120, 40), before);
+    // Every cell of a small screen and of a question.
+    screen.keys("}q");
+    assert!(screen.app.overlay.is_some());
+    for y in 0..40 {
+        for x in 0..120 {
+            click(&mut screen, Position::new(x, y));
+        }
+    }
+    assert!(screen.app.overlay.is_some() && !screen.app.model.quit);
+    screen.keys("\x1bm");
+    assert!(!screen.app.mouse && screen.app.model.status().1.contains("left to the terminal"));
+    let at = place(&screen, "γ  ");
+    let selected = screen.app.model.parameter;
+    click(&mut screen, at);
+    assert_eq!(screen.app.model.parameter, selected);
+    screen.keys("m");
+    assert!(screen.app.mouse);
+    let whole = screen.app.model.window(View::ForceApproach);
+    assert_eq!(whole, Window::WHOLE);
+}
+
+#[test]
+fn what_is_copied_is_text_that_steers_nothing() {
+    let mut screen = screen("wavy-sphere");
+    screen.keys("n");
+    let state = text(&screen.app, Content::State);
+    assert!(state.starts_with("wavy-sphere\nδ\t0.03571") && state.contains("\nP/Pc\t-0.756"), "{state}");
+    assert!(state.contains("\nδ held\tlimit point\nP held\tunstable\n"), "{state}");
+    let events = text(&screen.app, Content::Events);
+    assert_eq!(events.lines().count(), 7);
+    let columns = events.lines().next().unwrap().split('\t').count();
+    assert!(events.lines().all(|line| line.split('\t').count() == columns), "{events}");
+    let whole = text(&screen.app, Content::Screen);
+    assert_eq!(whole, screen.text(120, 40));
+    let chart = text(&screen.app, Content::Chart);
+    assert!(chart.starts_with("┌P/Pc over δ") && chart.trim_end().ends_with('┘'), "{chart}");
+    // Through the list: what was chosen goes out.
+    screen.keys("Yj\r");
+    assert_eq!(screen.app.clipboard.take().unwrap(), events);
+    assert!(screen.app.model.status().1.starts_with("events of "), "{}", screen.app.model.status().1);
+    screen.keys("Yjjj\r");
+    let copied = screen.app.clipboard.take().unwrap();
+    assert!(copied.contains("Problem") && !copied.contains("Copy:"), "{copied}");
+    // A title of somebody else's.
+    let title =
+        crate::explorer::Command::Set { key: "title".into(), text: "a\u{1b}]52;c;eA==\u{7}b".to_owned() };
+    let effects = crate::explorer::update(&mut screen.app.model, title);
+    screen.settle(effects);
+    for content in Content::ALL {
+        let copied = text(&screen.app, content);
+        assert!(!copied.chars().any(|c| c.is_control() && c != '\n' && c != '\t'), "{copied:?}");
+    }
+    // Too long for a terminal: nothing is sent, and it is said.
+    screen.app.screen = Rect::new(0, 0, 400, 300);
+    screen.keys("Yjjj\r");
+    assert!(screen.app.clipboard.is_none());
+    assert!(screen.app.model.status().1.contains("more than terminals take"));
+}
+
+#[test]
+fn the_screen_is_exported_as_text() {
+    let mut screen = screen("wavy-sphere");
+    let wanted = screen.text(120, 40);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.txt");
+    let typed = |screen: &mut Screen, path: &str| {
+        screen.keys("ejjj\r");
+        for _ in 0..60 {
+            screen.press(KeyCode::Backspace);
+        }
+        screen.keys(path).keys("\r");
+    };
+    typed(&mut screen, path.to_str().unwrap());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
+    // Not over what is there without a question; and only under a name that says what it is.
+    screen.keys("n");
+    typed(&mut screen, path.to_str().unwrap());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
+    assert!(screen.text(120, 40).contains("y replaces it"));
+    screen.keys("y");
+    assert!(std::fs::read_to_string(&path).unwrap().contains("Limit point 1/15"));
+    typed(&mut screen, folder.path().join("a.csv").to_str().unwrap());
+    assert!(screen.text(120, 40).contains("must end in .txt"));
+}
+
+#[test]
+fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
+    let mut screen = screen("wavy-sphere");
+    let store = Store::at(screen.folder.path(), &[]);
+    let (_, _) = store.save("mine", &screen.app.model.preset, Overwrite::Never).unwrap();
+    screen.keys("oD");
+    assert!(screen.text(120, 40).contains("Open a preset: Enter takes, Esc closes"), "a shipped one stays");
+    for _ in 0..crate::preset::shipped::SHIPPED.len() {
+        screen.keys("j");
+    }
+    assert!(screen.text(120, 40).contains("Enter takes, D deletes"));
+    screen.keys("D");
+    let asked = screen.text(120, 40);
+    assert!(asked.contains("for good?") && asked.contains("mine.toml"), "{asked}");
+    screen.keys("\x1b");
+    assert!(store.own("mine").is_ok());
+    screen.keys("o");
+    for _ in 0..crate::preset::shipped::SHIPPED.len() {
+        screen.keys("j");
+    }
+    screen.press(KeyCode::Delete);
+    screen.keys("y");
+    assert!(store.own("mine").is_err());
+    let left = screen.text(120, 40);
+    assert!(left.contains("Open a preset") && left.contains("deleted "), "{left}");
+    assert!(!left.contains("  mine "), "{left}");
+}

@@ -1,0 +1,143 @@
+//! The explorer without a terminal: groups as knobs, whole commands undone, what is said of long work and in units.
+
+#[path = "support/session.rs"]
+mod session;
+
+use pulloff::explorer::model::Level;
+use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Progress, Reply, answer, update};
+use pulloff::preset::Value;
+use session::Session;
+
+fn number(session: &Session, key: &str) -> f64 {
+    let value = session.model.preset.get(key);
+    value.and_then(|value| if let Value::Number(x) = value { Some(x) } else { None }).expect("a number")
+}
+
+/// Selects a knob that is not the first, as the arrows do.
+fn select(session: &mut Session, key: &str) {
+    session.model.panel = Panel::Problem;
+    let at = session.model.knobs().iter().position(|(row, _)| row.key == key).expect("a knob");
+    session.model.parameter = at - 1;
+    session.does(Id::Down);
+}
+
+#[test]
+fn a_group_is_turned_typed_and_taken_back_like_a_parameter() {
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+    let mut session = Session::new("wavy-sphere");
+    let before = session.model.preset.clone();
+    select(&mut session, "groups.amplitude_over_wavelength");
+    assert!(session.status().contains("A/λ") && session.status().contains("changes A, λ held"));
+    session.does(Id::MuchMore);
+    assert_eq!(session.status(), "changed: A 0.00275; λ held");
+    assert!(near(number(&session, "gap.amplitude"), 0.00275));
+    assert!(near(number(&session, "gap.wavelength"), 0.05));
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, before);
+
+    select(&mut session, "groups.wavelength_over_radius");
+    session.set("groups.wavelength_over_radius", "1/25");
+    assert_eq!(session.status(), "changed: A 0.002, λ 0.04; R and A/λ held");
+    assert!(near(number(&session, "groups.amplitude_over_wavelength"), 0.05));
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, before);
+
+    select(&mut session, "groups.adhesion");
+    session.does(Id::More);
+    assert!(near(number(&session, "groups.adhesion"), 0.02525));
+    session.set("groups.adhesion", "1 mN");
+    assert_eq!(session.model.status().0, Level::Error);
+    assert!(near(number(&session, "groups.adhesion"), 0.02525));
+    // A gap without them has no such knobs.
+    let cone = Session::new("cone");
+    assert!(cone.model.knobs().iter().all(|(row, _)| !row.key.starts_with("groups.")));
+}
+
+#[test]
+fn in_si_what_a_group_changed_and_a_pin_have_units() {
+    let mut session = Session::new("fig-9-si");
+    session.does(Id::Pin);
+    select(&mut session, "groups.amplitude_over_wavelength");
+    session.does(Id::MuchMore);
+    assert_eq!(session.status(), "changed: A 13.75 µm; λ held");
+    assert_eq!(session.model.pins.all()[0].name(&session.model.preset), "A 12.5 µm");
+    // Beyond the pull-off force of 28 mN.
+    session.set("path.start_force", "-40 mN");
+    let (level, text) = session.model.status();
+    assert_eq!(level, Level::Error);
+    assert!(text.contains("no contact has the force -40000 uN; the smallest"), "{text}");
+    assert_eq!(text.matches(" uN").count(), 2, "{text}");
+}
+
+#[test]
+fn a_whole_command_is_undone_at_once() {
+    let mut session = Session::new("wavy-sphere");
+    let cursor = |session: &Session| session.model.history.cursor().unwrap();
+    session.does(Command::Steps(7));
+    assert_eq!(session.model.history.current().unwrap().step, 7);
+    session.does(Id::Undo);
+    assert_eq!(session.model.history.current().unwrap().step, 6);
+    session.does(Id::UndoCommand);
+    assert_eq!((cursor(&session), session.kind()), (0, NodeKind::Start));
+    session.does(Id::UndoCommand);
+    assert!(session.status().contains("nothing to undo"));
+    // Each command of its own.
+    session.does(Id::NextLimit);
+    let limit = cursor(&session);
+    session.does(Id::Jump).does(Command::Steps(3)).does(Id::UndoCommand);
+    assert!(matches!(session.kind(), NodeKind::Jump(_)));
+    session.does(Id::UndoCommand);
+    assert_eq!(cursor(&session), limit);
+    session.does(Id::UndoCommand);
+    assert_eq!(cursor(&session), 0);
+    // Nothing is erased: forward again, state by state.
+    while session.model.history.redo_target().is_some() {
+        session.does(Id::Redo);
+    }
+    assert_eq!(session.model.history.current().unwrap().kind, NodeKind::Step);
+    // Values typed since are taken back first.
+    let before = session.model.preset.clone();
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
+    drop(update(&mut session.model, set));
+    let effects = update(&mut session.model, Id::UndoCommand.into());
+    session.driver.settle(&mut session.model, effects);
+    assert_eq!(session.model.preset, before);
+}
+
+#[test]
+fn how_far_a_curve_is_belongs_to_the_newest_one() {
+    let mut session = Session::new("wavy-sphere");
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
+    let effects = update(&mut session.model, set);
+    let id = session.model.curve_wanted;
+    let far = |id| Reply::Progress { id, progress: Progress::Curve { done: 3, of: 70 } };
+    assert!(answer(&mut session.model, far(id - 1)).is_empty());
+    assert_eq!(session.model.progress, None);
+    answer(&mut session.model, far(id));
+    assert!(session.status().ends_with("point 3 of 70; Esc gives up"), "{}", session.status());
+    session.driver.settle(&mut session.model, effects);
+    // Late, as from a thread: it is no longer computed.
+    answer(&mut session.model, far(id));
+    assert!(!session.model.is_computing() && !session.status().contains("of 70"));
+}
+
+#[test]
+fn a_walk_counts_its_states_and_a_pause_is_no_error() {
+    let mut session = Session::new("wavy-sphere");
+    let effects = update(&mut session.model, Command::Steps(9));
+    let Some(Effect::Walk(request)) = effects.first() else { panic!("{effects:?}") };
+    let mut made = Vec::new();
+    let outcome = pulloff::explorer::walk::walk(request, &mut |state| {
+        made.push(state);
+        made.len() < 4
+    });
+    let (id, count) = (request.id, made.len());
+    assert_eq!(count, 4);
+    answer(&mut session.model, Reply::Walked { id, made, outcome: None });
+    assert_eq!(session.status(), "walking, 4 of 9 states; Esc stops");
+    answer(&mut session.model, Reply::Walked { id, made: Vec::new(), outcome: Some(outcome) });
+    let (level, text) = session.model.status();
+    assert_eq!(level, Level::Info);
+    assert!(text.starts_with("paused"), "{text}");
+}

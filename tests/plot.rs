@@ -1,0 +1,148 @@
+//! Figures for print: every view is a valid document with what it should show, whatever the problem.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
+use assert_cmd::Command;
+use std::path::Path;
+
+fn pulloff(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    let mut command = Command::cargo_bin("pulloff").unwrap();
+    command.current_dir(folder).env("HOME", folder).env("XDG_CONFIG_HOME", folder).args(arguments);
+    command.output().unwrap()
+}
+
+fn svg(folder: &Path, arguments: &[&str]) -> String {
+    let output = pulloff(folder, &[&["plot"], arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The elements of a document with their attributes' names, and its texts: its structure without its numbers.
+fn structure(svg: &str) -> Vec<String> {
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let elements = document.descendants().filter(roxmltree::Node::is_element);
+    let mut lines: Vec<String> = Vec::new();
+    for element in elements {
+        let dash =
+            element.attribute("stroke-dasharray").map_or(String::new(), |dash| format!(" dash {dash}"));
+        let text = element.text().filter(|text| !text.trim().is_empty()).unwrap_or_default();
+        let is_number = text.parse::<f64>().is_ok();
+        let text = if text.is_empty() || is_number { String::new() } else { format!(" {text:?}") };
+        let line = format!("{}{dash}{text}", element.tag_name().name());
+        if lines.last() != Some(&line) {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+const VIEWS: [&str; 7] =
+    ["force-approach", "radius-force", "radius-approach", "pressure", "gap", "energy", "unloading"];
+
+#[test]
+fn every_view_is_a_document_of_one_column_with_its_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    for view in VIEWS {
+        let svg = svg(folder.path(), &["wavy-sphere", "--view", view, "--theory"]);
+        assert!(svg.starts_with("<svg ") && svg.contains(r#"width="86mm""#), "{view}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{view}");
+        insta::assert_snapshot!(format!("plot_{view}"), structure(&svg).join("\n"));
+    }
+}
+
+#[test]
+fn every_shipped_preset_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    for preset in pulloff::preset::shipped::SHIPPED {
+        for view in ["radius-force", "pressure"] {
+            let svg = svg(folder.path(), &[preset.name, "--view", view]);
+            roxmltree::Document::parse(&svg).unwrap();
+        }
+    }
+}
+
+#[test]
+fn an_si_preset_has_units_beside_its_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = svg(folder.path(), &["fig-9-si", "--raw", "--view", "radius-force"]);
+    let texts = structure(&svg).join("\n");
+    assert!(texts.contains("\"P (") && texts.contains("\"s ("), "{texts}");
+}
+
+#[test]
+fn data_beside_a_figure_are_the_points_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let output =
+        pulloff(folder.path(), &["plot", "fig-3-jkr", "--data", "-o", "jkr.svg", "--width", "two-columns"]);
+    assert!(output.status.success());
+    assert!(std::fs::read_to_string(folder.path().join("jkr.svg")).unwrap().contains(r#"width="178mm""#));
+    let text = std::fs::read_to_string(folder.path().join("jkr.csv")).unwrap();
+    assert_eq!(text.lines().next().unwrap(), "name,curve,δ,P/Pc");
+    let least = text
+        .lines()
+        .filter(|line| line.starts_with("stable") || line.starts_with("unstable"))
+        .map(|line| line.rsplit(',').next().unwrap().parse::<f64>().unwrap())
+        .fold(f64::INFINITY, f64::min);
+    // The pull-off force of the smooth sphere is P_c; 200 rings know it to a part in a thousand.
+    assert!((least + 1.0).abs() < 3e-3, "{least}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (&["-o", "a.gif"][..], "ends in .svg or .png"),
+        (&["--width", "3"], "from 50 to 500 mm"),
+        (&["--contact-radius", "0.2"], "shows the whole curve"),
+        (&["--view", "gap", "--contact-radius", "7"], "outside the curve"),
+        (&["--view", "gap", "--contact-radius", "3 N"], "length"),
+        (&["--data"], "-o <FILE>"),
+    ] {
+        let output = pulloff(folder.path(), &[&["plot"], arguments].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+#[cfg(feature = "png")]
+fn a_png_has_the_size_of_the_figure_and_letters() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = pulloff(folder.path(), &["plot", "fig-3-jkr", "-o", "jkr.png"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let bytes = std::fs::read(folder.path().join("jkr.png")).unwrap();
+    let pixels = resvg::tiny_skia::Pixmap::decode_png(&bytes).unwrap();
+    // 86 mm at 384 dots an inch.
+    assert_eq!(pixels.width(), 1301);
+    // The axis title to the left of everything else: letters are drawn.
+    let dark = |x: u32| (0..pixels.height()).any(|y| pixels.pixel(x, y).unwrap().red() < 80);
+    assert!((0..100).any(dark));
+}
+
+#[test]
+fn the_figures_of_the_paper_agree_with_theory() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = pulloff(folder.path(), &["figures", "-o", "all"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let captions = std::fs::read_to_string(folder.path().join("all/captions.md")).unwrap();
+    for name in [
+        "fig-1", "fig-2a", "fig-2b", "fig-3", "fig-4a", "fig-4b", "fig-5", "fig-7a", "fig-7b", "fig-8a",
+        "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b",
+    ] {
+        assert!(captions.contains(&format!("**{name}.**")), "{name}");
+        let file = |ending: &str| {
+            std::fs::read_to_string(folder.path().join(format!("all/{name}.{ending}"))).unwrap()
+        };
+        roxmltree::Document::parse(&file("svg")).unwrap();
+        assert!(file("csv").lines().count() > 8, "{name}");
+    }
+    // 200 rings on the curves of Fig. 2 to 9: within three thousandths of the picture.
+    let apart: Vec<f64> = captions
+        .split("nowhere further from it than ")
+        .skip(1)
+        .map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(apart.len(), 8);
+    assert!(apart.iter().all(|share| *share < 3e-3), "{apart:?}");
+}

@@ -1,0 +1,210 @@
+//! `pulloff run`: scripts of the explorer's commands, without a terminal.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use std::fs;
+use std::io::Write;
+use std::os::unix::fs::symlink;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A home of its own, and the folder in it in which scripts run.
+struct Home(TempDir);
+
+impl Home {
+    fn new() -> Self {
+        let home = tempfile::tempdir().unwrap();
+        fs::create_dir(home.path().join("work")).unwrap();
+        Self(home)
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Runs `script` from standard input.
+    fn run(&self, script: &str, arguments: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+        command.env_clear().env("HOME", self.0.path()).env("XDG_CONFIG_HOME", self.at("config"));
+        command.current_dir(self.at("work")).args(["run", "-"]).args(arguments);
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // A script that is refused may not be read to its end.
+        let _ = child.stdin.take().unwrap().write_all(script.as_bytes());
+        child.wait_with_output().unwrap()
+    }
+
+    /// A run that succeeds without a word.
+    fn quiet(&self, script: &str, arguments: &[&str]) {
+        let output = self.run(script, arguments);
+        assert_eq!((output.status.code(), text(&output)), (Some(0), String::new()), "{script}");
+    }
+
+    /// A run that fails with this status and says this.
+    fn fails(&self, script: &str, arguments: &[&str], status: i32, said: &str) {
+        let output = self.run(script, arguments);
+        assert_eq!(output.status.code(), Some(status), "{script}: {}", text(&output));
+        assert!(output.stdout.is_empty());
+        assert!(text(&output).contains(said), "{script}: {}", text(&output));
+    }
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn a_script_walks_and_exports_and_its_session_walks_again() {
+    let home = Home::new();
+    let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun-to instability\njump\n\
+                  set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-limit\n\
+                  export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
+    home.quiet(script, &[]);
+    let walk = fs::read(home.at("work/walk.csv")).unwrap();
+    assert!(String::from_utf8_lossy(&walk).lines().count() > 5);
+    let again = fs::read_to_string(home.at("work/again.pulloff")).unwrap();
+    assert!(again.contains("\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nnext-limit\njump\n"), "{again}");
+    home.quiet(&format!("{again}export walk again.csv\nexport script third.pulloff\n"), &[]);
+    assert_eq!(fs::read(home.at("work/again.csv")).unwrap(), walk);
+    assert_eq!(fs::read_to_string(home.at("work/third.pulloff")).unwrap(), again);
+    let curve: serde_json::Value =
+        serde_json::from_slice(&fs::read(home.at("work/curve.json")).unwrap()).unwrap();
+    assert!(curve["points"].as_array().unwrap().len() > 100);
+}
+
+#[test]
+fn a_script_in_si_takes_units_and_bare_si_numbers() {
+    let home = Home::new();
+    let set = "set material.work_of_adhesion=\"20 mJ/m^2\"\nset material.work_of_adhesion=0.03\n";
+    home.quiet(&format!("open fig-9-si\n{set}step\nexport script a.pulloff"), &[]);
+    let lines = fs::read_to_string(home.at("work/a.pulloff")).unwrap();
+    assert!(
+        lines.contains("set material.work_of_adhesion=0.02\nset material.work_of_adhesion=0.03\nstep 1\n"),
+        "{lines}"
+    );
+}
+
+#[test]
+fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
+    let home = Home::new();
+    let preset = ["--preset", "wavy-sphere", "--set", "path.end_contact_radius=0.39"];
+    home.fails("step\n\njump\nexport walk w.csv", &preset, 1, "standard input:3: jump: the state is stable");
+    assert!(!home.at("work/w.csv").exists());
+    // The end of the path, twice, and then a line that may fail.
+    home.quiet("next-limit\nnext-limit\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
+    for (script, said) in [
+        ("set gap.amplitude=-1", "1: set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
+        ("select-event 9", "there is no event 9: the list has"),
+        ("open wavy", "no preset is called \"wavy\""),
+        ("export walk w.txt", "must end in .csv or .json"),
+        ("export script w.csv", "must end in .pulloff or .txt"),
+        ("set gap.shape=profile gap.file=none.csv", "none.csv"),
+    ] {
+        home.fails(script, &[], 1, said);
+    }
+    for (script, said) in [
+        ("step\nstepp", "standard input:2:1: no command is called \"stepp\"; did you mean step?"),
+        ("zoom-in", "zoom-in only changes what a screen shows"),
+    ] {
+        home.fails(script, &[], 2, said);
+    }
+    home.fails("open cone", &preset, 2, "--preset and --set would be lost");
+    home.fails("step", &["--preset", "none"], 2, "no preset is called");
+    home.fails(&"#\n".repeat(600_000), &[], 2, "more than the 1048576 bytes");
+    let output = home.run("step 2\nnext-limit\n", &["--verbose"]);
+    assert!(text(&output).starts_with("1: step 2: Stable under"), "{}", text(&output));
+    assert_eq!(text(&output).lines().count(), 2);
+}
+
+#[test]
+fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
+    let home = Home::new();
+    let work = home.at("work");
+    fs::create_dir_all(work.join("sub")).unwrap();
+    fs::create_dir(home.at("work2")).unwrap();
+    symlink(home.at("work2"), work.join("link")).unwrap();
+    symlink(home.at("work2/target.csv"), work.join("file.csv")).unwrap();
+    symlink(work.join("sub"), home.at("back")).unwrap();
+    let absolute = work.join("sub/absolute.csv");
+    for inside in
+        ["a.csv", "sub/b.csv", "sub/../c.csv", "../work/d.csv", "../back/e.csv", absolute.to_str().unwrap()]
+    {
+        home.quiet(&format!("export walk {inside}"), &[]);
+    }
+    let outside = home.at("work2/x.csv");
+    for path in ["../x.csv", "link/x.csv", "file.csv", "../work2/x.csv", "~/x.csv", outside.to_str().unwrap()]
+    {
+        home.fails(&format!("export walk {path}"), &[], 1, "is not below the current folder");
+    }
+    assert_eq!(fs::read_dir(home.at("work2")).unwrap().count(), 0);
+    home.fails("export walk none/x.csv", &[], 1, "No such file");
+    home.quiet("export walk link/x.csv\nexport walk ../y.csv", &["--anywhere"]);
+    assert!(outside.exists() && home.at("y.csv").exists());
+    // Replacing.
+    fs::write(work.join("a.csv"), "mine").unwrap();
+    home.fails("export walk a.csv", &[], 1, "a.csv exists: not exported");
+    home.fails("export walk a.csv replace", &[], 1, "only with --overwrite");
+    assert_eq!(fs::read(work.join("a.csv")).unwrap(), b"mine");
+    home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
+    assert_ne!(fs::read(work.join("a.csv")).unwrap(), b"mine");
+    // Presets: by name to their folder; a file only where it may be replaced.
+    home.quiet("set gap.amplitude=0.003\nsave-as mine", &[]);
+    home.fails("save-as mine", &[], 1, "a preset called mine exists");
+    home.fails("open mine\nset gap.amplitude=0.004\nsave", &[], 1, "only with --overwrite");
+    home.quiet("open mine\nset gap.amplitude=0.004\nsave", &["--overwrite"]);
+    let mine = home.at("config/pulloff/presets/mine.toml");
+    assert!(fs::read_to_string(&mine).unwrap().contains("amplitude = 0.004"));
+    fs::copy(&mine, home.at("work2/p.toml")).unwrap();
+    home.fails("open ../work2/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
+}
+
+/// Standard output of a run that succeeds.
+fn output(home: &Home, arguments: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+    command.env_clear().env("HOME", home.0.path()).env("XDG_CONFIG_HOME", home.at("config"));
+    let output = command.args(arguments).stdin(Stdio::null()).output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];
+
+#[test]
+fn the_completions_of_every_shell_know_every_subcommand() {
+    let home = Home::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = output(&home, &["completions", shell]);
+        for name in SUBCOMMANDS.into_iter().chain(["overwrite", "anywhere", "config"]) {
+            assert!(text.contains(name), "{shell}: no {name}");
+        }
+    }
+    let path = home.at("pulloff.bash");
+    fs::write(&path, output(&home, &["completions", "bash"])).unwrap();
+    // Where there is a bash, it finds no fault in it.
+    if let Ok(checked) = Command::new("bash").arg("-n").arg(&path).output() {
+        assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    }
+}
+
+#[test]
+fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
+    let home = Home::new();
+    let page = output(&home, &["man"]);
+    assert!(page.contains(".TH pulloff 1"), "{page}");
+    for name in SUBCOMMANDS {
+        let heading = format!(".SH \"PULLOFF {}\"", name.to_uppercase());
+        assert!(page.contains(&heading), "no {heading} in\n{page}");
+    }
+    for text in
+        ["overwrite", "\\fBnext\\-limit\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
+    {
+        assert!(page.contains(text), "no {text} in\n{page}");
+    }
+    if cfg!(feature = "tui") {
+        assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
+        fs::create_dir_all(home.at("config/pulloff")).unwrap();
+        fs::write(home.at("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
+        assert!(output(&home, &["man"]).contains("[number of steps] (F4)"));
+    }
+}
