@@ -9,7 +9,7 @@ use crate::preset::{BasisSpec, Functions, Preset};
 use crate::quasistatic::admissible::falls;
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
-use crate::quasistatic::{Curve, Unloading};
+use crate::quasistatic::{Curve, Losses, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
 use crate::theory::jkr::Jkr;
@@ -153,10 +153,10 @@ impl Case {
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
     pub fn unload(&self, curve: &mut Curve, control: Control) -> Result<Unloading, CaseError> {
-        self.unload_while(curve, control, || true)
+        self.unload_while(curve, control, Losses::Twice, || true)
     }
 
-    /// The same as [`Case::unload`]; `go_on` is asked before each event.
+    /// The same as [`Case::unload`], with these losses; `go_on` is asked before each event.
     ///
     /// # Errors
     /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
@@ -164,9 +164,10 @@ impl Case {
         &self,
         curve: &mut Curve,
         control: Control,
+        losses: Losses,
         go_on: impl FnMut() -> bool,
     ) -> Result<Unloading, CaseError> {
-        unload_while(curve, control, go_on).map_err(|e| match e {
+        unload_while(curve, control, losses, go_on).map_err(|e| match e {
             UnloadError::Cancelled => CaseError::Cancelled,
             other @ UnloadError::UnstableStart { .. } => CaseError::Unload(other.in_units(self.units())),
         })

@@ -6,6 +6,7 @@
 //! | 1 | the computation, or writing its result, failed |
 //! | 2 | bad usage or bad input |
 //! | 3 | with `--strict`: the result has inadmissible states |
+//! | 130, 143 | a sweep was stopped by Ctrl-C or SIGTERM; what was done is kept |
 //!
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
@@ -14,6 +15,7 @@ mod explore;
 mod failure;
 mod output;
 mod presets;
+mod sweep;
 mod trace;
 mod unload;
 mod verify;
@@ -43,6 +45,8 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Compute one preset over many values of its keys, on all cores, into a CSV file
+    Sweep(sweep::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
     /// List and show presets
@@ -97,6 +101,7 @@ pub fn run() -> ExitCode {
         None => explore::run(&cli.problem),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Presets(command)) => presets::run(command),
     };

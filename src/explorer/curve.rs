@@ -13,7 +13,7 @@ use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
-use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Point, Stiffness, Unloading};
+use crate::quasistatic::{Admissibility, Curve, Limit, Losses, Overlap, Point, Stiffness, Unloading};
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
@@ -180,7 +180,7 @@ impl CurveData {
             .flat_map(|other| curve.limit_points(other).into_iter().map(move |limit| (other, limit.point)))
             .map(|(other, point)| (other, shown(&point, other)))
             .collect();
-        let unloading = match case.unload_while(&mut longer, control, go_on) {
+        let unloading = match case.unload_while(&mut longer, control, Losses::Twice, go_on) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|e| e.to_string()),
         };

@@ -101,7 +101,12 @@ fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Invalid>) -> V
 }
 
 /// The number of a text, in SI or reduced units.
-fn in_units(values: &Values, units: &UnitSystem, key: &str, text: &str) -> Result<f64, ValueError> {
+pub(super) fn in_units(
+    values: &Values,
+    units: &UnitSystem,
+    key: &str,
+    text: &str,
+) -> Result<f64, ValueError> {
     let typed = parse_quantity(text)?;
     if *units == UnitSystem::Reduced {
         return typed.pure();

@@ -1,6 +1,6 @@
 //! The preset: a problem, the basis it is solved in, and the path to follow.
 
-use super::build::{Values, build};
+use super::build::{Values, build, in_units};
 use super::family;
 use super::groups;
 use super::invalid::Invalid;
@@ -229,12 +229,43 @@ impl Preset {
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
-        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
-        let value = row.check(self.located(&row, value)?)?;
-        if groups::row(key).is_some() {
-            return self.set_group(&row, value);
+        self.set_all([(key, value)])
+    }
+
+    /// Gives several keys other values at once: the whole is checked when all are laid down, choices first, and groups
+    /// are made last in their order, as assignments on the command line are.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn set_all<'a>(
+        &mut self,
+        changes: impl IntoIterator<Item = (&'a str, Value)>,
+    ) -> Result<(), Invalid> {
+        let (mut plain, mut grouped) = (Vec::new(), Vec::new());
+        for (key, value) in changes {
+            let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+            let value = row.check(self.located(&row, value)?)?;
+            let list = if groups::row(key).is_some() { &mut grouped } else { &mut plain };
+            list.push((row, value));
         }
-        let mut values = self.keyed();
+        plain.sort_by_key(|(row, _)| !CHOOSERS.contains(&&*row.key));
+        let mut changed = self.clone();
+        if !plain.is_empty() {
+            let mut values = self.keyed();
+            for (row, value) in plain {
+                self.lay(&mut values, &row, value);
+            }
+            changed = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        }
+        for (row, value) in grouped {
+            changed.set_group(&row, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Lays a value over the others, with what it drops and begins.
+    fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
         if CHOOSERS.contains(&&*row.key) {
             values.retain(|key, _| {
                 parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
@@ -243,17 +274,33 @@ impl Preset {
         match &*row.key {
             "gap.shape" => {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
-                shape::begin(&mut values, &value.to_string(), radius, self.gap.wave());
+                shape::begin(values, &value.to_string(), radius, self.gap.wave());
             }
             key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}
         }
-        put(&mut values, &row, value);
+        put(values, row, value);
         if row.key == "gap.formula" {
-            shape::fit_parameters(&mut values, |_| false);
+            shape::fit_parameters(values, |_| false);
         }
-        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
-        Ok(())
+    }
+
+    /// A value of a key as this preset would keep it: in the range of its row, a text with a unit read in the preset's
+    /// units. What other keys say to it is not asked.
+    ///
+    /// # Errors
+    /// The key is unknown, or does not take the value.
+    pub fn resolved(&self, key: &str, value: Value) -> Result<Value, Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let Value::Typed(text) = row.check(value.clone())? else { return row.check(value) };
+        let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
+        let x = if groups::row(key).is_some() {
+            parse_quantity(&text).and_then(|typed| typed.in_si(Quantity::Number, None))
+        } else {
+            in_units(&self.keyed(), &self.units, key, &text)
+        };
+        let x = x.map_err(cause)?;
+        row.check(if row.kind == Kind::Control { Control::Stiffness(x).into() } else { x.into() })
     }
 
     fn set_group(&mut self, row: &Parameter, value: Value) -> Result<(), Invalid> {
@@ -366,7 +413,7 @@ impl Preset {
     }
 
     fn unknown_key(&self, key: &str) -> Invalid {
-        let rows: Vec<Row> = self.rows().collect();
+        let rows: Vec<Row> = self.rows().chain(groups::GROUPS.iter().map(Row::Borrowed)).collect();
         let meant = closest_key(key, rows.iter().map(|row| (&*row.key, &*row.label)));
         Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
     }
