@@ -56,9 +56,9 @@ struct Sweep {
     /// Write to this file; a rerun goes on where it ends
     #[arg(short, value_name = "RESULTS.csv")]
     output: PathBuf,
-    /// Threads [default: one per core]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    /// Threads, at most 1024 [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
     /// Compute the part i of n alone, such as 3/8
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
@@ -138,7 +138,8 @@ impl Sweep {
         let spec = Spec::load(&super::store(), &self.spec)?;
         let results = Output::open(&self.output, &spec, self.shard, existing(self.overwrite))?;
         let stop = Stop::catch().map_err(|error| Failure::Usage(format!("cannot catch signals: {error}")))?;
-        let jobs = self.jobs.or_else(|| available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+        let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
+        let jobs = self.jobs.map_or_else(cores, usize::from);
         let bar = bar(self.shard.len(spec.rows), results.rows);
         let begun = Instant::now();
         let go_on = || stop.signal().is_none();

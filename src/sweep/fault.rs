@@ -50,13 +50,10 @@ impl Fault {
         Self::new(REASONS[4], why)
     }
 
-    /// A curve whose smallest force is at its start.
+    /// A curve on which something is smallest at its start.
     #[must_use]
     pub fn small_start() -> Self {
-        Self::new(
-            REASONS[5],
-            "the smallest force is that of the start: it may be smaller in a larger contact",
-        )
+        Self::new(REASONS[5], "what is smallest at the start may be smaller in a larger contact")
     }
 
     /// A panic, a fault of the program itself.

@@ -108,27 +108,28 @@ impl Line {
         Ok(Self { curve, least, critical_force })
     }
 
-    /// Of the state of smallest force; `None` where that is the start: the force may be smaller in a larger contact.
-    pub(super) fn least(&self, of: fn(&State) -> f64) -> Option<Cell> {
-        self.turns().then(|| Cell::Number(of(&self.least[0])))
+    /// Of the state of smallest force.
+    pub(super) fn least(&self, of: fn(&State) -> f64) -> Result<Option<Cell>, Fault> {
+        Ok(Some(Cell::Number(of(self.inside(&self.least[0])?))))
     }
 
-    fn turns(&self) -> bool {
-        self.least[0].contact_radius < self.curve.outermost()
+    pub(super) fn least_approach(&self) -> Result<Option<Cell>, Fault> {
+        Ok(Some(Cell::Number(self.inside(&self.least[1])?.approach)))
     }
 
-    pub(super) fn least_approach(&self) -> Cell {
-        Cell::Number(self.least[1].approach)
+    pub(super) fn enhancement(&self) -> Result<Option<Cell>, Fault> {
+        let Some(critical_force) = self.critical_force else { return Ok(None) };
+        Ok(Some(Cell::Number(-self.inside(&self.least[0])?.force / critical_force)))
     }
 
-    pub(super) fn enhancement(&self) -> Option<Cell> {
-        let critical_force = self.critical_force.filter(|_| self.turns())?;
-        Some(Cell::Number(-self.least[0].force / critical_force))
+    pub(super) fn waves(&self) -> Result<Option<Cell>, Fault> {
+        let Some(wave) = self.curve.equilibrium.problem.gap.feature_length() else { return Ok(None) };
+        Ok(Some(Cell::Number(self.inside(&self.least[0])?.contact_radius / wave)))
     }
 
-    pub(super) fn waves(&self) -> Option<Cell> {
-        let wave = self.curve.equilibrium.problem.gap.feature_length().filter(|_| self.turns())?;
-        Some(Cell::Number(self.least[0].contact_radius / wave))
+    /// The state, unless it is the start: what is smallest there may be smaller in a larger contact.
+    fn inside<'a>(&self, state: &'a State) -> Result<&'a State, Fault> {
+        if state.contact_radius < self.curve.outermost() { Ok(state) } else { Err(Fault::small_start()) }
     }
 }
 
@@ -201,14 +202,7 @@ impl Work<'_> {
         match column.quantity.of {
             Of::Ground(of) => Ok(of(&self.ground)),
             Of::Start(of) => self.start().map(of),
-            Of::Line(of) => {
-                let line = self.line()?;
-                let found = of(line);
-                if found.is_none() && !line.turns() {
-                    return Err(Fault::small_start());
-                }
-                Ok(found)
-            }
+            Of::Line(of) => of(self.line()?),
             Of::Limits => {
                 let control = self.reduced(column.under.control(own))?;
                 Ok(Some(Cell::Count(self.line()?.curve.limit_points(control).len())))

@@ -1,5 +1,6 @@
 //! What a sweep can compute of a problem: the table of quantities, one row each.
 
+use super::fault::Fault;
 use super::measure::{Cell, Ground, Line, Path};
 use crate::contact::Control;
 use crate::preset::suggest::closest;
@@ -27,7 +28,7 @@ pub(super) enum Of {
     /// The state at the start: a basis and a search.
     Start(fn(&super::measure::Start) -> Option<Cell>),
     /// The equilibrium curve.
-    Line(fn(&Line) -> Option<Cell>),
+    Line(fn(&Line) -> Result<Option<Cell>, Fault>),
     /// The limit points of a control on the curve.
     Limits,
     /// The unloading under a control.
@@ -88,12 +89,7 @@ pub static QUANTITIES: &[Quantity] = &[
         "contact radius at the smallest force",
         Of::Line(|line| line.least(|s| s.contact_radius)),
     ),
-    row(
-        "least_approach",
-        Unit::Length,
-        "smallest approach of the curve",
-        Of::Line(|line| Some(line.least_approach())),
-    ),
+    row("least_approach", Unit::Length, "smallest approach of the curve", Of::Line(Line::least_approach)),
     row(
         "enhancement",
         Unit::Number,

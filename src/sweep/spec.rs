@@ -225,7 +225,11 @@ fn preset(store: &Store, folder: &Path, section: &Section<'_>) -> Result<Preset,
     let entry = section.need("preset", wanted)?;
     let name = entry.text(wanted)?;
     let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
-    let source = if is_path { store.resolve(folder.join(name)) } else { store.resolve(name) };
+    let source = if is_path {
+        store.resolve(folder.join(name.strip_prefix("./").unwrap_or(name)))
+    } else {
+        store.resolve(name)
+    };
     let source = source.map_err(|error| entry.fault(&format!("preset: {error}")))?;
     let wanted = "an array of texts \"KEY=VALUE\"";
     let set: Vec<Entry<'_>> = section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(wanted))?;
