@@ -1,5 +1,7 @@
 //! The spec of a sweep: what it says of each row, and what is wrong with a bad one.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
 use pulloff::preset::Store;
 use pulloff::sweep::{MOST_ROWS, Spec, SpecError};
 use std::path::Path;
@@ -93,6 +95,7 @@ fn values_that_belong_together_are_laid_down_together() {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table of texts and messages")]
 fn each_mistake_names_its_line_and_what_is_allowed() {
     let mut wrong = Vec::new();
     for (text, message) in [

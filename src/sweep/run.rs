@@ -180,7 +180,7 @@ mod tests {
         let compute = |index: u64| {
             begun.fetch_max(index, Ordering::SeqCst);
             assert!(index < done.load(Ordering::SeqCst) + window, "row {index} was begun too early");
-            if index % 7 == 0 {
+            if index.is_multiple_of(7) {
                 std::thread::sleep(Duration::from_micros(300));
             }
             (index < last).then_some(index)
