@@ -18,6 +18,7 @@
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers |
 //! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |
 //! | 4 | [`verify`] | our numbers against theory: convergence, extreme values, instabilities, losses, work |
+//! | 4 | [`sweep`] | one preset over many values, on all cores, into one CSV file: specs, quantities, shards |
 //! | 3 | [`case`] | a preset made ready for the engine |
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, losses, the unloading; profiles, landscapes, admissibility |
@@ -71,6 +72,7 @@ pub mod preset;
 pub mod quasistatic;
 pub mod report;
 pub mod ritz;
+pub mod sweep;
 pub mod theory;
 #[cfg(feature = "tui")]
 pub mod tui;

@@ -12,6 +12,8 @@ use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::RwLockReadGuard;
+use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// How many links in a row are followed; the kernel's own limit.
@@ -102,40 +104,86 @@ pub fn write_verified(
     overwrite: Overwrite,
     verify: impl FnOnce(&[u8]) -> Result<(), String>,
 ) -> Result<Fingerprint, WriteError> {
-    let target = follow(path)?;
     let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
-    let old = guard(path, &target, overwrite)?;
-    // Opened while an error still leaves everything as it was.
-    let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
-    let _writing = temporary::begin();
-    let mut temporary =
-        temporary::beside(folder_of(&target), old.as_ref()).map_err(failed("make a file in its folder"))?;
-    temporary.as_file_mut().write_all(bytes).map_err(failed("write"))?;
-    temporary.as_file_mut().flush().map_err(failed("write"))?;
-    temporary.as_file().sync_all().map_err(failed("write"))?;
-    temporary.as_file_mut().rewind().map_err(failed("read back"))?;
+    let mut begun = Begun::new(path, overwrite)?;
+    let temporary = begun.temporary.as_file_mut();
+    temporary.write_all(bytes).map_err(failed("write"))?;
+    temporary.flush().map_err(failed("write"))?;
+    temporary.sync_all().map_err(failed("write"))?;
+    temporary.rewind().map_err(failed("read back"))?;
     let mut back = Vec::with_capacity(bytes.len());
-    temporary.as_file_mut().read_to_end(&mut back).map_err(failed("read back"))?;
+    temporary.read_to_end(&mut back).map_err(failed("read back"))?;
     let refused = |why| WriteError::NotReadBack { path: show_path(path), why };
     if back != bytes {
         return Err(refused("the disk gives other bytes".to_owned()));
     }
     verify(&back).map_err(refused)?;
-    // Someone may have come in between; from here to the rename is as short as it can be.
-    let old = guard(path, &target, overwrite)?;
-    let file = if old.is_none() {
-        // Nothing was there: then nothing is replaced, even if something appears now.
-        temporary.persist_noclobber(&target)
-    } else {
-        temporary.persist(&target)
-    }
-    .map_err(|error| match error.error.kind() {
-        io::ErrorKind::AlreadyExists => WriteError::Exists { path: show_path(path) },
-        _ => failed("put it in its place")(error.error),
-    })?;
-    sync_folder(&folder).map_err(failed("make sure that its folder keeps it"))?;
+    let file = begun.put()?;
     let metadata = file.metadata().map_err(failed("look at what was written"))?;
     Ok(Fingerprint::new(&metadata, bytes))
+}
+
+/// As [`write_atomically`] for a file that is not held in memory: `fill` writes it. It is not read back.
+///
+/// # Errors
+/// As there, or those of `fill`.
+pub fn write_filled<E: From<WriteError>>(
+    path: &Path,
+    overwrite: Overwrite,
+    fill: impl FnOnce(&mut File) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+    let mut begun = Begun::new(path, overwrite)?;
+    fill(begun.temporary.as_file_mut())?;
+    begun.temporary.as_file().sync_all().map_err(failed("write"))?;
+    begun.put()?;
+    Ok(())
+}
+
+/// A temporary file beside the one whose place it will take.
+struct Begun<'a> {
+    path: &'a Path,
+    target: PathBuf,
+    overwrite: Overwrite,
+    folder: File,
+    temporary: NamedTempFile,
+    /// Given up last: the end of the process waits until the temporary is gone.
+    writing: RwLockReadGuard<'static, ()>,
+}
+
+impl<'a> Begun<'a> {
+    fn new(path: &'a Path, overwrite: Overwrite) -> Result<Self, WriteError> {
+        let target = follow(path)?;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        let old = guard(path, &target, overwrite)?;
+        // Opened while an error still leaves everything as it was.
+        let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
+        let writing = temporary::begin();
+        let temporary = temporary::beside(folder_of(&target), old.as_ref())
+            .map_err(failed("make a file in its folder"))?;
+        Ok(Self { path, target, overwrite, folder, temporary, writing })
+    }
+
+    /// Puts it in its place.
+    fn put(self) -> Result<File, WriteError> {
+        // What is bound first is dropped last.
+        let Self { writing: _writing, path, target, overwrite, folder, temporary } = self;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        // Someone may have come in between; from here to the rename is as short as it can be.
+        let old = guard(path, &target, overwrite)?;
+        let file = if old.is_none() {
+            // Nothing was there: then nothing is replaced, even if something appears now.
+            temporary.persist_noclobber(&target)
+        } else {
+            temporary.persist(&target)
+        }
+        .map_err(|error| match error.error.kind() {
+            io::ErrorKind::AlreadyExists => WriteError::Exists { path: show_path(path) },
+            _ => failed("put it in its place")(error.error),
+        })?;
+        sync_folder(&folder).map_err(failed("make sure that its folder keeps it"))?;
+        Ok(file)
+    }
 }
 
 /// The file that a path names after all links, whether or not it exists.

@@ -29,18 +29,26 @@ impl FolderLock {
     /// the file itself, just before it is replaced, is all there is.
     pub fn acquire(folder: &Path, patience: Duration) -> io::Result<Option<Self>> {
         let file = File::open(folder)?;
-        let deadline = Instant::now() + patience;
-        loop {
-            match flock(&file, FlockOperation::NonBlockingLockExclusive) {
-                Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => {
-                    return Ok(Some(Self { _folder: file }));
-                }
-                Err(Errno::WOULDBLOCK | Errno::INTR) if Instant::now() < deadline => {
-                    std::thread::sleep(PAUSE);
-                }
-                Err(Errno::WOULDBLOCK | Errno::INTR) => return Ok(None),
-                Err(other) => return Err(other.into()),
+        Ok(lock_file(&file, patience)?.then_some(Self { _folder: file }))
+    }
+}
+
+/// Waits up to `patience` for the lock of an open file, which lasts until it is closed; whether it was given.
+///
+/// # Errors
+/// The file cannot be locked. A file system that knows no locks gives every one.
+pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
+    let deadline = Instant::now() + patience;
+    loop {
+        match flock(file, FlockOperation::NonBlockingLockExclusive) {
+            Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => {
+                return Ok(true);
             }
+            Err(Errno::WOULDBLOCK | Errno::INTR) if Instant::now() < deadline => {
+                std::thread::sleep(PAUSE);
+            }
+            Err(Errno::WOULDBLOCK | Errno::INTR) => return Ok(false),
+            Err(other) => return Err(other.into()),
         }
     }
 }
