@@ -7,7 +7,7 @@ use proptest::test_runner::RngSeed;
 
 fn plain() -> impl Strategy<Value = Command> {
     // These mean nothing without what they take.
-    let needy = |id: &Id| matches!(id, Id::Assign | Id::StepLength | Id::SelectEvent);
+    let needy = |id: &Id| matches!(id, Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo);
     let ids: Vec<Id> = ROWS.iter().map(|row| row.id).filter(|id| !needy(id)).collect();
     proptest::sample::select(ids).prop_map(Command::from)
 }
