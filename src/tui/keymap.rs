@@ -326,9 +326,9 @@ mod tests {
     #[test]
     fn a_persons_keys_take_the_place_of_the_usual_ones() {
         let map =
-            of("[keys]\njump = []\nstep = [\"x\", \"ctrl-x\", \"F5\", \"space\"]\nundo = \"U\"").unwrap();
+            of("[keys]\njump = []\nstep = [\"x\", \"ctrl-x\", \"F5\", \"space\"]\nundo = \"F7\"").unwrap();
         assert_eq!(map.label(Id::Step), "x Ctrl-X F5 Space");
-        assert_eq!((map.first(Id::Jump), map.label(Id::Undo)), (":jump".to_owned(), "U".to_owned()));
+        assert_eq!((map.first(Id::Jump), map.label(Id::Undo)), (":jump".to_owned(), "F7".to_owned()));
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE)), Some(Id::Step));
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::CONTROL)), Some(Id::Step));
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('u'), KeyModifiers::NONE)), None);

@@ -114,7 +114,7 @@ fn the_help_is_searched() {
 #[test]
 fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     let mut screen = Screen::new("wavy-sphere");
-    let text = "[keys]\nstep = \"F4\"\nundo = [\"w\", \"Ctrl-U\"]\njump = []\nedit = \"m\"\n";
+    let text = "[keys]\nstep = \"F4\"\nundo = [\"w\", \"Ctrl-U\"]\njump = []\nedit = \"F6\"\n";
     screen.app.keymap = Keymap::of(&config::read("c", text).unwrap()).unwrap();
     screen.press(KeyCode::F(4));
     assert_eq!(screen.app.model.history.nodes().len(), 2);
@@ -127,5 +127,5 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     // A list is chosen from with Enter all the same.
     screen.keys("\x1be\r");
     assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
-    assert_eq!(screen.app.keymap.first(Id::Edit), "m");
+    assert_eq!(screen.app.keymap.first(Id::Edit), "F6");
 }

@@ -201,7 +201,7 @@ fn the_screen_is_exported_as_text() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
     let typed = |screen: &mut Screen, path: &str| {
-        screen.keys("ejjj\r");
+        screen.keys("ejjjj\r");
         for _ in 0..60 {
             screen.press(KeyCode::Backspace);
         }
