@@ -10,7 +10,7 @@ use crate::quasistatic::admissible::falls;
 use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
-use crate::quasistatic::{Curve, Unloading};
+use crate::quasistatic::{Curve, Losses, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
 use crate::theory::jkr::Jkr;
@@ -182,10 +182,10 @@ impl Case {
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
     pub fn unload(&self, curve: &mut Curve, control: Control) -> Result<Unloading, CaseError> {
-        self.unload_while(curve, control, || true)
+        self.unload_while(curve, control, Losses::Twice, || true)
     }
 
-    /// The same as [`Case::unload`]; `go_on` is asked before each event.
+    /// The same as [`Case::unload`], with these losses; `go_on` is asked before each event.
     ///
     /// # Errors
     /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
@@ -193,10 +193,11 @@ impl Case {
         &self,
         curve: &mut Curve,
         control: Control,
+        losses: Losses,
         mut go_on: impl FnMut() -> bool,
     ) -> Result<Unloading, CaseError> {
         loop {
-            let unloading = unload_while(curve, control, &mut go_on).map_err(|e| match e {
+            let unloading = unload_while(curve, control, losses, &mut go_on).map_err(|e| match e {
                 UnloadError::Cancelled => CaseError::Cancelled,
                 other @ UnloadError::UnstableStart { .. } => CaseError::Unload {
                     error: other.in_units(self.units()),
@@ -204,8 +205,7 @@ impl Case {
                 },
             })?;
             let Some(finer) = self.finer(curve, &unloading)? else { return Ok(unloading) };
-            *curve = Curve::swept(self.reduced.clone(), finer, self.start, self.end, &mut go_on)
-                .ok_or_else(|| self.no_start())?;
+            *curve = Self { basis: finer, ..self.clone() }.sweep(&mut go_on)?;
         }
     }
 

@@ -18,6 +18,7 @@
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers, the sessions kept on disk |
 //! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |
 //! | 4 | [`verify`] | our numbers against theory: convergence, extreme values, instabilities, losses, work |
+//! | 4 | [`sweep`] | one preset over many values, on all cores, into one CSV file: specs, quantities, shards |
 //! | 3 | [`case`] | a preset made ready for the engine |
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, losses, the unloading; profiles, landscapes, admissibility |
@@ -26,6 +27,7 @@
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
 //! | 1 | [`units`] | dimensions, unit names, values with units read and shown |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
+//! | 0 | `fault` | panics on demand, in test builds only (feature `fault-injection`) |
 //! | 0 | [`expression`] | the one grammar of gap formulas and of values |
 //!
 //! # Where the equations are
@@ -63,12 +65,14 @@ pub mod contact;
 pub mod continuation;
 pub mod explorer;
 pub mod expression;
+mod fault;
 pub mod figure;
 pub mod plot;
 pub mod preset;
 pub mod quasistatic;
 pub mod report;
 pub mod ritz;
+pub mod sweep;
 pub mod theory;
 #[cfg(feature = "tui")]
 pub mod tui;

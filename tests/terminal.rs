@@ -221,6 +221,64 @@ fn on_a_terminal_that_cannot_draw_it_says_so_in_one_line() {
     }
 }
 
+/// What a terminal would obey: a title, the clipboard, a question, an 8-bit introducer, a device control, a direction.
+const HOSTILE: [&str; 6] = [
+    "\x1b]0;EVIL\x07",
+    "\x1b]52;c;RVZJTA==\x07",
+    "\x1b[6n\x05",
+    "\u{9b}31mEVIL",
+    "\x1bP+q544e\x1b\\",
+    "\u{202e}EVIL",
+];
+
+#[test]
+fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
+    let home = tempfile::tempdir().expect("a home");
+    let presets = home.path().join("pulloff/presets");
+    let folder = home.path().join("data");
+    fs::create_dir_all(&presets).expect("a folder");
+    fs::create_dir_all(&folder).expect("a folder");
+    let row = |i: i32| format!("{},{}", f64::from(i) / 4.0, f64::from(i * i) / 32.0);
+    let rows = (0..13).map(row).collect::<Vec<_>>().join("\n") + "\n";
+    for (number, sequence) in HOSTILE.iter().enumerate() {
+        fs::write(presets.join(format!("bad{number}.toml")), format!("{sequence} = {sequence}"))
+            .expect("a file");
+        fs::write(presets.join(format!("{sequence}{number}.toml")), "title").expect("a file");
+        fs::write(home.path().join(format!("data{sequence}.csv")), format!("{rows}{sequence}\n"))
+            .expect("a file");
+        fs::create_dir(home.path().join(format!("folder{sequence}"))).expect("a folder");
+    }
+    fs::write(folder.join("good.csv"), rows).expect("a file");
+    let own = folder.join("own.toml");
+    let text = "[material]\neffective_modulus = 10\nwork_of_adhesion = 0.01\n[gap]\nshape = \"profile\"\n\
+                file = \"good.csv\"\n[path]\nstart_contact_radius = 1\nend_contact_radius = 0.1\n";
+    fs::write(&own, text).expect("a preset");
+    let env = [("XDG_CONFIG_HOME", home.path().to_str().expect("Unicode"))];
+    let mut pty = Pty::spawn(&program(), &[own.to_str().expect("Unicode")], &env, 200, 60);
+    pty.wait_for(|screen| screen.contains("stable under displacement control"), "the curve");
+    // The presets with the reasons why some cannot be read, and an attempt at each of those.
+    for down in 14..26 {
+        pty.keys("o");
+        pty.wait_for(|screen| screen.contains("Open a preset") && screen.contains("EVIL"), "the presets");
+        pty.keys(&"j".repeat(down));
+        pty.keys("\r");
+        pty.wait_for(|screen| !screen.contains("Open a preset"), "the refusal");
+    }
+    while !selects(&pty.screen(), "file") {
+        let before = pty.screen();
+        pty.keys("j");
+        pty.wait_for(|screen| screen != before, "another knob");
+    }
+    // The files beside the data: those with hostile names are not offered.
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("Profiles in") && screen.contains("good.csv"), "the folder");
+    pty.keys("\x03\x03");
+    assert_eq!(pty.exit_code(), 0);
+    for sequence in HOSTILE {
+        assert!(!pty.wrote(sequence.as_bytes()), "{sequence:?} reached the terminal");
+    }
+}
+
 #[test]
 fn keys_come_from_the_settings_and_bad_settings_are_said_and_left_alone() {
     let home = tempfile::tempdir().expect("a home");

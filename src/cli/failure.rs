@@ -5,6 +5,9 @@ use crate::explorer::archive::ArchiveError;
 use crate::preset::{StoreError, WriteError};
 use crate::quasistatic::StartError;
 use crate::report::rows::RowsError;
+use crate::sweep::OutputError;
+use crate::sweep::merge::MergeError;
+use crate::sweep::spec::LoadError;
 use std::io;
 use std::process::ExitCode;
 
@@ -60,6 +63,23 @@ pub enum Failure {
     /// A line of a script failed; those before it were done.
     #[error("{0}")]
     Script(String),
+    /// The spec of a sweep is bad, or cannot be read.
+    #[error(transparent)]
+    Spec(#[from] LoadError),
+    /// The results of a sweep cannot be begun, gone on with or written.
+    #[error(transparent)]
+    Sweep(#[from] OutputError),
+    /// The parts of a sweep cannot be joined.
+    #[error(transparent)]
+    Merge(#[from] MergeError),
+    /// A signal ended a sweep; what was done is kept.
+    #[error("{text}")]
+    Interrupted {
+        /// The signal's number.
+        signal: u8,
+        /// How to go on.
+        text: String,
+    },
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),
@@ -88,15 +108,37 @@ impl Failure {
                 | ArchiveError::NoFolder,
             )
             | Self::Usage(_)
+            | Self::Spec(_)
             | Self::Case(
                 CaseError::EndOutsideStart { .. }
                 | CaseError::Basis(_)
                 | CaseError::Start {
                     error: StartError::OutOfReach { .. } | StartError::NotReached { .. }, ..
                 },
+            )
+            | Self::Merge(
+                MergeError::NotOurs { .. }
+                | MergeError::OtherSweep { .. }
+                | MergeError::OtherDivision { .. }
+                | MergeError::Doubled { .. }
+                | MergeError::Missing(_),
             ) => 2,
+            Self::Sweep(error) | Self::Merge(MergeError::Output(error)) if is_refusal(error) => 2,
             Self::Inadmissible(_) => 3,
+            // As a shell says it of a program that a signal ended.
+            Self::Interrupted { signal, .. } => 128 + signal,
             _ => 1,
         })
+    }
+}
+
+/// Whether results were refused for what they are, not for what the system says.
+fn is_refusal(error: &OutputError) -> bool {
+    match error {
+        OutputError::Write(error) => {
+            matches!(error, WriteError::Exists { .. } | WriteError::NotRegular { .. })
+        }
+        OutputError::Io { .. } | OutputError::Threads(_) => false,
+        _ => true,
     }
 }

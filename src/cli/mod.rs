@@ -6,6 +6,7 @@
 //! | 1 | the computation, or writing its result, failed |
 //! | 2 | bad usage or bad input |
 //! | 3 | with `--strict`: the result has inadmissible states |
+//! | 130, 143 | a sweep was stopped by Ctrl-C or SIGTERM; what was done is kept |
 //!
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
@@ -20,6 +21,7 @@ mod plot;
 mod presets;
 mod run;
 mod sessions;
+mod sweep;
 mod trace;
 mod unload;
 mod verify;
@@ -63,6 +65,8 @@ enum Command {
     Plot(plot::Arguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
     Figures(figures::Arguments),
+    /// Compute one preset over many values of its keys, on all cores, into a CSV file
+    Sweep(sweep::Arguments),
     /// Check this program's numbers against theory
     Verify(verify::Arguments),
     /// Run a script of the explorer's commands
@@ -128,6 +132,7 @@ pub fn run() -> ExitCode {
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),
         Some(Command::Figures(arguments)) => figures::run(arguments),
+        Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Run(arguments)) => run::run(arguments),
         Some(Command::Completions(arguments)) => completions::run(arguments),

@@ -14,7 +14,7 @@ use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
-use crate::quasistatic::{Admissibility, Curve, Limit, Overlap, Point, Stiffness, Unloading};
+use crate::quasistatic::{Admissibility, Curve, Limit, Losses, Overlap, Point, Stiffness, Unloading};
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
@@ -200,7 +200,7 @@ impl CurveData {
             asked += 1;
             go_on(Progress::Events(asked - 1))
         };
-        let unloading = match case.unload_while(&mut longer, control, next) {
+        let unloading = match case.unload_while(&mut longer, control, Losses::Twice, next) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };

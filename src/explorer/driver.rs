@@ -10,9 +10,11 @@ use super::files::{self, Done, Job};
 use super::model::Model;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
+use super::saves::Saves;
 use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
+use crate::fault;
 use crate::preset::{Preset, Store};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -290,7 +292,10 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
     let mut last: Option<Arc<Sweep>> = None;
     loop {
         let mut wish = match slot.take() {
-            Task::Curve(wish) => wish,
+            Task::Curve(wish) => {
+                fault::point(fault::WORKER);
+                wish
+            }
             Task::Check(check) => {
                 // Without patience: a knob that is turned further is not slowed.
                 if let Some(answer) = check.run(|| !slot.waiting.load(Ordering::Acquire)) {
@@ -345,7 +350,8 @@ fn walk_lane(requests: &Receiver<Box<Request>>, stopped: &AtomicU64, reply: &dyn
 }
 
 fn file_lane(store: &Store, jobs: &Receiver<Box<Job>>, reply: &dyn Fn(Reply)) {
+    let mut saves = Saves::default();
     while let Ok(job) = jobs.recv() {
-        reply(Reply::File(Box::new(files::run(store, *job))));
+        reply(Reply::File(Box::new(saves.run(store, *job))));
     }
 }

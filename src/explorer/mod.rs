@@ -26,6 +26,7 @@
 //! | [`files`] | opening, saving and exporting |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions kept on disk |
+//! | `saves` | saves that follow each other faster than they are answered |
 //! | [`journal`] | what was done, as the lines of a script |
 //! | [`script`] | commands as text, and scripts driven through a model |
 //! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
@@ -48,6 +49,7 @@ pub mod nudge;
 pub mod pins;
 pub mod profile;
 pub mod progress;
+mod saves;
 pub mod script;
 pub mod session;
 pub mod theory;

@@ -12,7 +12,7 @@ use crate::quasistatic::curve::settings;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{Nodes, Run};
 use crate::quasistatic::unload::INWARD_REACH;
-use crate::quasistatic::{Admissibility, Equilibrium, Event, Point, State, Stiffness};
+use crate::quasistatic::{Admissibility, Equilibrium, Event, Losses, Point, State, Stiffness};
 use crate::ritz::{self, NewtonSettings};
 use crate::theory::Exact;
 use std::sync::Arc;
@@ -250,7 +250,8 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Err(reason) => return Outcome::Stopped(reason.to_owned()),
     };
     let value = equilibrium.control_row(request.control).dot(&from.y);
-    let event = Event::new(equilibrium, request.control, value, equilibrium.state(from), landing.as_ref());
+    let before = equilibrium.state(from);
+    let event = Event::new(equilibrium, request.control, value, before, landing.as_ref(), Losses::Twice);
     let point = landing.unwrap_or_else(|| from.clone());
     emit(made(request, NodeKind::Jump(Box::new(event)), point));
     Outcome::Done

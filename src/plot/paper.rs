@@ -242,7 +242,7 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
         significant(apart, 2)
     );
     let mut chart = pressure_chart(lines);
-    chart.x.title = "r/R".to_owned();
+    "r/R".clone_into(&mut chart.x.title);
     Ok(Sheet { name, chart, caption })
 }
 

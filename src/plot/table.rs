@@ -26,6 +26,6 @@ pub fn csv(chart: &Chart) -> Result<String, csv::Error> {
     for mark in &chart.marks {
         row(ink::stamp(mark.sign).name, &[mark.at])?;
     }
-    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -2,22 +2,22 @@
 //!
 //! Links are followed; a temporary file is made beside the target with its permissions, written, synced and read
 //! back; the target is looked at once more; then the rename, and the folder is synced. At every moment the name
-//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched.
+//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched. A
+//! temporary left by a kill is removed by the next save in the folder.
 
 use super::file::{Fingerprint, kind_of, read_bytes};
+use super::temporary;
 use super::text::show_path;
-use rustix::fs::{Gid, Uid, fchown};
-use std::fs::{File, Metadata, Permissions};
+use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, Write};
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::RwLockReadGuard;
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// How many links in a row are followed; the kernel's own limit.
 const LINKS: usize = 40;
-/// The mode of a new file, before the umask.
-const NEW: u32 = 0o666;
 
 /// What to do about a file that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,39 +104,86 @@ pub fn write_verified(
     overwrite: Overwrite,
     verify: impl FnOnce(&[u8]) -> Result<(), String>,
 ) -> Result<Fingerprint, WriteError> {
-    let target = follow(path)?;
     let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
-    let old = guard(path, &target, overwrite)?;
-    // Opened while an error still leaves everything as it was.
-    let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
-    let mut temporary =
-        temporary_beside(&target, old.as_ref()).map_err(failed("make a file in its folder"))?;
-    temporary.as_file_mut().write_all(bytes).map_err(failed("write"))?;
-    temporary.as_file_mut().flush().map_err(failed("write"))?;
-    temporary.as_file().sync_all().map_err(failed("write"))?;
-    temporary.as_file_mut().rewind().map_err(failed("read back"))?;
+    let mut begun = Begun::new(path, overwrite)?;
+    let temporary = begun.temporary.as_file_mut();
+    temporary.write_all(bytes).map_err(failed("write"))?;
+    temporary.flush().map_err(failed("write"))?;
+    temporary.sync_all().map_err(failed("write"))?;
+    temporary.rewind().map_err(failed("read back"))?;
     let mut back = Vec::with_capacity(bytes.len());
-    temporary.as_file_mut().read_to_end(&mut back).map_err(failed("read back"))?;
+    temporary.read_to_end(&mut back).map_err(failed("read back"))?;
     let refused = |why| WriteError::NotReadBack { path: show_path(path), why };
     if back != bytes {
         return Err(refused("the disk gives other bytes".to_owned()));
     }
     verify(&back).map_err(refused)?;
-    // Someone may have come in between; from here to the rename is as short as it can be.
-    let old = guard(path, &target, overwrite)?;
-    let file = if old.is_none() {
-        // Nothing was there: then nothing is replaced, even if something appears now.
-        temporary.persist_noclobber(&target)
-    } else {
-        temporary.persist(&target)
-    }
-    .map_err(|error| match error.error.kind() {
-        io::ErrorKind::AlreadyExists => WriteError::Exists { path: show_path(path) },
-        _ => failed("put it in its place")(error.error),
-    })?;
-    sync_folder(&folder).map_err(failed("make sure that its folder keeps it"))?;
+    let file = begun.put()?;
     let metadata = file.metadata().map_err(failed("look at what was written"))?;
     Ok(Fingerprint::new(&metadata, bytes))
+}
+
+/// As [`write_atomically`] for a file that is not held in memory: `fill` writes it. It is not read back.
+///
+/// # Errors
+/// As there, or those of `fill`.
+pub fn write_filled<E: From<WriteError>>(
+    path: &Path,
+    overwrite: Overwrite,
+    fill: impl FnOnce(&mut File) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+    let mut begun = Begun::new(path, overwrite)?;
+    fill(begun.temporary.as_file_mut())?;
+    begun.temporary.as_file().sync_all().map_err(failed("write"))?;
+    begun.put()?;
+    Ok(())
+}
+
+/// A temporary file beside the one whose place it will take.
+struct Begun<'a> {
+    path: &'a Path,
+    target: PathBuf,
+    overwrite: Overwrite,
+    folder: File,
+    temporary: NamedTempFile,
+    /// Given up last: the end of the process waits until the temporary is gone.
+    writing: RwLockReadGuard<'static, ()>,
+}
+
+impl<'a> Begun<'a> {
+    fn new(path: &'a Path, overwrite: Overwrite) -> Result<Self, WriteError> {
+        let target = follow(path)?;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        let old = guard(path, &target, overwrite)?;
+        // Opened while an error still leaves everything as it was.
+        let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
+        let writing = temporary::begin();
+        let temporary = temporary::beside(folder_of(&target), old.as_ref())
+            .map_err(failed("make a file in its folder"))?;
+        Ok(Self { path, target, overwrite, folder, temporary, writing })
+    }
+
+    /// Puts it in its place.
+    fn put(self) -> Result<File, WriteError> {
+        // What is bound first is dropped last.
+        let Self { writing: _writing, path, target, overwrite, folder, temporary } = self;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        // Someone may have come in between; from here to the rename is as short as it can be.
+        let old = guard(path, &target, overwrite)?;
+        let file = if old.is_none() {
+            // Nothing was there: then nothing is replaced, even if something appears now.
+            temporary.persist_noclobber(&target)
+        } else {
+            temporary.persist(&target)
+        }
+        .map_err(|error| match error.error.kind() {
+            io::ErrorKind::AlreadyExists => WriteError::Exists { path: show_path(path) },
+            _ => failed("put it in its place")(error.error),
+        })?;
+        sync_folder(&folder).map_err(failed("make sure that its folder keeps it"))?;
+        Ok(file)
+    }
 }
 
 /// The file that a path names after all links, whether or not it exists.
@@ -199,29 +246,6 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
     Ok(Some(metadata))
 }
 
-/// A new, exclusive file beside the target, with its owner and permissions.
-fn temporary_beside(target: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".pulloff-").suffix(".tmp");
-    let Some(old) = old else {
-        return builder.permissions(Permissions::from_mode(NEW)).tempfile_in(folder_of(target));
-    };
-    let temporary = builder.tempfile_in(folder_of(target))?;
-    let new = temporary.as_file().metadata()?;
-    let mut mode = old.mode() & 0o777;
-    if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
-        let owner =
-            fchown(temporary.as_file(), Some(Uid::from_raw(old.uid())), Some(Gid::from_raw(old.gid())));
-        // Only root gives files away. Then the file becomes ours, and a group that is not the old one gets no
-        // more than everybody.
-        if owner.is_err() && fchown(temporary.as_file(), None, Some(Gid::from_raw(old.gid()))).is_err() {
-            mode = (mode & 0o707) | ((mode & 0o007) << 3 & mode);
-        }
-    }
-    temporary.as_file().set_permissions(Permissions::from_mode(mode))?;
-    Ok(temporary)
-}
-
 /// Makes the rename last. File systems that cannot sync a folder have their own ways.
 fn sync_folder(folder: &File) -> io::Result<()> {
     match folder.sync_all() {
@@ -236,8 +260,8 @@ fn sync_folder(folder: &File) -> io::Result<()> {
 mod tests {
     use super::*;
     use rustix::fs::{CWD, FileType, Mode, mknodat};
-    use std::fs;
-    use std::os::unix::fs::symlink;
+    use std::fs::{self, Permissions};
+    use std::os::unix::fs::{PermissionsExt, symlink};
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =

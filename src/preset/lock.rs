@@ -31,17 +31,23 @@ impl FolderLock {
     /// the file itself, just before it is replaced, is all there is.
     pub fn acquire(folder: &Path, patience: Duration) -> io::Result<Option<Self>> {
         let file = File::open(folder)?;
-        let deadline = Instant::now() + patience;
-        loop {
-            if lock(&file)? {
-                return Ok(Some(Self { _folder: file }));
-            }
-            if Instant::now() >= deadline {
-                return Ok(None);
-            }
-            std::thread::sleep(PAUSE);
-        }
+        Ok(lock_file(&file, patience)?.then_some(Self { _folder: file }))
     }
+}
+
+/// Waits up to `patience` for the lock of an open file, which lasts until it is closed; whether it was given.
+///
+/// # Errors
+/// The file cannot be locked. A file system that knows no locks gives every one.
+pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
+    let deadline = Instant::now() + patience;
+    while !lock(file)? {
+        if Instant::now() >= deadline {
+            return Ok(false);
+        }
+        std::thread::sleep(PAUSE);
+    }
+    Ok(true)
 }
 
 /// Locks a file or folder; false if another holds it. A file system that knows no locks grants every one.

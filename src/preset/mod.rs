@@ -25,6 +25,7 @@
 //! | [`beside`] | the data of a profile copied beside a preset |
 //! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 //! | [`atomic`] | writing a file whole or not at all |
+//! | [`temporary`] | the temporary file of a save, and what a killed save has left |
 //! | [`lock`] | one saver at a time in a folder |
 //! | [`store`] | the folder of a person's presets: resolve, load, list, save |
 //! | [`text`] | foreign text made safe to show |
@@ -53,6 +54,7 @@ mod shape;
 pub mod shipped;
 pub mod store;
 pub mod suggest;
+pub mod temporary;
 pub mod text;
 pub mod value;
 pub mod write;

@@ -16,6 +16,7 @@ mod sheet;
 mod whole;
 
 pub use mistake::{Mistake, Origin, ReadError};
+pub use sheet::line;
 
 use super::model::Preset;
 use super::text::show_name;

@@ -43,7 +43,7 @@ pub(super) fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Inv
 }
 
 /// The number of a text, in SI or reduced units.
-fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &str) -> Result<f64, Invalid> {
+pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &str) -> Result<f64, Invalid> {
     let fault = |cause: ValueError| Invalid::Units { key: key.clone(), cause };
     let typed = parse_quantity(text).map_err(fault)?;
     if *units == UnitSystem::Reduced {

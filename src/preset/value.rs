@@ -44,7 +44,10 @@ impl Value {
     }
 
     /// What a TOML value is, or a few words on why it is none of ours.
-    pub(super) fn from_toml(value: &DeValue<'_>) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// What was found instead.
+    pub fn from_toml(value: &DeValue<'_>) -> Result<Self, String> {
         match value {
             DeValue::String(text) => Ok(Self::Text(text.to_string())),
             DeValue::Integer(n) => match i64::from_str_radix(n.as_str(), n.radix()) {

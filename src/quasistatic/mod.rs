@@ -33,4 +33,4 @@ pub use landscape::Landscape;
 pub use overlap::Overlap;
 pub use profile::Profile;
 pub use start::StartError;
-pub use unload::{Event, EventKind, PathStop, Unloading};
+pub use unload::{Event, EventKind, Losses, PathStop, Unloading};

@@ -18,6 +18,15 @@ pub enum EventKind {
     PullOff,
 }
 
+/// How often the loss of a jump is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Losses {
+    /// Once, by the drop of the potential.
+    Once,
+    /// By the area under the curve as well, which costs far more: two independent numbers that must agree.
+    Twice,
+}
+
 /// One instability of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
@@ -31,7 +40,7 @@ pub struct Event {
     pub after: Option<State>,
     /// Energy lost, by the drop of the potential; `None` for a pull-off under a dead load.
     pub dissipated: Option<f64>,
-    /// The same by the area between the curve and the control line.
+    /// The same by the area between the curve and the control line; `None` too where it was not asked for.
     pub dissipated_by_area: Option<f64>,
 }
 
@@ -45,6 +54,7 @@ impl Event {
         value: f64,
         before: State,
         landing: Option<&Point>,
+        losses: Losses,
     ) -> Self {
         let after = landing.map(|point| equilibrium.state(point));
         let radii = (before.contact_radius, after.map(|a| a.contact_radius));
@@ -54,7 +64,10 @@ impl Event {
             before,
             after,
             dissipated: energy::loss(control, value, &before, after.as_ref()),
-            dissipated_by_area: energy::area(equilibrium, control, value, radii.0, radii.1),
+            dissipated_by_area: match losses {
+                Losses::Once => None,
+                Losses::Twice => energy::area(equilibrium, control, value, radii.0, radii.1),
+            },
         }
     }
 }
@@ -194,16 +207,17 @@ impl Unloading {
 /// # Errors
 /// [`UnloadError`] when the start is unstable and no stable state lies outward.
 pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadError> {
-    unload_while(curve, control, || true)
+    unload_while(curve, control, Losses::Twice, || true)
 }
 
-/// As [`unload`]; `go_on` is asked before each event, whose losses cost most.
+/// As [`unload`], with these losses; `go_on` is asked before each event.
 ///
 /// # Errors
 /// [`UnloadError::Cancelled`] when `go_on` said no, and as [`unload`].
 pub fn unload_while(
     curve: &mut Curve,
     control: Control,
+    losses: Losses,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Unloading, UnloadError> {
     let asked_radius = curve.outermost();
@@ -263,6 +277,7 @@ pub fn unload_while(
             value,
             before,
             landing.as_ref().map(|l| &l.point),
+            losses,
         ));
         match landing {
             None => break PathStop::PullOff,

@@ -28,21 +28,25 @@ pub mod terminal;
 pub mod theme;
 pub mod view;
 
+#[cfg(test)]
+mod budget;
+
 pub use terminal::refuse_reason;
 
 use crate::explorer::archive::{Archive, Held, Keeper, ago};
 use crate::explorer::model::Level;
 use crate::explorer::session::{Ended, Snapshot};
-use crate::explorer::{Reply, Workers};
+use crate::explorer::{Effect, Reply, Workers};
+use crate::fault;
 use crate::preset::text::sanitize;
-use crate::preset::{Loaded, Store};
+use crate::preset::{Loaded, Store, temporary};
 use app::App;
 use keymap::Keymap;
 use look::Look;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Duration;
-use terminal::Incoming;
+use terminal::{Display, Inbox, Incoming, Sink};
 use theme::{Palette, Theme};
 
 /// What a person has set, ready to be used.
@@ -70,6 +74,9 @@ pub enum Start {
 /// How long the last write of a session may take when the person quits, and when something else ends the program.
 const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(800)];
 
+/// How long quitting waits for a file that is being written: the shell waits too.
+const SAVE_PATIENCE: Duration = Duration::from_secs(10);
+
 /// What is said of a session: its preset, and how much was walked.
 fn told(held: &Held) -> String {
     let steps = held.summary.steps;
@@ -78,11 +85,7 @@ fn told(held: &Held) -> String {
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(
-    start: Start,
-    theme: Theme,
-    keeper: &Keeper,
-) -> (App, Vec<crate::explorer::Effect>, Option<Box<Held>>) {
+fn begin(start: Start, theme: Theme, keeper: &Keeper) -> (App, Vec<Effect>, Option<Box<Held>>) {
     match start {
         Start::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
@@ -140,6 +143,36 @@ pub fn run(
         app.model.message = Some((Level::Error, notice));
     }
     workers.submit_all(effects);
+    converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects), &mut |app| {
+        if let Some(held) = offered.take_if(|_| !app.is_offering()) {
+            // Answered; a session that nobody wants may be had by another program.
+            if app.model.session > 0 {
+                keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
+            }
+        }
+        keeper.offer(Snapshot::of(&app.model));
+    });
+    drop(guard);
+    // A file still being written would be cut off.
+    temporary::finish(SAVE_PATIENCE);
+    if let Err(reason) = keeper.finish(Ended::Quit, PATIENCE[0]) {
+        // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
+        let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Keys and replies in, frames out, until the person quits.
+///
+/// All that has happened is taken in before a frame, and a frame is written before the next thing is looked at: a held
+/// key on a slow line makes one frame for many keys. `keep` is shown what it came to before each.
+fn converse<S: Sink>(
+    app: &mut App,
+    display: &mut Display<S>,
+    inbox: &Inbox<Reply>,
+    submit: &dyn Fn(Vec<Effect>),
+    keep: &mut dyn FnMut(&App),
+) {
     let mut dirty = true;
     while !app.model.quit {
         // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
@@ -150,7 +183,10 @@ pub fn run(
                     terminal::suspend();
                     Vec::new()
                 }
-                Incoming::Key(key) => app.key(key),
+                Incoming::Key(key) => {
+                    fault::point(fault::UI);
+                    app.key(key)
+                }
                 Incoming::Mouse(mouse) => app.mouse(mouse),
                 Incoming::Paste(text) => app.paste(&text),
                 Incoming::Resized | Incoming::Resumed => {
@@ -159,16 +195,10 @@ pub fn run(
                 }
                 Incoming::App(reply) => app.reply(reply),
             };
-            workers.submit_all(effects);
+            submit(effects);
             dirty = true;
-            if let Some(held) = offered.take_if(|_| !app.is_offering()) {
-                // Answered; a session that nobody wants may be had by another program.
-                if app.model.session > 0 {
-                    keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
-                }
-            }
         }
-        keeper.offer(Snapshot::of(&app.model));
+        keep(app);
         display.take_mouse(app.mouse);
         if let Some(text) = app.clipboard.take() {
             display.copy(&text);
@@ -177,16 +207,10 @@ pub fn run(
             let (mut views, mut screen) = (0, app.screen);
             display.draw(|frame| {
                 screen = frame.area();
-                views = view::draw(frame, &app);
+                views = view::draw(frame, app);
             });
             dirty = false;
-            workers.submit_all(app.make_room(screen, views));
+            submit(app.make_room(screen, views));
         }
     }
-    drop(guard);
-    if let Err(reason) = keeper.finish(Ended::Quit, PATIENCE[0]) {
-        // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
-        let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
-    }
-    Ok(ExitCode::SUCCESS)
 }

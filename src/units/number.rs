@@ -29,6 +29,11 @@ pub fn short(x: f64, digits: usize) -> String {
     if text.contains('e') { text } else { trim_zeros(&text).to_owned() }
 }
 
+/// `x` with as many digits as bring back the very same number.
+pub fn exact(x: f64) -> String {
+    format!("{x:?}")
+}
+
 /// A loss: three decimals and an exponent, so that losses of very different size align.
 pub fn loss(x: f64) -> String {
     format!("{x:.3e}")

@@ -23,6 +23,15 @@ impl SplitMix64 {
         Self(seed)
     }
 
+    /// The stream of row `row` of the table that `seed` makes: any row without those before it, each begun at its own bits
+    /// of the stream of `seed`.
+    #[must_use]
+    pub fn row(seed: u64, row: u64) -> Self {
+        // The generator counts: its n-th bits need no others.
+        let mut at = Self(seed.wrapping_add(row.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+        Self(at.bits())
+    }
+
     /// The next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -55,6 +64,15 @@ mod tests {
         ];
         assert_eq!([(); 5].map(|()| random.bits()), first);
         assert_eq!(SplitMix64::new(0).bits(), 0xe220_a839_7b1d_cdaf);
+    }
+
+    #[test]
+    fn a_row_is_the_stream_of_its_bits() {
+        let mut all = SplitMix64::new(7);
+        for row in 0..5 {
+            let (mut row, mut own) = (SplitMix64::row(7, row), SplitMix64::new(all.bits()));
+            assert_eq!([row.bits(), row.bits()], [own.bits(), own.bits()]);
+        }
     }
 
     #[test]

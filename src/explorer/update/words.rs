@@ -22,7 +22,8 @@ pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
         }
         Id::Fit => "the whole chart is shown",
         Id::Pins => "no curve is pinned: p pins the one on the screen",
-        _ => "the curve is being computed",
+        _ if model.is_computing() => "the curve is being computed",
+        _ => "there is no curve: change a value, or 0 computes it again",
     }
 }
 

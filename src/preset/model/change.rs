@@ -6,6 +6,7 @@ use crate::preset::build::{Values, build};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured;
+use crate::preset::resolve::in_units;
 use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, parameter};
 use crate::preset::shape;
 use crate::preset::value::Value;
@@ -23,12 +24,43 @@ impl Preset {
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
-        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
-        let value = row.check(self.located(&row, value)?)?;
-        if groups::row(key).is_some() {
-            return self.set_group(&row, value);
+        self.set_all([(key, value)])
+    }
+
+    /// Gives several keys other values at once: the whole is checked when all are laid down, choices first, and groups
+    /// are made last in their order, as assignments on the command line are.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn set_all<'a>(
+        &mut self,
+        changes: impl IntoIterator<Item = (&'a str, Value)>,
+    ) -> Result<(), Invalid> {
+        let (mut plain, mut grouped) = (Vec::new(), Vec::new());
+        for (key, value) in changes {
+            let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+            let value = row.check(self.located(&row, value)?)?;
+            let list = if groups::row(key).is_some() { &mut grouped } else { &mut plain };
+            list.push((row, value));
         }
-        let mut values = self.keyed();
+        plain.sort_by_key(|(row, _)| !CHOOSERS.contains(&&*row.key));
+        let mut changed = self.clone();
+        if !plain.is_empty() {
+            let mut values = self.keyed();
+            for (row, value) in plain {
+                self.lay(&mut values, &row, value);
+            }
+            changed = build(&values).map_err(|mut all| all.swap_remove(0))?;
+        }
+        for (row, value) in grouped {
+            changed.set_group(&row, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Lays a value over the others, with what it drops and begins.
+    fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
         if CHOOSERS.contains(&&*row.key) {
             values.retain(|key, _| {
                 parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
@@ -37,27 +69,37 @@ impl Preset {
         match &*row.key {
             "gap.shape" => {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
-                shape::begin(&mut values, &value.to_string(), radius, self.gap.wave());
+                shape::begin(values, &value.to_string(), radius, self.gap.wave());
             }
             key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}
         }
-        put(&mut values, &row, value);
+        put(values, row, value);
         if row.key == "gap.formula" {
-            shape::fit_parameters(&mut values, |_| false);
+            shape::fit_parameters(values, |_| false);
         }
-        *self = build(&values).map_err(|mut all| all.swap_remove(0))?;
-        Ok(())
+    }
+
+    /// A value of a key as this preset would keep it: in the range of its row, a text with a unit read in the preset's
+    /// units. What other keys say to it is not asked.
+    ///
+    /// # Errors
+    /// The key is unknown, or does not take the value.
+    pub fn resolved(&self, key: &str, value: Value) -> Result<Value, Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let Value::Typed(text) = row.check(value.clone())? else { return row.check(value) };
+        let x = if groups::row(key).is_some() {
+            pure(&row, &text)?
+        } else {
+            in_units(&self.keyed(), &self.units, &row.key, &text)?
+        };
+        row.check(if row.kind == Kind::Control { Control::Stiffness(x).into() } else { x.into() })
     }
 
     fn set_group(&mut self, row: &Parameter, value: Value) -> Result<(), Invalid> {
         let x = match value {
             Value::Number(x) => x,
-            other => {
-                let text = other.to_string();
-                let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
-                parse_quantity(&text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)?
-            }
+            other => pure(row, &other.to_string())?,
         };
         let mut changed = self.clone();
         for (key, value) in groups::changes(self, row, x)? {
@@ -123,6 +165,12 @@ impl Preset {
             _ => Ok(value),
         }
     }
+}
+
+/// The number of a text for a group, which has no unit.
+fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
+    let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
+    parse_quantity(text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)
 }
 
 /// Stores a checked value; a part of a value becomes the whole.

@@ -99,7 +99,7 @@ impl Preset {
     }
 
     pub(super) fn unknown_key(&self, key: &str) -> Invalid {
-        let rows: Vec<Row> = self.rows().collect();
+        let rows: Vec<Row> = self.rows().chain(groups::GROUPS.iter().map(Row::Borrowed)).collect();
         let meant = closest_key(key, rows.iter().map(|row| (&*row.key, &*row.label)));
         Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
     }

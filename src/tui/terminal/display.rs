@@ -17,8 +17,7 @@ use ratatui::{
 
 use super::{
     end::{HUNG_UP, end},
-    line::Line,
-    screen::{Screen, Written},
+    screen::{Screen, Sink, Written},
 };
 
 /// How frames follow each other. The first one after a pause never waits.
@@ -61,15 +60,15 @@ impl Pace {
 }
 
 /// The screen to draw on.
-pub struct Display {
-    terminal: Terminal<Screen>,
-    line: &'static Line,
+pub struct Display<S: Sink + 'static> {
+    terminal: Terminal<Screen<S>>,
+    line: &'static S,
     pace: Pace,
     due: Instant,
 }
 
-impl Display {
-    pub(super) fn new(line: &'static Line) -> io::Result<Self> {
+impl<S: Sink> Display<S> {
+    pub(in crate::tui) fn new(line: &'static S) -> io::Result<Self> {
         Ok(Self {
             terminal: Terminal::new(Screen::new(line))?,
             line,

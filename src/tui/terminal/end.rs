@@ -5,7 +5,6 @@
 
 use std::{
     backtrace::{Backtrace, BacktraceStatus},
-    fmt::Write as _,
     io::{self, IsTerminal, Write as _},
     panic::{self, PanicHookInfo},
     process,
@@ -13,11 +12,12 @@ use std::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
-    thread,
+    thread::{self, JoinHandle},
     time::Duration,
 };
 
-use super::line::Line;
+use super::{line::Line, report};
+use crate::preset::temporary;
 
 /// The status after a hang-up, the same as after SIGHUP.
 pub(super) const HUNG_UP: i32 = 129;
@@ -27,6 +27,9 @@ const PANICKED: i32 = 101;
 
 /// How long the last words may take.
 const LIMIT: Duration = Duration::from_secs(1);
+
+/// How long a file that is being written may take: a save cut off would leave a temporary file behind.
+const SAVE_PATIENCE: Duration = Duration::from_millis(500);
 
 /// How long a panic message may wait for room on the terminal.
 const MESSAGE_PATIENCE: Duration = Duration::from_millis(200);
@@ -54,6 +57,7 @@ pub(super) fn end(status: i32) -> ! {
     // First: the last words may take long.
     restore();
     speak();
+    temporary::finish(SAVE_PATIENCE);
     process::exit(status)
 }
 
@@ -65,11 +69,23 @@ pub(super) fn install_panic_hook() {
         if thread::current().name() == Some(LAST_WORDS) {
             return;
         }
-        let text = describe(info);
+        let what = describe(info);
+        // Taken before the claim, which may be the last thing this thread does; names are looked up later.
+        let trace = Backtrace::force_capture();
         claim(PANICKED);
         restore();
-        say(&text);
-        speak();
+        say(&what);
+        // At the same time, since the work must not wait for the report, and both have one second.
+        let words = start_to_speak();
+        match report::write(&what, &trace) {
+            Ok(path) => say(&format!("A report is in {path}\n")),
+            Err(why) => say(&format!("No report could be written: {why}\n")),
+        }
+        if Backtrace::capture().status() == BacktraceStatus::Captured {
+            say(&report::visible(&trace.to_string()));
+        }
+        join(words);
+        temporary::finish(SAVE_PATIENCE);
         process::exit(PANICKED)
     }));
 }
@@ -99,10 +115,16 @@ fn claim(status: i32) {
 
 /// Runs the last words, if there are any.
 fn speak() {
-    let words = WORDS.lock().unwrap_or_else(PoisonError::into_inner).take();
-    if let Some(words) = words
-        && let Ok(speaker) = thread::Builder::new().name(LAST_WORDS.to_owned()).spawn(move || words())
-    {
+    join(start_to_speak());
+}
+
+fn start_to_speak() -> Option<JoinHandle<()>> {
+    let words = WORDS.lock().unwrap_or_else(PoisonError::into_inner).take()?;
+    thread::Builder::new().name(LAST_WORDS.to_owned()).spawn(move || words()).ok()
+}
+
+fn join(speaker: Option<JoinHandle<()>>) {
+    if let Some(speaker) = speaker {
         let _ = speaker.join();
     }
 }
@@ -117,27 +139,12 @@ fn describe(info: &PanicHookInfo<'_>) -> String {
         .unwrap_or("no message");
     let place = info.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);
     let thread = thread::current();
-    let mut text = format!(
-        "{name} panicked at {place} (thread {thread}):\n{what}\nThis is a fault of {name} {version}. Please report it.\n",
+    report::visible(&format!(
+        "{name} panicked at {place} (thread {thread}):\n{what}\nThis is a fault of {name} {version}. Please report it.",
         name = env!("CARGO_PKG_NAME"),
         thread = thread.name().unwrap_or("without a name"),
         version = env!("CARGO_PKG_VERSION"),
-    );
-    let trace = Backtrace::capture();
-    if trace.status() == BacktraceStatus::Captured {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{trace}");
-    }
-    visible(&text)
-}
-
-/// The text without anything that a terminal would obey: a message may quote a file.
-fn visible(text: &str) -> String {
-    let bidirectional =
-        |c| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    text.chars()
-        .map(|c| if c != '\n' && (c.is_control() || bidirectional(c)) { '\u{fffd}' } else { c })
-        .collect()
+    ))
 }
 
 /// Standard error, without being held up by a terminal that nobody reads.
@@ -145,18 +152,5 @@ fn say(text: &str) {
     match Line::get() {
         Some(line) if io::stderr().is_terminal() => drop(line.send(text.as_bytes(), MESSAGE_PATIENCE)),
         _ => drop(io::stderr().write_all(text.as_bytes())),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::visible;
-
-    #[test]
-    fn a_message_cannot_steer_the_terminal() {
-        assert_eq!(
-            visible("a\n\x1b]0;t\x07\u{9b}31m\u{202e}ä"),
-            "a\n\u{fffd}]0;t\u{fffd}\u{fffd}31m\u{fffd}ä"
-        );
     }
 }

@@ -8,6 +8,7 @@ use super::{
     hangup,
     input::Inbox,
     line::Line,
+    screen::Sink,
     signals,
 };
 
@@ -33,7 +34,7 @@ impl Drop for Guard {
 ///
 /// If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
 /// cannot be started. The terminal is then as it was.
-pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display, Inbox<T>)> {
+pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl Sink>, Inbox<T>)> {
     let line = Line::open()?;
     // Before the first mode is set, so that no moment is without them.
     install_panic_hook();

@@ -17,6 +17,7 @@ use super::{
     end::{HUNG_UP, end},
     line::Line,
 };
+use crate::fault;
 
 /// Messages that may wait. More keys than this wait in the terminal, more replies in the worker.
 const CAPACITY: usize = 256;
@@ -62,7 +63,7 @@ pub struct Inbox<T> {
 }
 
 impl<T: Send + 'static> Inbox<T> {
-    pub(super) fn new() -> Self {
+    pub(in crate::tui) fn new() -> Self {
         let (sender, receiver) = sync_channel(CAPACITY);
         Self { receiver, sender, notices: Arc::default() }
     }
@@ -109,6 +110,13 @@ impl<T: Send + 'static> Inbox<T> {
         Sender(self.sender.clone())
     }
 
+    /// What stands for the thread that reads the terminal in a test.
+    #[cfg(test)]
+    pub(in crate::tui) fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
+        let sender = self.sender.clone();
+        move |incoming| sender.send(Post::Message(incoming)).unwrap()
+    }
+
     /// A sending end for the thread that answers signals.
     pub(super) fn notifier(&self) -> Notifier {
         let sender = self.sender.clone();
@@ -135,6 +143,7 @@ impl<T: Send + 'static> Inbox<T> {
                     Ok(_) => continue,
                     Err(_) => end(HUNG_UP),
                 };
+                fault::point(fault::INPUT);
                 if sender.send(Post::Message(message)).is_err() {
                     return;
                 }

@@ -27,6 +27,8 @@ use rustix::{
     },
 };
 
+use super::screen::Sink;
+
 /// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
 
@@ -107,14 +109,6 @@ impl Line {
         if self.mouse.load(Ordering::SeqCst) { self.send(MOUSE_ON, TAKE_PATIENCE) } else { Ok(()) }
     }
 
-    /// Takes the mouse from the terminal or leaves it to it, now and whenever the terminal is taken again.
-    pub(super) fn take_mouse(&self, wanted: bool) -> io::Result<()> {
-        if self.mouse.swap(wanted, Ordering::SeqCst) == wanted {
-            return Ok(());
-        }
-        self.write_frame(if wanted { MOUSE_ON } else { MOUSE_OFF })
-    }
-
     /// Gives the terminal back as it was. From any thread, any number of times, in less than 200 ms.
     ///
     /// There is nobody to report a failure to: a terminal that cannot be restored is gone.
@@ -134,31 +128,6 @@ impl Line {
         let before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
         let _ = retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &before));
         let _ = self.send(GIVE_BACK, PATIENCE);
-    }
-
-    /// Writes a whole frame, waiting for room as long as it takes.
-    ///
-    /// If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
-    pub(super) fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
-        let hands = self.hands.load(Ordering::SeqCst);
-        let mut rest = frame;
-        while !rest.is_empty() {
-            {
-                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
-                    return Ok(());
-                }
-                match rustix::io::write(&self.fd, rest) {
-                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
-                    Err(Errno::AGAIN | Errno::INTR) => {}
-                    Err(error) => return Err(error.into()),
-                }
-            }
-            if !rest.is_empty() {
-                self.wait(PollFlags::OUT, None)?;
-            }
-        }
-        Ok(())
     }
 
     /// Writes outside of a frame, for at most `patience`; what does not fit by then is dropped.
@@ -206,12 +175,6 @@ impl Line {
         }
     }
 
-    /// Columns and rows.
-    pub(super) fn size(&self) -> io::Result<(u16, u16)> {
-        let size = tcgetwinsize(&self.fd)?;
-        Ok(if (size.ws_col, size.ws_row) == (0, 0) { USUAL_SIZE } else { (size.ws_col, size.ws_row) })
-    }
-
     /// Whether the modes are ours at the moment.
     pub(super) fn is_taken(&self) -> bool {
         is_ours(self.hands.load(Ordering::SeqCst))
@@ -247,6 +210,43 @@ impl Line {
                 Err(TryLockError::WouldBlock) => return None,
             }
         }
+    }
+}
+
+impl Sink for Line {
+    // If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
+    fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
+        let hands = self.hands.load(Ordering::SeqCst);
+        let mut rest = frame;
+        while !rest.is_empty() {
+            {
+                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
+                    return Ok(());
+                }
+                match rustix::io::write(&self.fd, rest) {
+                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
+                    Err(Errno::AGAIN | Errno::INTR) => {}
+                    Err(error) => return Err(error.into()),
+                }
+            }
+            if !rest.is_empty() {
+                self.wait(PollFlags::OUT, None)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take_mouse(&self, wanted: bool) -> io::Result<()> {
+        if self.mouse.swap(wanted, Ordering::SeqCst) == wanted {
+            return Ok(());
+        }
+        self.write_frame(if wanted { MOUSE_ON } else { MOUSE_OFF })
+    }
+
+    fn size(&self) -> io::Result<(u16, u16)> {
+        let size = tcgetwinsize(&self.fd)?;
+        Ok(if (size.ws_col, size.ws_row) == (0, 0) { USUAL_SIZE } else { (size.ws_col, size.ws_row) })
     }
 }
 

@@ -6,6 +6,7 @@
 //! | `line` | the terminal itself: the modes switched on, the string that undoes them, writing without being stuck |
 //! | `guard` | [`enter`]: takes the terminal, starts the threads, gives it back when dropped |
 //! | `end` | the one way out for signals, hang-ups and panics |
+//! | `report` | the file that a panic leaves behind |
 //! | `signals` | ending, stopping, continuing and resizing on signals |
 //! | `hangup` | notices that the terminal has gone away |
 //! | `input` | the [`Inbox`]: keys, pastes, sizes and the program's own messages in one queue |
@@ -57,6 +58,7 @@ mod hangup;
 mod input;
 mod line;
 mod refuse;
+mod report;
 mod screen;
 mod signals;
 
@@ -66,5 +68,5 @@ pub use end::set_last_words;
 pub use guard::{Guard, enter, restore};
 pub use input::{Inbox, Incoming, Sender};
 pub use refuse::{refuse_reason, utf8_locale};
-pub use screen::Screen;
+pub use screen::{Screen, Sink};
 pub use signals::suspend;

@@ -15,14 +15,32 @@ use ratatui::{
     layout::{Position, Size},
 };
 
-use super::{
-    end::{HUNG_UP, end},
-    line::Line,
-};
+use super::end::{HUNG_UP, end};
+
+/// Where frames go.
+pub trait Sink {
+    /// Writes a whole frame, waiting for room as long as it takes.
+    ///
+    /// # Errors
+    /// The terminal has gone away.
+    fn write_frame(&self, frame: &[u8]) -> io::Result<()>;
+
+    /// Takes the mouse from the terminal or leaves it to it, now and whenever the terminal is taken again.
+    ///
+    /// # Errors
+    /// The terminal has gone away.
+    fn take_mouse(&self, wanted: bool) -> io::Result<()>;
+
+    /// Columns and rows.
+    ///
+    /// # Errors
+    /// The terminal has gone away.
+    fn size(&self) -> io::Result<(u16, u16)>;
+}
 
 /// The terminal as ratatui sees it.
-pub struct Screen {
-    line: &'static Line,
+pub struct Screen<S: Sink + 'static> {
+    line: &'static S,
     /// The frame so far.
     frame: Vec<u8>,
     /// Whether the cursor is shown, if known.
@@ -39,8 +57,8 @@ pub(super) struct Written {
     pub(super) took: Duration,
 }
 
-impl Screen {
-    pub(super) fn new(line: &'static Line) -> Self {
+impl<S: Sink> Screen<S> {
+    pub(super) fn new(line: &'static S) -> Self {
         Self { line, frame: Vec::new(), cursor_shown: None, cursor_at: None, last: Written::default() }
     }
 
@@ -64,7 +82,7 @@ impl Screen {
     }
 }
 
-impl Backend for Screen {
+impl<S: Sink> Backend for Screen<S> {
     type Error = io::Error;
 
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>

@@ -20,6 +20,7 @@ use super::{
     input::Notifier,
     line::Line,
 };
+use crate::fault;
 
 /// Those that end the program.
 const ENDING: [i32; 4] = [SIGTERM, SIGINT, SIGHUP, SIGQUIT];
@@ -46,6 +47,7 @@ pub(super) fn serve(mut signals: Signals, line: &'static Line, notifier: Notifie
         loop {
             // Together, since what arrived while stopped arrives at once: an end before all, and a continue undoes a stop.
             let batch: Vec<i32> = signals.wait().collect();
+            fault::point(fault::SIGNAL);
             if let Some(signal) = batch.iter().find(|signal| ENDING.contains(signal)) {
                 end(128 + signal);
             }

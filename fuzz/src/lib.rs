@@ -1,0 +1,71 @@
+//! What must hold for any text from outside: no panic, and what is accepted can be written and read again.
+//!
+//! A new target is a function here and a file of five lines in `src/bin`.
+
+use pulloff::contact::formula::Formula;
+use pulloff::preset::profile::{self, ROW_RANGE};
+use pulloff::preset::text::is_unsafe;
+use pulloff::preset::{read, write};
+use pulloff::units::value::parse_quantity;
+use std::fmt::Display;
+
+/// An error is shown to people: it must not steer their terminal. Its lines may end.
+fn assert_shown_safely(error: &dyn Display) {
+    let text = error.to_string();
+    assert!(!text.chars().any(|c| c != '\n' && is_unsafe(c)), "unsafe message {text:?}");
+}
+
+/// A preset that is read is the same when it is written and read again.
+pub fn preset(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match read("fuzz", text) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(preset) => {
+            let written = write(&preset);
+            let back = read("written", &written).unwrap_or_else(|error| panic!("{error}\n{written}"));
+            assert_eq!(back, preset, "another preset came back from\n{written}");
+        }
+    }
+}
+
+/// A formula that is read can be evaluated anywhere; the result is a number or none, never an end.
+pub fn formula(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match Formula::parse(text) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(formula) => {
+            let values: Vec<(&str, f64)> = formula
+                .parameters()
+                .iter()
+                .zip([0.5, 2.0, -1.0].into_iter().cycle())
+                .map(|(name, x)| (&**name, x))
+                .collect();
+            let bound = formula.bind(&values).expect("a value for each parameter");
+            for r in [0.0, 1e-30, 0.3, 1.0, 1e30] {
+                let _ = bound.jet(r);
+            }
+            let _ = bound.check(1.0);
+        }
+    }
+}
+
+/// A profile that is read is in order, and within its bounds.
+pub fn csv(bytes: &[u8]) {
+    match profile::parse(bytes) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(columns) => {
+            assert!(ROW_RANGE.contains(&columns.radii.len()) && columns.radii.len() == columns.gaps.len());
+            assert!(columns.radii.windows(2).all(|two| two[0] < two[1]), "radii out of order");
+            assert!(columns.radii.iter().chain(&columns.gaps).all(|x| x.is_finite()));
+        }
+    }
+}
+
+/// A value that is read is finite.
+pub fn value(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match parse_quantity(text) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(value) => assert!(value.number.is_finite()),
+    }
+}

@@ -1,0 +1,214 @@
+//! `pulloff sweep`: many problems into one file, and shards of it joined.
+
+use super::{Failure, output};
+use crate::preset::text::{show_name, show_path};
+use crate::report::number::{short, significant};
+use crate::sweep::{Existing, Output, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::available_parallelism;
+use std::time::{Duration, Instant};
+
+/// The arguments of `pulloff sweep`.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    sweep: Option<Sweep>,
+}
+
+/// The subcommands of `pulloff sweep`.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Join the results of all shards of a sweep
+    Merge {
+        /// The results of each shard, in any order
+        #[arg(required = true, value_name = "PART.csv")]
+        parts: Vec<PathBuf>,
+        /// Write to this file
+        #[arg(short, value_name = "RESULTS.csv")]
+        output: PathBuf,
+        /// Replace results that are there
+        #[arg(long)]
+        overwrite: bool,
+    },
+    /// List the quantities that a sweep can compute
+    Quantities,
+}
+
+/// What is swept, and where to.
+#[derive(Debug, Args)]
+struct Sweep {
+    /// The spec: a preset, axes, quantities
+    #[arg(value_name = "SPEC.toml")]
+    spec: PathBuf,
+    /// Write to this file; a rerun goes on where it ends
+    #[arg(short, value_name = "RESULTS.csv")]
+    output: PathBuf,
+    /// Threads, at most 1024 [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Compute the part i of n alone, such as 3/8
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
+    /// Replace results that are there
+    #[arg(long)]
+    overwrite: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    match (&arguments.command, &arguments.sweep) {
+        (Some(Command::Quantities), _) => {
+            output::write(&quantities(), None)?;
+            Ok(ExitCode::SUCCESS)
+        }
+        (Some(Command::Merge { parts, output, overwrite }), _) => {
+            let rows = merge(parts, output, existing(*overwrite))?;
+            let shards = parts.len();
+            say(&format!("{rows} rows of {shards} shards in {}", show_path(output)));
+            Ok(ExitCode::SUCCESS)
+        }
+        (None, Some(sweep)) => sweep.run(),
+        // clap asks for the arguments first.
+        (None, None) => Err(Failure::Usage("sweep needs SPEC.toml and -o RESULTS.csv".to_owned())),
+    }
+}
+
+fn existing(overwrite: bool) -> Existing {
+    if overwrite { Existing::Overwrite } else { Existing::GoOn }
+}
+
+fn say(text: &str) {
+    let _ = writeln!(io::stderr(), "pulloff: {text}");
+}
+
+/// The table of quantities as text.
+fn quantities() -> String {
+    let width = QUANTITIES.iter().map(|quantity| quantity.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for quantity in QUANTITIES {
+        let control = if quantity.is_of_control() { "*" } else { " " };
+        let (name, unit) = (quantity.name, quantity.unit.si().unwrap_or("1"));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<width$} {control} {unit:<2} {}", quantity.meaning);
+    }
+    text.push_str(
+        "\n* under path.control; with _displacement or _force behind the name, under that control\n\
+         Units are those of SI presets.\n",
+    );
+    text
+}
+
+/// The signals that stop a sweep: the first keeps what is done, the second ends at once.
+struct Stop {
+    signal: Arc<AtomicUsize>,
+}
+
+impl Stop {
+    fn catch() -> io::Result<Self> {
+        let signal = Arc::new(AtomicUsize::new(0));
+        let again = Arc::new(AtomicBool::new(false));
+        for (number, value) in [(SIGINT, 2), (SIGTERM, 15)] {
+            // Before the flag is set, so that it acts on the next one.
+            flag::register_conditional_shutdown(number, 128 + value, Arc::clone(&again))?;
+            flag::register(number, Arc::clone(&again))?;
+            flag::register_usize(number, Arc::clone(&signal), usize::try_from(value).unwrap_or(1))?;
+        }
+        Ok(Self { signal })
+    }
+
+    fn signal(&self) -> Option<u8> {
+        u8::try_from(self.signal.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
+    }
+}
+
+impl Sweep {
+    fn run(&self) -> Result<ExitCode, Failure> {
+        let spec = Spec::load(&super::store(), &self.spec)?;
+        let results = Output::open(&self.output, &spec, self.shard, existing(self.overwrite))?;
+        let stop = Stop::catch().map_err(|error| Failure::Usage(format!("cannot catch signals: {error}")))?;
+        let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
+        let jobs = self.jobs.map_or_else(cores, usize::from);
+        let bar = bar(self.shard.len(spec.rows), results.rows);
+        let begun = Instant::now();
+        let go_on = || stop.signal().is_none();
+        let summary = compute(&spec, self.shard, results, jobs, &go_on, |rows, faults| {
+            bar.set_position(rows);
+            if faults > 0 {
+                bar.set_message(format!("{faults} with an error"));
+            }
+        });
+        bar.finish_and_clear();
+        let summary = summary?;
+        self.tell(&spec, &summary, jobs, begun.elapsed());
+        match stop.signal().filter(|_| !summary.is_complete()) {
+            None => Ok(ExitCode::SUCCESS),
+            Some(signal) => {
+                let rows = summary.before + summary.now;
+                let text = format!(
+                    "stopped with {rows} of {} rows, all kept; the same command goes on from there",
+                    summary.of
+                );
+                Err(Failure::Interrupted { signal, text })
+            }
+        }
+    }
+
+    /// The summary on standard error.
+    fn tell(&self, spec: &Spec, summary: &Summary, jobs: usize, took: Duration) {
+        let rows = summary.before + summary.now;
+        let kept =
+            if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };
+        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, show_path(&self.output));
+        let seconds = took.as_secs_f64();
+        if summary.now > 0 && seconds > 0.0 {
+            let rate = summary.now as f64 / seconds;
+            let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
+            // Writing to a String cannot fail.
+            let _ = write!(text, "; {} s, {} rows/s on {threads}", short(seconds, 3), significant(rate, 3));
+        }
+        say(&text);
+        let faults: u64 = summary.faults.values().sum();
+        if faults > 0 {
+            let reasons: Vec<String> =
+                summary.faults.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
+            say(&format!("{faults} with an error: {}", reasons.join(", ")));
+        }
+        if summary.is_complete() && self.shard == Shard::WHOLE {
+            say(&how_to_plot(spec, &self.output));
+        }
+    }
+}
+
+/// A line that plots the first quantity over the first axis.
+fn how_to_plot(spec: &Spec, results: &Path) -> String {
+    let (axis, quantity) = (&spec.axes[0].key, spec.columns[0].name());
+    let file = show_name(&results.to_string_lossy());
+    format!(
+        "to plot it: gnuplot -p -e \"set datafile separator ','; set xlabel '{axis}'; set ylabel '{quantity}'; \
+         plot '{file}' using '{axis}':'{quantity}' notitle\""
+    )
+}
+
+/// The progress on standard error; none where that is no terminal.
+fn bar(rows: u64, before: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::stderr_with_hz(5));
+    let style = "{wide_bar} {pos}/{len} rows  {per_sec}  {eta} left  {msg}";
+    let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+    bar.set_style(style.progress_chars("=> "));
+    // What was there before says nothing of the rate.
+    bar.set_position(before);
+    bar.reset_eta();
+    bar
+}

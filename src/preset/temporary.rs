@@ -1,0 +1,144 @@
+//! The temporary file of a save: beside its target, locked while its writer lives, removed when it has died.
+//!
+//! A writer that is killed leaves its temporary behind. Nobody takes it for anything, since its name begins with a
+//! dot and ends in `.tmp`, and the next save in the folder removes it: the kernel has dropped the lock by then.
+
+use rustix::fs::{FlockOperation, Gid, OFlags, Uid, fchown, flock};
+use rustix::io::Errno;
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
+use std::io;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::path::Path;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+use std::thread;
+use std::time::{Duration, Instant};
+use tempfile::NamedTempFile;
+
+const PREFIX: &str = ".pulloff-";
+const SUFFIX: &str = ".tmp";
+/// The mode of a new file, before the umask.
+const NEW: u32 = 0o666;
+/// How often [`finish`] looks.
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// Read while a temporary of this process exists.
+static WRITING: RwLock<()> = RwLock::new(());
+
+/// While it lives, [`finish`] waits.
+pub(super) fn begin() -> RwLockReadGuard<'static, ()> {
+    WRITING.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Waits until no file of this process is half written, for at most `patience`, and lets none be begun from then on.
+///
+/// For the end of the process: the thread that writes would be cut off, and its temporary left behind.
+pub fn finish(patience: Duration) {
+    let until = Instant::now() + patience;
+    loop {
+        if let Ok(nobody) = WRITING.try_write() {
+            // Never dropped: a write begun now would be the one that is cut off.
+            std::mem::forget(nobody);
+            return;
+        }
+        if Instant::now() > until {
+            return;
+        }
+        thread::sleep(PAUSE);
+    }
+}
+
+/// A new, exclusive, locked file beside the target in `folder`, with the owner and permissions of `old`.
+pub(super) fn beside(folder: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
+    sweep(folder);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    let temporary = loop {
+        let temporary = match old {
+            None => builder.permissions(Permissions::from_mode(NEW)).tempfile_in(folder)?,
+            Some(_) => builder.tempfile_in(folder)?,
+        };
+        lock(temporary.as_file())?;
+        // Somebody's sweep may have come between the two steps.
+        if temporary.as_file().metadata()?.nlink() > 0 {
+            break temporary;
+        }
+    };
+    if let Some(old) = old {
+        give_to(temporary.as_file(), old)?;
+    }
+    Ok(temporary)
+}
+
+/// Gives the file the owner and permissions of another.
+fn give_to(file: &File, old: &Metadata) -> io::Result<()> {
+    let new = file.metadata()?;
+    let mut mode = old.mode() & 0o777;
+    if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
+        let owner = fchown(file, Some(Uid::from_raw(old.uid())), Some(Gid::from_raw(old.gid())));
+        // Only root gives files away. Then the file becomes ours, and a group that is not the old one gets no
+        // more than everybody.
+        if owner.is_err() && fchown(file, None, Some(Gid::from_raw(old.gid()))).is_err() {
+            mode = (mode & 0o707) | ((mode & 0o007) << 3 & mode);
+        }
+    }
+    file.set_permissions(Permissions::from_mode(mode))
+}
+
+/// A file system that knows no locks gives none; nobody can sweep there either.
+fn lock(file: &File) -> io::Result<()> {
+    loop {
+        match flock(file, FlockOperation::LockExclusive) {
+            Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => {
+                return Ok(());
+            }
+            Err(Errno::INTR) => {}
+            Err(other) => return Err(other.into()),
+        }
+    }
+}
+
+/// Removes what writers that were killed have left in `folder`. What cannot be removed stays.
+fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        let name = name.as_encoded_bytes();
+        if name.starts_with(PREFIX.as_bytes()) && name.ends_with(SUFFIX.as_bytes()) {
+            sweep_one(&entry.path());
+        }
+    }
+}
+
+fn sweep_one(path: &Path) {
+    let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
+    let Ok(flags) = i32::try_from(flags.bits()) else { return };
+    let Ok(file) = OpenOptions::new().read(true).custom_flags(flags).open(path) else { return };
+    let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
+    if is_file && flock(&file, FlockOperation::NonBlockingLockExclusive).is_ok() {
+        let _ = fs::remove_file(path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_dead_writer_left_is_swept_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in [".pulloff-dead.tmp", ".pulloff-notes", "mine.tmp", "mine.toml"] {
+            fs::write(at(name), "torn").unwrap();
+        }
+        fs::create_dir(at(".pulloff-folder.tmp")).unwrap();
+        std::os::unix::fs::symlink("mine.toml", at(".pulloff-link.tmp")).unwrap();
+        // One whose writer lives, as in another process: flock belongs to the open file.
+        let alive = beside(folder.path(), None).unwrap();
+        assert!(!at(".pulloff-dead.tmp").exists());
+        let second = beside(folder.path(), None).unwrap();
+        assert!(alive.path().exists() && second.path().exists());
+        for name in [".pulloff-notes", "mine.tmp", "mine.toml", ".pulloff-folder.tmp", ".pulloff-link.tmp"] {
+            assert!(at(name).symlink_metadata().is_ok(), "{name} was removed");
+        }
+    }
+}

@@ -1,0 +1,388 @@
+//! One axis of a sweep: a key of the preset and the values it takes.
+
+use super::MOST_ROWS;
+use super::document::{Entry, Section, SpecError};
+use crate::contact::Control;
+use crate::contact::shapes::split_mix::SplitMix64;
+use crate::preset::schema::START_KEYS;
+use crate::preset::text::quote;
+use crate::preset::{Invalid, Preset, Value, model};
+use crate::report::number::exact;
+use std::f64::consts::TAU;
+use toml::de::DeValue;
+
+/// A key and its values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// A dotted key that [`Preset::set`] takes.
+    pub key: String,
+    /// Its values.
+    pub points: Points,
+}
+
+/// The values of an axis; every number is in the units of the preset: SI, or reduced.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Points {
+    /// These.
+    Values(Vec<Value>),
+    /// In equal steps.
+    Linear {
+        /// The first.
+        from: f64,
+        /// The last.
+        to: f64,
+        /// How many.
+        count: u64,
+    },
+    /// Whole numbers in equal steps.
+    Whole {
+        /// The first.
+        from: i64,
+        /// From one to the next.
+        step: i64,
+        /// How many.
+        count: u64,
+    },
+    /// In equal ratios.
+    Logarithmic {
+        /// The first.
+        from: f64,
+        /// The last.
+        to: f64,
+        /// How many.
+        count: u64,
+    },
+    /// Drawn at random, one for each row.
+    Drawn(Distribution),
+}
+
+/// From what values are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Distribution {
+    /// Evenly between the two.
+    Uniform([f64; 2]),
+    /// Their logarithm evenly.
+    LogUniform([f64; 2]),
+    /// Normally.
+    Normal {
+        /// The mean.
+        mean: f64,
+        /// The standard deviation.
+        deviation: f64,
+    },
+    /// Whole numbers, each as likely, both ends included.
+    Integers([i64; 2]),
+}
+
+/// The kinds of values, of which an axis has one.
+const KINDS: [&str; 4] = ["values", "linear", "logarithmic", "distribution"];
+/// The kinds of distributions.
+const DISTRIBUTIONS: [&str; 4] = ["uniform", "log-uniform", "normal", "integers"];
+
+impl Axis {
+    /// Reads `[[axis]]`; `preset` checks its values. With `fixed` no axis changes which keys the preset has.
+    pub(super) fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
+        section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;
+        let wanted = "a key of the preset, such as \"gap.amplitude\"";
+        let entry = section.need("key", wanted)?;
+        let key = entry.text(wanted)?;
+        if model::is_of_units(key) || ["format", "title"].contains(&key) {
+            return Err(entry.fault(&format!("{key} is no quantity of the problem: it cannot be swept")));
+        }
+        // Unknown keys are told here, whatever the values are.
+        if let Err(unknown @ Invalid::UnknownKey { .. }) = preset.resolved(key, 0.0.into()) {
+            return Err(entry.fault(&format!("axis.key: {unknown}")));
+        }
+        let given: Vec<Entry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
+        let [points] = &given[..] else {
+            let what = format!("the axis {key} must have exactly one of {}", KINDS.join(", "));
+            return Err(given.get(1).unwrap_or(&entry).fault(&what));
+        };
+        let reader = Reader { preset, key };
+        let points = match points.name.rsplit('.').next() {
+            Some("values") => reader.values(points)?,
+            Some("linear") => reader.linear(points)?,
+            Some("logarithmic") => reader.logarithmic(points)?,
+            _ => Points::Drawn(reader.distribution(points)?),
+        };
+        let axis = Self { key: key.to_owned(), points };
+        if fixed {
+            axis.check_applies(&entry, preset)?;
+        }
+        Ok(axis)
+    }
+
+    /// Refuses a key that this preset cannot have.
+    fn check_applies(&self, entry: &Entry<'_>, preset: &Preset) -> Result<(), SpecError> {
+        let Some(first) = self.first() else { return Ok(()) };
+        match preset.clone().set(&self.key, first) {
+            Err(invalid @ (Invalid::OtherChoice { .. } | Invalid::Unused { .. })) => {
+                Err(entry.fault(&invalid.to_string()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Its first value, or a likely one.
+    pub(super) fn first(&self) -> Option<Value> {
+        match &self.points {
+            Points::Drawn(Distribution::Normal { mean, .. }) => Some((*mean).into()),
+            Points::Drawn(Distribution::Uniform([a, _]) | Distribution::LogUniform([a, _])) => {
+                Some((*a).into())
+            }
+            Points::Drawn(Distribution::Integers([a, _])) => Some((*a).into()),
+            _ => self.value(0),
+        }
+    }
+
+    /// How many values it has; `None` where they are drawn.
+    #[must_use]
+    pub fn count(&self) -> Option<u64> {
+        match &self.points {
+            Points::Values(values) => Some(values.len() as u64),
+            Points::Linear { count, .. }
+            | Points::Whole { count, .. }
+            | Points::Logarithmic { count, .. } => Some(*count),
+            Points::Drawn(_) => None,
+        }
+    }
+
+    /// The value at `index`, below its count; `None` where they are drawn.
+    #[must_use]
+    pub fn value(&self, index: u64) -> Option<Value> {
+        let last = |count: u64| index > 0 && index + 1 >= count;
+        let share = |count: u64| index as f64 / (count.max(2) - 1) as f64;
+        match &self.points {
+            Points::Values(values) => values.get(usize::try_from(index).ok()?).cloned(),
+            // The last is the one that was typed, to the bit.
+            Points::Linear { to, count, .. } | Points::Logarithmic { to, count, .. } if last(*count) => {
+                Some((*to).into())
+            }
+            Points::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
+            // In software: the same on every machine.
+            Points::Logarithmic { from, to, count } => {
+                Some((from * libm::pow(to / from, share(*count))).into())
+            }
+            Points::Whole { from, step, .. } => {
+                let steps = i64::try_from(index).ok()?;
+                Some(steps.checked_mul(*step).and_then(|way| from.checked_add(way))?.into())
+            }
+            Points::Drawn(_) => None,
+        }
+    }
+
+    /// The values in the canonical form of the spec.
+    #[must_use]
+    pub fn canonical(&self) -> String {
+        let spaced = |word: &str, from: f64, to: f64, count: u64| {
+            format!("{word} = {{ from = {}, to = {}, count = {count} }}", exact(from), exact(to))
+        };
+        let range = |word: &str, a: &str, b: &str| format!("distribution = {{ {word} = [{a}, {b}] }}");
+        match &self.points {
+            Points::Values(values) => {
+                let values: Vec<String> = values.iter().map(Value::to_toml).collect();
+                format!("values = [{}]", values.join(", "))
+            }
+            Points::Linear { from, to, count } => spaced("linear", *from, *to, *count),
+            Points::Logarithmic { from, to, count } => spaced("logarithmic", *from, *to, *count),
+            Points::Whole { from, step, count } => {
+                let to =
+                    from.saturating_add(step.saturating_mul(i64::try_from(*count - 1).unwrap_or(i64::MAX)));
+                format!("linear = {{ from = {from}, to = {to}, count = {count} }}")
+            }
+            Points::Drawn(Distribution::Uniform([a, b])) => range("uniform", &exact(*a), &exact(*b)),
+            Points::Drawn(Distribution::LogUniform([a, b])) => range("log-uniform", &exact(*a), &exact(*b)),
+            Points::Drawn(Distribution::Integers([a, b])) => {
+                range("integers", &a.to_string(), &b.to_string())
+            }
+            Points::Drawn(Distribution::Normal { mean, deviation }) => {
+                let (mean, deviation) = (exact(*mean), exact(*deviation));
+                format!("distribution = {{ normal = {{ mean = {mean}, deviation = {deviation} }} }}")
+            }
+        }
+    }
+}
+
+impl Distribution {
+    /// The next value of `random`, of which every draw takes two numbers.
+    pub fn draw(&self, random: &mut SplitMix64) -> Value {
+        let (bits, other) = (random.clone().bits(), [random.unit(), random.unit()]);
+        let [u, v] = other;
+        match *self {
+            Self::Uniform([a, b]) => (a + (b - a) * u).into(),
+            Self::LogUniform([a, b]) => (a * libm::pow(b / a, u)).into(),
+            // Box and Muller's; 1 − u is never 0.
+            Self::Normal { mean, deviation } => {
+                let radius = (-2.0 * libm::log(1.0 - u)).sqrt();
+                (mean + deviation * radius * libm::cos(TAU * v)).into()
+            }
+            Self::Integers([a, b]) => {
+                let span = (i128::from(b) - i128::from(a) + 1).unsigned_abs();
+                // A whole number below the span: the upper half of a product with 64 random bits.
+                let above = i128::try_from((u128::from(bits) * span) >> 64).unwrap_or_default();
+                i64::try_from(i128::from(a) + above).unwrap_or(b).into()
+            }
+        }
+    }
+}
+
+/// Two start keys in one row would leave only the later one.
+pub(super) fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let is_start = |key: &str| START_KEYS.contains(&key);
+    before.into_iter().find(|other| *other == key || (is_start(other) && is_start(key)))
+}
+
+/// Reads the values of one key.
+struct Reader<'a> {
+    preset: &'a Preset,
+    key: &'a str,
+}
+
+impl Reader<'_> {
+    fn values(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+        let values = entry.array("an array of values")?;
+        if values.is_empty() {
+            return Err(entry.fault(&format!("{} of the axis {} is empty", entry.name, self.key)));
+        }
+        Ok(Points::Values(values.iter().map(|value| self.value(value)).collect::<Result<_, _>>()?))
+    }
+
+    /// One value, in the units of the preset.
+    fn value(&self, entry: &Entry<'_>) -> Result<Value, SpecError> {
+        let of_toml = || {
+            Value::from_toml(entry.value).map_err(|found| {
+                entry.fault(&format!("{}: {} is {found}; write a number or a text", entry.name, self.key))
+            })
+        };
+        let value = match (entry.value, self.preset.row(self.key)) {
+            (DeValue::String(text), Some(row)) => row.parse(text).map_err(|e| entry.fault(&e.to_string()))?,
+            _ => of_toml()?,
+        };
+        self.preset.resolved(self.key, value).map_err(|e| entry.fault(&e.to_string()))
+    }
+
+    fn number(&self, entry: &Entry<'_>) -> Result<f64, SpecError> {
+        match self.value(entry)? {
+            Value::Number(x) => Ok(x),
+            Value::Control(Control::Stiffness(_)) => Err(entry.fault(&format!(
+                "{}: sweep path.control.stiffness instead, whose values are numbers",
+                entry.name
+            ))),
+            other => Err(entry.fault(&format!("{}: {} = {other} is no real number", entry.name, self.key))),
+        }
+    }
+
+    fn integer(&self, entry: &Entry<'_>) -> Result<i64, SpecError> {
+        match (entry.value, self.value(entry)?) {
+            (DeValue::Integer(n), _) if i64::from_str_radix(n.as_str(), n.radix()).is_ok() => {
+                Ok(i64::from_str_radix(n.as_str(), n.radix()).unwrap_or_default())
+            }
+            (_, Value::Integer(n)) => Ok(n),
+            (_, other) => Err(entry.fault(&format!("{}: {other} is no whole number", entry.name))),
+        }
+    }
+
+    /// `{ from, to, count }`.
+    fn spaced<'a>(entry: &Entry<'a>) -> Result<([Entry<'a>; 2], u64), SpecError> {
+        let section = entry.section("{ from = a, to = b, count = n }")?;
+        section.only(&["from", "to", "count"])?;
+        let [from, to] = [section.need("from", "the first value")?, section.need("to", "the last value")?];
+        let count = section.need("count", "the number of values")?.count(2..=MOST_ROWS)?;
+        Ok(([from, to], count))
+    }
+
+    fn linear(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+        let ([from, to], count) = Self::spaced(entry)?;
+        if let Value::Integer(first) = self.value(&from)? {
+            let (last, steps) = (self.integer(&to)?, i128::from(count) - 1);
+            let way = i128::from(last) - i128::from(first);
+            if way % steps != 0 {
+                let what = format!(
+                    "{} takes whole numbers: {count} values in equal steps from {first} to {last} are none",
+                    self.key
+                );
+                return Err(entry.fault(&what));
+            }
+            let step = i64::try_from(way / steps).map_err(|_| to.fault("the steps are too large"))?;
+            return Ok(Points::Whole { from: first, step, count });
+        }
+        Ok(Points::Linear { from: self.number(&from)?, to: self.number(&to)?, count })
+    }
+
+    fn logarithmic(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+        let ([from, to], count) = Self::spaced(entry)?;
+        let [first, last] = [self.number(&from)?, self.number(&to)?];
+        self.above_zero(&from, first)?;
+        self.above_zero(&to, last)?;
+        Ok(Points::Logarithmic { from: first, to: last, count })
+    }
+
+    fn above_zero(&self, entry: &Entry<'_>, x: f64) -> Result<(), SpecError> {
+        if x > 0.0 {
+            return Ok(());
+        }
+        let what = format!(
+            "{} = {} is out of range: {} must be above 0 to have a logarithm",
+            entry.name,
+            exact(x),
+            self.key
+        );
+        Err(entry.fault(&what))
+    }
+
+    fn distribution(&self, entry: &Entry<'_>) -> Result<Distribution, SpecError> {
+        let allowed = "one of { uniform = [a, b] }, { log-uniform = [a, b] }, { normal = { mean = m, deviation = d } }, \
+                       { integers = [a, b] }";
+        let section = entry.section(allowed)?;
+        section.only(&DISTRIBUTIONS)?;
+        let given: Vec<Entry<'_>> = DISTRIBUTIONS.iter().filter_map(|kind| section.get(kind)).collect();
+        let [given] = &given[..] else {
+            return Err(entry.fault(&format!("{} must be {allowed}", entry.name)));
+        };
+        match given.name.rsplit('.').next() {
+            Some("uniform") => Ok(Distribution::Uniform(self.range(given)?)),
+            Some("log-uniform") => {
+                let range = self.range(given)?;
+                self.above_zero(given, range[0])?;
+                Ok(Distribution::LogUniform(range))
+            }
+            Some("integers") => {
+                let [a, b] = given.pair()?;
+                let [from, to] = [self.integer(&a)?, self.integer(&b)?];
+                if from > to {
+                    return Err(given.fault(&format!("{}: {from} is above {to}", given.name)));
+                }
+                Ok(Distribution::Integers([from, to]))
+            }
+            _ => self.normal(given),
+        }
+    }
+
+    fn range(&self, entry: &Entry<'_>) -> Result<[f64; 2], SpecError> {
+        let [a, b] = entry.pair()?;
+        let [from, to] = [self.number(&a)?, self.number(&b)?];
+        if from < to {
+            return Ok([from, to]);
+        }
+        Err(entry.fault(&format!("{}: {} is not below {}", entry.name, exact(from), exact(to))))
+    }
+
+    fn normal(&self, entry: &Entry<'_>) -> Result<Distribution, SpecError> {
+        let section = entry.section("{ mean = m, deviation = d }")?;
+        section.only(&["mean", "deviation"])?;
+        let mean = self.number(&section.need("mean", "a value of the key")?)?;
+        let deviation = section.need("deviation", "above 0")?;
+        // Not a value of the key: its range may lie far from 0.
+        let x = match Value::from_toml(deviation.value) {
+            Ok(Value::Number(x)) => x,
+            Ok(Value::Integer(n)) => n as f64,
+            _ => self.number(&deviation)?,
+        };
+        if !(x > 0.0 && x.is_finite()) {
+            let what =
+                format!("{} = {} is out of range: it must be above 0", deviation.name, quote(&exact(x)));
+            return Err(deviation.fault(&what));
+        }
+        Ok(Distribution::Normal { mean, deviation: x })
+    }
+}

@@ -1,0 +1,167 @@
+//! A TOML text read entry by entry, each mistake with its line.
+
+use crate::preset::read::{Origin, line};
+use crate::preset::suggest::closest;
+use crate::preset::text::{quote, sanitize, show_name};
+use std::ops::RangeInclusive;
+use thiserror::Error;
+use toml::de::{DeArray, DeTable, DeValue};
+
+/// What is wrong with a spec, in one line.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{origin}: {what}")]
+pub struct SpecError {
+    /// Where.
+    pub origin: Origin,
+    /// What, safe to show.
+    pub what: String,
+}
+
+/// The text of a file with its name.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Document<'a> {
+    pub(super) name: &'a str,
+    pub(super) text: &'a str,
+}
+
+/// A table of the document.
+#[derive(Debug, Clone)]
+pub(super) struct Section<'a> {
+    document: Document<'a>,
+    /// Its dotted name; empty for the document itself.
+    name: String,
+    table: &'a DeTable<'a>,
+    at: usize,
+}
+
+/// A key with its value.
+#[derive(Debug, Clone)]
+pub(super) struct Entry<'a> {
+    document: Document<'a>,
+    pub(super) name: String,
+    pub(super) value: &'a DeValue<'a>,
+    at: usize,
+}
+
+impl<'a> Document<'a> {
+    /// The text as a table.
+    pub(super) fn parse(self) -> Result<DeTable<'a>, SpecError> {
+        match DeTable::parse(self.text) {
+            Ok(table) => Ok(table.into_inner()),
+            Err(error) => {
+                let at = error.span().map_or(0, |span| span.start);
+                Err(self.fault(at, sanitize(error.message(), 120)))
+            }
+        }
+    }
+
+    fn fault(self, at: usize, what: String) -> SpecError {
+        let origin = Origin::File { name: show_name(self.name), line: Some(line(self.text, at)) };
+        SpecError { origin, what }
+    }
+
+    pub(super) fn section(self, table: &'a DeTable<'a>) -> Section<'a> {
+        Section { document: self, name: String::new(), table, at: 0 }
+    }
+}
+
+impl<'a> Section<'a> {
+    /// Refuses every key that is none of `keys`.
+    pub(super) fn only(&self, keys: &[&str]) -> Result<(), SpecError> {
+        for (key, _) in self.table {
+            let name: &str = key.get_ref();
+            if !keys.contains(&name) {
+                let meant = closest(name, keys.iter().copied());
+                let hint = meant.map_or_else(
+                    || format!(": there is {}", keys.join(", ")),
+                    |meant| format!("; did you mean {meant}?"),
+                );
+                let what = format!("unknown key {}{hint}", quote(&self.full(name)));
+                return Err(self.document.fault(key.span().start, what));
+            }
+        }
+        Ok(())
+    }
+
+    fn full(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
+        let (found, value) = self.table.iter().find(|(name, _)| name.get_ref() == key)?;
+        let at = found.span().start;
+        Some(Entry { document: self.document, name: self.full(key), value: value.get_ref(), at })
+    }
+
+    pub(super) fn need(&self, key: &str, allowed: &str) -> Result<Entry<'a>, SpecError> {
+        self.get(key)
+            .ok_or_else(|| self.fault(&format!("{} is missing: it must be {allowed}", self.full(key))))
+    }
+
+    pub(super) fn fault(&self, what: &str) -> SpecError {
+        self.document.fault(self.at, what.to_owned())
+    }
+}
+
+impl<'a> Entry<'a> {
+    pub(super) fn fault(&self, what: &str) -> SpecError {
+        self.document.fault(self.at, what.to_owned())
+    }
+
+    fn wrong(&self, allowed: &str) -> SpecError {
+        self.fault(&format!("{} must be {allowed}, not {}", self.name, found(self.value)))
+    }
+
+    pub(super) fn text(&self, allowed: &str) -> Result<&'a str, SpecError> {
+        self.value.as_str().ok_or_else(|| self.wrong(allowed))
+    }
+
+    pub(super) fn array(&self, allowed: &str) -> Result<Vec<Entry<'a>>, SpecError> {
+        let array: &DeArray<'_> = self.value.as_array().ok_or_else(|| self.wrong(allowed))?;
+        let entry = |value: &'a toml::Spanned<DeValue<'a>>| Entry {
+            document: self.document,
+            name: self.name.clone(),
+            value: value.get_ref(),
+            at: value.span().start,
+        };
+        Ok(array.iter().map(entry).collect())
+    }
+
+    /// The two values of an array.
+    pub(super) fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
+        let allowed = "two values, [from, to]";
+        <[Entry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
+    }
+
+    pub(super) fn section(&self, allowed: &str) -> Result<Section<'a>, SpecError> {
+        let table = self.value.as_table().ok_or_else(|| self.wrong(allowed))?;
+        Ok(Section { document: self.document, name: self.name.clone(), table, at: self.at })
+    }
+
+    /// A whole number of `range`.
+    pub(super) fn count(&self, range: RangeInclusive<u64>) -> Result<u64, SpecError> {
+        let allowed = format!("a whole number from {} to {}", range.start(), range.end());
+        let DeValue::Integer(n) = self.value else { return Err(self.wrong(&allowed)) };
+        let n = u64::from_str_radix(n.as_str(), n.radix()).ok().filter(|n| range.contains(n));
+        n.ok_or_else(|| {
+            self.fault(&format!(
+                "{} = {} is out of range: it must be {allowed}",
+                self.name,
+                found(self.value)
+            ))
+        })
+    }
+}
+
+/// A value in a message.
+fn found(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("\"{}\"", quote(text)),
+        DeValue::Integer(n) => quote(n.as_str()),
+        DeValue::Float(x) => quote(x.as_str()),
+        DeValue::Boolean(b) => b.to_string(),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(values) => format!("an array of {}", values.len()),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}

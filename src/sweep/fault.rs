@@ -1,0 +1,94 @@
+//! Why a row has no result, or not all of it.
+
+use crate::case::CaseError;
+use crate::preset::Invalid;
+use crate::preset::text::sanitize;
+use std::any::Any;
+use std::fmt;
+
+/// The longest text of a fault, in characters.
+const LONGEST: usize = 300;
+
+/// What went wrong in a row: one of a few reasons, and the whole in words. On one line and safe to show.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// The reason, by which faults are counted.
+    pub reason: &'static str,
+    text: String,
+}
+
+/// All reasons.
+pub const REASONS: [&str; 7] =
+    ["refused value", "no basis", "no start", "unstable start", "incomplete", "small start", "panic"];
+
+impl Fault {
+    fn new(reason: &'static str, text: &str) -> Self {
+        Self { reason, text: sanitize(&text.replace('\n', " "), LONGEST) }
+    }
+
+    /// A value that the preset does not take.
+    #[must_use]
+    pub fn of_value(invalid: &Invalid) -> Self {
+        Self::new(REASONS[0], &invalid.to_string())
+    }
+
+    /// A case that could not be computed.
+    #[must_use]
+    pub fn of_case(error: &CaseError) -> Self {
+        let reason = match error {
+            CaseError::Basis(_) => REASONS[1],
+            CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
+            CaseError::Unload { .. } => REASONS[3],
+            CaseError::Cancelled => REASONS[4],
+        };
+        Self::new(reason, &error.to_string())
+    }
+
+    /// A path that stopped early.
+    #[must_use]
+    pub fn incomplete(why: &str) -> Self {
+        Self::new(REASONS[4], why)
+    }
+
+    /// A curve on which something is smallest at its start.
+    #[must_use]
+    pub fn small_start() -> Self {
+        Self::new(REASONS[5], "what is smallest at the start may be smaller in a larger contact")
+    }
+
+    /// A panic, a fault of the program itself.
+    #[must_use]
+    pub fn of_panic(payload: &(dyn Any + Send)) -> Self {
+        let words = payload.downcast_ref::<String>().map(String::as_str);
+        let words = words.or_else(|| payload.downcast_ref::<&str>().copied());
+        Self::new(REASONS[6], words.unwrap_or("no words"))
+    }
+
+    /// The reason that a written fault begins with.
+    #[must_use]
+    pub fn reason_of(text: &str) -> Option<&'static str> {
+        let reason = text.split_once(": ")?.0;
+        REASONS.into_iter().find(|known| *known == reason)
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.reason, self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_is_one_line_that_begins_with_its_reason() {
+        let fault = Fault::new(REASONS[2], "a\nb\u{1b}[2Jc");
+        assert_eq!(fault.to_string(), "no start: a b\u{fffd}[2Jc");
+        assert_eq!(Fault::reason_of(&fault.to_string()), Some("no start"));
+        assert_eq!(Fault::reason_of("nothing of ours: x"), None);
+        let caught = std::panic::catch_unwind(|| panic!("at {}", 7)).unwrap_err();
+        assert_eq!(Fault::of_panic(caught.as_ref()).to_string(), "panic: at 7");
+    }
+}

@@ -1,0 +1,220 @@
+//! Parts of a sweep joined: to the byte the results of a single run.
+
+use super::output::{Existing, OutputError};
+use super::shard::Shard;
+use super::side::{self, Side, SideError};
+use crate::preset::atomic::{Overwrite, WriteError, write_atomically, write_filled};
+use crate::preset::text::show_path;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why parts cannot be joined. Paths are safe to show.
+#[derive(Debug, Error)]
+pub enum MergeError {
+    /// The result cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Nothing says what a part is.
+    #[error("{path}: is not known to be a part of a sweep ({cause})")]
+    NotOurs {
+        /// The part.
+        path: String,
+        /// Why not.
+        cause: SideError,
+    },
+    /// A part of another sweep.
+    #[error("{path}: is of another sweep than {first}")]
+    OtherSweep {
+        /// The part.
+        path: String,
+        /// The first part.
+        first: String,
+    },
+    /// A part of another division.
+    #[error("{path}: is shard {found}, while {first} is one of {of}")]
+    OtherDivision {
+        /// The part.
+        path: String,
+        /// What it is.
+        found: Shard,
+        /// The first part.
+        first: String,
+        /// Into how many parts the first one is divided.
+        of: u64,
+    },
+    /// Two parts that are the same.
+    #[error("{path}: is shard {shard}, as is {other}")]
+    Doubled {
+        /// The part.
+        path: String,
+        /// What it is.
+        shard: Shard,
+        /// The other.
+        other: String,
+    },
+    /// Parts that are not given.
+    #[error("shards are missing: {0}")]
+    Missing(String),
+    /// A part that is not at its end.
+    #[error("{path}: has {rows} of the {of} rows of shard {shard}; run it again to go on")]
+    Incomplete {
+        /// The part.
+        path: String,
+        /// The rows it has.
+        rows: u64,
+        /// Those it should have.
+        of: u64,
+        /// What it is.
+        shard: Shard,
+    },
+    /// A row that is not the one that belongs there.
+    #[error("{path}:{line}: is not the row that belongs there: the file was changed")]
+    Changed {
+        /// The part.
+        path: String,
+        /// The line, from 1.
+        line: u64,
+    },
+    /// A part cannot be read.
+    #[error("{path}: cannot read: {cause}")]
+    Io {
+        /// The part.
+        path: String,
+        /// What the system says.
+        cause: io::Error,
+    },
+}
+
+impl From<WriteError> for MergeError {
+    fn from(error: WriteError) -> Self {
+        Self::Output(error.into())
+    }
+}
+
+/// A part being read.
+struct Part {
+    path: PathBuf,
+    shard: Shard,
+    reader: BufReader<File>,
+    /// Lines read.
+    lines: u64,
+    line: Vec<u8>,
+}
+
+impl Part {
+    fn open(path: &Path, shard: Shard) -> Result<Self, MergeError> {
+        let file = File::open(path).map_err(|cause| MergeError::Io { path: show_path(path), cause })?;
+        Ok(Self { path: path.to_owned(), shard, reader: BufReader::new(file), lines: 0, line: Vec::new() })
+    }
+
+    /// The next whole line; `None` at the end, where a torn line counts for nothing.
+    fn next(&mut self) -> Result<Option<&[u8]>, MergeError> {
+        self.line.clear();
+        let read = self.reader.read_until(b'\n', &mut self.line);
+        read.map_err(|cause| MergeError::Io { path: show_path(&self.path), cause })?;
+        if self.line.last() != Some(&b'\n') {
+            return Ok(None);
+        }
+        self.lines += 1;
+        Ok(Some(&self.line))
+    }
+}
+
+/// Joins `parts`, in any order, to `results`; says how many rows there are.
+///
+/// # Errors
+/// A part is missing, doubled, incomplete or of another sweep; there is a file already, and `existing` does not replace it;
+/// nothing has changed then.
+pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u64, MergeError> {
+    let Some(first) = parts.first() else { return Err(MergeError::Missing("none is given".to_owned())) };
+    let not_ours = |path: &Path| {
+        let path = show_path(path);
+        move |cause| MergeError::NotOurs { path, cause }
+    };
+    let (side, text) = Side::read(first).map_err(not_ours(first))?;
+    let of = side.shard().of;
+    let whole = side::of_whole(&text, side.shard());
+    let mut found: Vec<Option<&PathBuf>> = vec![None; usize::try_from(of).unwrap_or_default()];
+    for path in parts {
+        let (other, text) = Side::read(path).map_err(not_ours(path))?;
+        let (shard, shown) = (other.shard(), show_path(path));
+        if shard.of != of && other.identity == side.identity {
+            return Err(MergeError::OtherDivision { path: shown, found: shard, first: show_path(first), of });
+        }
+        if side::of_whole(&text, shard) != whole {
+            return Err(MergeError::OtherSweep { path: shown, first: show_path(first) });
+        }
+        // From 1 to `of`, as a shard is.
+        let place = &mut found[usize::try_from(shard.number - 1).unwrap_or_default()];
+        if let Some(before) = place.replace(path) {
+            return Err(MergeError::Doubled { path: shown, shard, other: show_path(before) });
+        }
+    }
+    let missing: Vec<String> = (1..=of)
+        .zip(&found)
+        .filter(|(_, path)| path.is_none())
+        .map(|(number, _)| Shard { number, of }.to_string())
+        .collect();
+    if !missing.is_empty() {
+        return Err(MergeError::Missing(listed(&missing)));
+    }
+    let open = |(number, path): (u64, &PathBuf)| Part::open(path, Shard { number, of });
+    let mut open: Vec<Part> =
+        (1..=of).zip(found.into_iter().flatten()).map(open).collect::<Result<_, _>>()?;
+    let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
+    write_filled(results, overwrite, |file| fill(file, results, &mut open, side.rows))?;
+    write_atomically(&side::path(results), whole.as_bytes(), Overwrite::Always)?;
+    Ok(side.rows)
+}
+
+/// A few of many.
+fn listed(names: &[String]) -> String {
+    /// So many are told.
+    const TOLD: usize = 10;
+    let more = names.len().saturating_sub(TOLD);
+    let told = names[..names.len() - more].join(", ");
+    if more == 0 { told } else { format!("{told} and {more} more") }
+}
+
+/// The rows of all parts, taken in turn.
+fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Result<(), MergeError> {
+    let failed = |cause| OutputError::Io { path: show_path(results), doing: "write", cause }.into();
+    let mut out = BufWriter::new(file);
+    let mut header: Vec<u8> = Vec::new();
+    for part in parts.iter_mut() {
+        let line = part.next()?.unwrap_or_default().to_vec();
+        if header.is_empty() {
+            out.write_all(&line).map_err(failed)?;
+            header = line;
+        } else if line != header {
+            return Err(MergeError::Changed { path: show_path(&part.path), line: 1 });
+        }
+    }
+    let mut row = 0;
+    while row < rows {
+        for part in parts.iter_mut() {
+            if row == rows {
+                break;
+            }
+            let shard = part.shard;
+            let Some(line) = part.next()? else {
+                let had = part.lines.saturating_sub(1);
+                let (path, of) = (show_path(&part.path), shard.len(rows));
+                return Err(MergeError::Incomplete { path, rows: had, of, shard });
+            };
+            if !line.starts_with(format!("{row},").as_bytes()) {
+                return Err(MergeError::Changed { path: show_path(&part.path), line: part.lines });
+            }
+            out.write_all(line).map_err(failed)?;
+            row += 1;
+        }
+    }
+    for part in parts {
+        if part.next()?.is_some() {
+            return Err(MergeError::Changed { path: show_path(&part.path), line: part.lines });
+        }
+    }
+    out.flush().map_err(failed)
+}

@@ -1,0 +1,235 @@
+//! The file of the results: begun, gone on with, appended to.
+//!
+//! Rows are only ever appended, whole lines at a time, so whatever ends the program leaves whole rows and at most one
+//! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
+//! of ours and are not touched.
+
+use super::record;
+use super::shard::Shard;
+use super::side::{self, Side, SideError};
+use super::spec::Spec;
+use crate::preset::atomic::{Overwrite, WriteError, write_atomically};
+use crate::preset::file::kind_of;
+use crate::preset::lock::lock_file;
+use crate::preset::text::show_path;
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Seek, Write};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// What to do with results that are there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// Go on with those of the same sweep, refuse all others.
+    GoOn,
+    /// Replace them.
+    Overwrite,
+}
+
+/// Why results cannot be begun, gone on with or written. Paths are safe to show.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The file beside them cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The system says no.
+    #[error("{path}: cannot {doing}: {cause}")]
+    Io {
+        /// The file.
+        path: String,
+        /// What was being done.
+        doing: &'static str,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// Another process writes them.
+    #[error("{path}: another pulloff is writing it")]
+    Busy {
+        /// The file.
+        path: String,
+    },
+    /// There is a file, and nothing beside it says that it is a sweep's.
+    #[error("{path}: exists already, and is not known to be of a sweep ({cause}); --overwrite replaces it")]
+    NotOurs {
+        /// The file.
+        path: String,
+        /// Why not.
+        cause: SideError,
+    },
+    /// Results of another sweep.
+    #[error(
+        "{path}: holds the results of another sweep: another spec, preset or version; --overwrite replaces them"
+    )]
+    OtherSweep {
+        /// The file.
+        path: String,
+    },
+    /// Results of another part.
+    #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
+    OtherShard {
+        /// The file.
+        path: String,
+        /// The part it holds.
+        found: Shard,
+        /// The part wanted.
+        wanted: Shard,
+    },
+    /// A whole line that is not what this sweep writes there.
+    #[error(
+        "{path}:{line}: is not the row that belongs there: the file was changed; --overwrite begins anew"
+    )]
+    Changed {
+        /// The file.
+        path: String,
+        /// The line, from 1.
+        line: u64,
+    },
+    /// No threads.
+    #[error("cannot start the threads: {0}")]
+    Threads(String),
+}
+
+/// Faults by their reason.
+pub type Faults = BTreeMap<&'static str, u64>;
+
+/// Results being written.
+#[derive(Debug)]
+pub struct Output {
+    file: File,
+    path: String,
+    /// Whole lines that are not in the file yet.
+    buffer: Vec<u8>,
+    flushed: Instant,
+    /// The rows that were there.
+    pub rows: u64,
+    /// Their faults.
+    pub faults: Faults,
+}
+
+/// So many bytes are written at once, or after so long.
+const BUFFER: usize = 1 << 16;
+const LATEST: Duration = Duration::from_millis(200);
+
+impl Output {
+    /// Opens the results of a part of a sweep, and finds how far they are.
+    ///
+    /// # Errors
+    /// They cannot be opened, or are not of this part of this sweep.
+    pub fn open(path: &Path, spec: &Spec, shard: Shard, existing: Existing) -> Result<Self, OutputError> {
+        let shown = show_path(path);
+        let failed = |doing| {
+            let path = shown.clone();
+            move |cause| OutputError::Io { path, doing, cause }
+        };
+        if let Ok(metadata) = path.metadata()
+            && !metadata.is_file()
+        {
+            return Err(WriteError::NotRegular { path: shown, what: kind_of(&metadata) }.into());
+        }
+        let file =
+            OpenOptions::new().read(true).append(true).create(true).open(path).map_err(failed("open"))?;
+        if !lock_file(&file, Duration::ZERO).map_err(failed("lock"))? {
+            return Err(OutputError::Busy { path: shown });
+        }
+        if existing == Existing::Overwrite {
+            file.set_len(0).map_err(failed("empty"))?;
+        }
+        if file.metadata().map_err(failed("look at"))?.len() > 0 {
+            check(path, spec, shard)?;
+        } else {
+            write_atomically(&side::path(path), side::text(spec, shard).as_bytes(), Overwrite::Always)?;
+        }
+        let flushed = Instant::now();
+        let (buffer, faults) = (Vec::new(), Faults::new());
+        let mut output = Self { file, path: shown, buffer, flushed, rows: 0, faults };
+        output.scan(spec, shard)?;
+        Ok(output)
+    }
+
+    fn failed(&self, doing: &'static str) -> impl FnOnce(io::Error) -> OutputError {
+        let path = self.path.clone();
+        move |cause| OutputError::Io { path, doing, cause }
+    }
+
+    /// Finds the rows that are there, and cuts a torn line off.
+    fn scan(&mut self, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
+        let mut whole = 0_u64;
+        let (mut line, mut number) = (Vec::new(), 0);
+        let mut reader = BufReader::new(&self.file);
+        reader.rewind().map_err(self.failed("read"))?;
+        loop {
+            line.clear();
+            let length = reader.read_until(b'\n', &mut line).map_err(self.failed("read"))?;
+            if line.last() != Some(&b'\n') {
+                break;
+            }
+            number += 1;
+            let fits = if number == 1 {
+                line == record::header(spec).as_bytes()
+            } else {
+                let row = shard.row(self.rows);
+                self.rows += 1;
+                row < spec.rows && line.starts_with(record::beginning(spec, row).as_bytes())
+            };
+            if !fits {
+                return Err(OutputError::Changed { path: self.path.clone(), line: number });
+            }
+            if let Some(reason) =
+                (number > 1).then(|| record::reason(&String::from_utf8_lossy(&line))).flatten()
+            {
+                *self.faults.entry(reason).or_default() += 1;
+            }
+            whole += length as u64;
+        }
+        self.file.set_len(whole).map_err(self.failed("cut a torn line off"))?;
+        if whole == 0 {
+            self.append(&record::header(spec))?;
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Appends a whole line, now or a little later.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn append(&mut self, line: &str) -> Result<(), OutputError> {
+        self.buffer.extend_from_slice(line.as_bytes());
+        if self.buffer.len() >= BUFFER || self.flushed.elapsed() >= LATEST { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes what was appended.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        (&self.file).write_all(&self.buffer).map_err(self.failed("write"))?;
+        self.buffer.clear();
+        self.flushed = Instant::now();
+        Ok(())
+    }
+
+    /// Makes sure that the disk has all rows.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn finish(mut self) -> Result<(), OutputError> {
+        self.flush()?;
+        self.file.sync_all().map_err(self.failed("write"))
+    }
+}
+
+/// Refuses results that are not of this part of this sweep.
+fn check(path: &Path, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
+    let shown = || show_path(path);
+    let (side, _) = Side::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
+    if side.identity != spec.identity() {
+        return Err(OutputError::OtherSweep { path: shown() });
+    }
+    if side.shard() != shard {
+        return Err(OutputError::OtherShard { path: shown(), found: side.shard(), wanted: shard });
+    }
+    Ok(())
+}

@@ -1,0 +1,243 @@
+//! What a sweep can compute of a problem: the table of quantities, one row each.
+
+use super::fault::Fault;
+use super::measure::{Cell, Ground, Line, Path};
+use crate::contact::Control;
+use crate::preset::suggest::closest;
+use crate::preset::text::quote;
+use crate::units::Quantity as Unit;
+
+/// One quantity.
+#[derive(Debug)]
+pub struct Quantity {
+    /// Its name in a spec and in the results.
+    pub name: &'static str,
+    /// What is measured.
+    pub unit: Unit,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// From what it is computed.
+    pub(super) of: Of,
+}
+
+/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Of {
+    /// The values of the preset.
+    Ground(fn(&Ground) -> Option<Cell>),
+    /// The state at the start: a basis and a search.
+    Start(fn(&super::measure::Start) -> Option<Cell>),
+    /// The equilibrium curve.
+    Line(fn(&Line) -> Result<Option<Cell>, Fault>),
+    /// The limit points of a control on the curve.
+    Limits,
+    /// The unloading under a control.
+    Path(fn(&Path) -> Option<Cell>),
+    /// The states it passes that are not admissible: to find them takes longer than all the rest.
+    Passed,
+}
+
+const fn row(name: &'static str, unit: Unit, meaning: &'static str, of: Of) -> Quantity {
+    Quantity { name, unit, meaning, of }
+}
+
+/// The quantities.
+pub static QUANTITIES: &[Quantity] = &[
+    row(
+        "pull_off_force",
+        Unit::Force,
+        "force at the pull-off, negative: a pull",
+        Of::Path(|path| path.pull_off(|state| state.force)),
+    ),
+    row(
+        "pull_off_approach",
+        Unit::Length,
+        "approach at the pull-off",
+        Of::Path(|path| path.pull_off(|state| state.approach)),
+    ),
+    row(
+        "pull_off_radius",
+        Unit::Length,
+        "contact radius at the pull-off",
+        Of::Path(|path| path.pull_off(|state| state.contact_radius)),
+    ),
+    row("snaps", Unit::Number, "jumps before the pull-off", Of::Path(|path| Some(path.snaps()))),
+    row("snap_loss", Unit::Energy, "energy lost in all of them", Of::Path(|path| Some(path.snap_loss()))),
+    row(
+        "pull_off_loss",
+        Unit::Energy,
+        "energy lost at the pull-off; none under a dead load",
+        Of::Path(Path::pull_off_loss),
+    ),
+    row(
+        "inadmissible_share",
+        Unit::Number,
+        "share of the path, by contact radius, on which the next crest would already touch",
+        Of::Passed,
+    ),
+    row("limit_points", Unit::Number, "limit points of the control on the curve", Of::Limits),
+    row(
+        "start_contact_radius",
+        Unit::Length,
+        "contact radius at the start, the largest of the curve",
+        Of::Start(|start| Some(start.contact_radius())),
+    ),
+    row("least_force", Unit::Force, "smallest force of the curve", Of::Line(|line| line.least(|s| s.force))),
+    row(
+        "least_force_radius",
+        Unit::Length,
+        "contact radius at the smallest force",
+        Of::Line(|line| line.least(|s| s.contact_radius)),
+    ),
+    row("least_approach", Unit::Length, "smallest approach of the curve", Of::Line(Line::least_approach)),
+    row(
+        "enhancement",
+        Unit::Number,
+        "smallest force over that of the smooth sphere, P_min/P_c in size",
+        Of::Line(Line::enhancement),
+    ),
+    row("waves", Unit::Number, "waves in the disc at the smallest force, s/lambda", Of::Line(Line::waves)),
+    row(
+        "critical_force",
+        Unit::Force,
+        "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere",
+        Of::Ground(Ground::critical_force),
+    ),
+    row(
+        "kesari_lew",
+        Unit::Number,
+        "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves",
+        Of::Ground(Ground::kesari_lew),
+    ),
+    row(
+        "johnson",
+        Unit::Number,
+        "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))",
+        Of::Ground(|ground| ground.groups.johnson.map(Cell::Number)),
+    ),
+    row(
+        "adhesion",
+        Unit::Number,
+        "gamma' = 2 pi gamma/(E* R)",
+        Of::Ground(|ground| ground.groups.adhesion.map(Cell::Number)),
+    ),
+    row(
+        "connectivity",
+        Unit::Number,
+        "lambda^2/(A R); above 8.58 the gap rises monotonically",
+        Of::Ground(|ground| ground.groups.connectivity.map(Cell::Number)),
+    ),
+    row(
+        "tabor",
+        Unit::Number,
+        "Tabor's mu, where the range of action is known",
+        Of::Ground(|ground| ground.groups.tabor.map(Cell::Number)),
+    ),
+];
+
+/// The quantities of a spec that names none.
+pub const USUAL: [&str; 6] =
+    ["pull_off_force", "pull_off_approach", "snaps", "enhancement", "waves", "kesari_lew"];
+
+/// Under which control a quantity is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Under {
+    /// That of the preset, `path.control`.
+    Own,
+    /// The approach.
+    Displacement,
+    /// The force.
+    Force,
+}
+
+impl Under {
+    /// All of them, with what stands behind the name of a quantity.
+    const ALL: [(Self, &'static str); 3] =
+        [(Self::Own, ""), (Self::Displacement, "_displacement"), (Self::Force, "_force")];
+
+    /// The control, where `own` is that of the preset.
+    #[must_use]
+    pub fn control(self, own: Control) -> Control {
+        match self {
+            Self::Own => own,
+            Self::Displacement => Control::Displacement,
+            Self::Force => Control::Force,
+        }
+    }
+}
+
+/// A quantity as it is wanted: a column of the results.
+#[derive(Debug, Clone, Copy)]
+pub struct Column {
+    /// The quantity.
+    pub quantity: &'static Quantity,
+    /// Under which control, where that matters.
+    pub under: Under,
+}
+
+impl PartialEq for Column {
+    fn eq(&self, other: &Self) -> bool {
+        (self.quantity.name, self.under) == (other.quantity.name, other.under)
+    }
+}
+
+impl Quantity {
+    /// Whether it depends on the control: then `NAME` is under the preset's own, `NAME_displacement` and `NAME_force`
+    /// under these.
+    #[must_use]
+    pub fn is_of_control(&self) -> bool {
+        matches!(self.of, Of::Limits | Of::Path(_) | Of::Passed)
+    }
+
+    /// The columns it can be.
+    fn columns(&'static self) -> impl Iterator<Item = Column> {
+        let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
+        Under::ALL[..last].iter().map(move |(under, _)| Column { quantity: self, under: *under })
+    }
+}
+
+impl Column {
+    /// The column of a name.
+    ///
+    /// # Errors
+    /// What is wrong with the name, in words, with the nearest one.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let all = || QUANTITIES.iter().flat_map(Quantity::columns);
+        all().find(|column| column.name() == name).ok_or_else(|| {
+            let names: Vec<String> = all().map(|column| column.name()).collect();
+            let meant = closest(name, names.iter().map(String::as_str));
+            let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+            format!("no quantity is called \"{}\"{hint}", quote(name))
+        })
+    }
+
+    /// Its name: that of the quantity, with the control behind it.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let suffix = Under::ALL.iter().find(|(under, _)| *under == self.under).map_or("", |(_, name)| *name);
+        format!("{}{suffix}", self.quantity.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_a_column_and_a_wrong_one_is_put_right() {
+        for column in QUANTITIES.iter().flat_map(Quantity::columns) {
+            assert_eq!(Column::named(&column.name()), Ok(column));
+            assert!(column.quantity.meaning.is_ascii());
+        }
+        assert!(USUAL.iter().all(|name| Column::named(name).is_ok()));
+        assert_eq!(Column::named("snaps_force").unwrap().under, Under::Force);
+        for (wrong, message) in [
+            ("pull_of_force", "no quantity is called \"pull_of_force\"; did you mean pull_off_force?"),
+            ("snap", "no quantity is called \"snap\"; did you mean snaps?"),
+            ("enhancement_force", "no quantity is called \"enhancement_force\"; did you mean enhancement?"),
+            ("x\u{1b}", "no quantity is called \"x\u{fffd}\""),
+        ] {
+            assert_eq!(Column::named(wrong).unwrap_err(), message);
+        }
+    }
+}

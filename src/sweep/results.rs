@@ -1,0 +1,129 @@
+//! The results of a sweep read again: columns by their names.
+
+use super::side::{ColumnInfo, Side, SideError};
+use crate::preset::suggest::closest;
+use crate::preset::text::{quote, sanitize, show_path};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why results cannot be read. Texts are safe to show.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// Nothing says what the columns are.
+    #[error(transparent)]
+    Side(#[from] SideError),
+    /// There is no such column.
+    #[error("{path}: has no column \"{name}\"{hint}")]
+    NoColumn {
+        /// The file.
+        path: String,
+        /// The name.
+        name: String,
+        /// The nearest one, in words.
+        hint: String,
+    },
+    /// The table cannot be read.
+    #[error("{path}: {what}")]
+    Table {
+        /// The file.
+        path: String,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// The results of a sweep, or of a part of it; they may still be growing.
+#[derive(Debug, Clone)]
+pub struct Results {
+    path: PathBuf,
+    /// What is known of the columns, in their order: the row, the axes, the quantities, the error.
+    pub columns: Vec<ColumnInfo>,
+    /// The rows of the whole sweep: there may be fewer.
+    pub rows: u64,
+}
+
+impl Results {
+    /// Opens the results; nothing but what stands beside them is read.
+    ///
+    /// # Errors
+    /// The file beside them is missing or none of ours.
+    pub fn open(path: &Path) -> Result<Self, ResultsError> {
+        let (Side { columns, rows, .. }, _) = Side::read(path)?;
+        Ok(Self { path: path.to_owned(), columns, rows })
+    }
+
+    fn place(&self, name: &str) -> Result<usize, ResultsError> {
+        let names = || self.columns.iter().map(|column| column.name.as_str());
+        names().position(|known| known == name).ok_or_else(|| ResultsError::NoColumn {
+            path: show_path(&self.path),
+            name: quote(name),
+            hint: closest(name, names()).map_or_else(String::new, |meant| format!("; did you mean {meant}?")),
+        })
+    }
+
+    /// The cells of some columns, one vector each; only these are held in memory. A torn line at the end is left out.
+    ///
+    /// # Errors
+    /// There is no such column, or the table cannot be read.
+    pub fn texts(&self, names: &[&str]) -> Result<Vec<Vec<String>>, ResultsError> {
+        self.read(names, |cell| Some(cell.to_owned()))
+    }
+
+    /// The same as numbers; an empty cell is none.
+    ///
+    /// # Errors
+    /// As [`texts`](Self::texts), or a cell is neither empty nor a number.
+    pub fn numbers(&self, names: &[&str]) -> Result<Vec<Vec<Option<f64>>>, ResultsError> {
+        self.read(names, |cell| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) })
+    }
+
+    fn read<T>(
+        &self,
+        names: &[&str],
+        value: impl Fn(&str) -> Option<T>,
+    ) -> Result<Vec<Vec<T>>, ResultsError> {
+        let places: Vec<usize> = names.iter().map(|name| self.place(name)).collect::<Result<_, _>>()?;
+        let wrong =
+            |what: &str| ResultsError::Table { path: show_path(&self.path), what: sanitize(what, 200) };
+        let file = File::open(&self.path).map_err(|error| wrong(&error.to_string()))?;
+        let whole = whole_lines(&file).map_err(|error| wrong(&error.to_string()))?;
+        let mut reader = csv::Reader::from_reader(BufReader::new(file.take(whole)));
+        let header = reader.headers().map_err(|error| wrong(&error.to_string()))?;
+        if !header.iter().eq(self.columns.iter().map(|column| column.name.as_str())) {
+            return Err(wrong("its columns are not those that stand beside it"));
+        }
+        let mut columns: Vec<Vec<T>> = places.iter().map(|_| Vec::new()).collect();
+        let mut record = csv::StringRecord::new();
+        while reader.read_record(&mut record).map_err(|error| wrong(&error.to_string()))? {
+            for ((column, &place), name) in columns.iter_mut().zip(&places).zip(names) {
+                let cell = record.get(place).unwrap_or_default();
+                let line = record.position().map_or(0, csv::Position::line);
+                let refused = || wrong(&format!("line {line}: {name} = \"{}\" is no number", quote(cell)));
+                column.push(value(cell).ok_or_else(refused)?);
+            }
+        }
+        Ok(columns)
+    }
+}
+
+/// The bytes of a file up to its last line end: a row that is just being written counts for nothing.
+fn whole_lines(mut file: &File) -> io::Result<u64> {
+    /// Far more than a line.
+    const STEP: u64 = 1 << 16;
+    let mut end = file.metadata()?.len();
+    while end > 0 {
+        let from = end.saturating_sub(STEP);
+        file.seek(SeekFrom::Start(from))?;
+        let mut bytes = Vec::new();
+        file.take(end - from).read_to_end(&mut bytes)?;
+        if let Some(last) = bytes.iter().rposition(|byte| *byte == b'\n') {
+            end = from + last as u64 + 1;
+            break;
+        }
+        end = from;
+    }
+    file.rewind()?;
+    Ok(end)
+}

@@ -1,0 +1,233 @@
+//! Rows on every core, written in their order.
+//!
+//! Threads take the next row each; finished rows wait for those before them in a window of bounded size, beyond which no
+//! row is begun. So the file grows in order whatever the threads do, and memory does not grow with the number of rows.
+
+use super::fault::Fault;
+use super::output::{Faults, Output, OutputError};
+use super::record;
+use super::shard::Shard;
+use super::spec::Spec;
+use rayon::iter::{ParallelBridge, ParallelIterator};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+/// The most rows begun and not written: a slow one among fast ones, and a few megabytes.
+const WINDOW: u64 = 1 << 14;
+/// How long the writer waits before it says so.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Summary {
+    /// The rows that were there before.
+    pub before: u64,
+    /// The rows written now.
+    pub now: u64,
+    /// The rows of this part.
+    pub of: u64,
+    /// The faults of all rows that are there.
+    pub faults: Faults,
+}
+
+impl Summary {
+    /// Whether all rows are there.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.before + self.now == self.of
+    }
+}
+
+/// Computes the rows of a part that `output` does not have, on `jobs` threads.
+///
+/// `go_on` is asked often, by every thread; when it says no, what is done is kept. `written` is told how many rows there
+/// are and how many of them have faults, several times a second.
+///
+/// # Errors
+/// The results cannot be written.
+pub fn run(
+    spec: &Spec,
+    shard: Shard,
+    mut output: Output,
+    jobs: usize,
+    go_on: &(dyn Fn() -> bool + Sync),
+    mut written: impl FnMut(u64, u64),
+) -> Result<Summary, OutputError> {
+    let of = shard.len(spec.rows);
+    let (before, mut faults) = (output.rows, output.faults.clone());
+    let mut now = 0;
+    let compute = |index: u64| {
+        let row = shard.row(index);
+        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| go_on())));
+        let measured =
+            measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))))?;
+        let reason = measured.fault.as_ref().map(|fault| fault.reason);
+        Some((record::record(spec, row, &measured), reason))
+    };
+    in_order(before..of, jobs, WINDOW, &compute, go_on, |item: Option<(String, Option<&'static str>)>| {
+        let result = match item {
+            Some((line, reason)) => {
+                now += 1;
+                if let Some(reason) = reason {
+                    *faults.entry(reason).or_default() += 1;
+                }
+                output.append(&line)
+            }
+            None => output.flush(),
+        };
+        written(before + now, faults.values().sum());
+        result
+    })?;
+    output.finish()?;
+    Ok(Summary { before, now, of, faults })
+}
+
+/// Which rows may be begun.
+struct Window {
+    state: Mutex<State>,
+    moved: Condvar,
+    size: u64,
+}
+
+struct State {
+    /// The next row that is written.
+    written: u64,
+    /// No more rows are wanted.
+    closed: bool,
+}
+
+impl Window {
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
+        self.moved.notify_all();
+    }
+
+    /// Waits until `index` may be begun; false when it never may.
+    fn admits(&self, index: u64) -> bool {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        while !state.closed && index >= state.written + self.size {
+            state = self.moved.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        !state.closed
+    }
+}
+
+/// Computes all `indices` on `jobs` threads and hands the results over in order; nothing now and then, while there is
+/// none. Ends early where `go_on` or a computation (with `None`) says no, or `write` fails: all before that is written.
+fn in_order<T: Send>(
+    indices: Range<u64>,
+    jobs: usize,
+    window: u64,
+    compute: &(impl Fn(u64) -> Option<T> + Sync),
+    go_on: &(dyn Fn() -> bool + Sync),
+    mut write: impl FnMut(Option<T>) -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).thread_name(|n| format!("sweep-{n}"));
+    let pool = pool.build().map_err(|error| OutputError::Threads(error.to_string()))?;
+    let mut next = indices.start;
+    let state = Mutex::new(State { written: next, closed: false });
+    let window = &Window { state, moved: Condvar::new(), size: window };
+    let (sender, receiver) = channel();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            // Taken one by one and in order, whichever thread is free.
+            let admitted = indices.take_while(|index| go_on() && window.admits(*index));
+            pool.install(|| {
+                admitted.par_bridge().for_each_with(sender, |sender, index| match compute(index) {
+                    // The writer is there until the last sender is gone, or has closed the window.
+                    Some(item) => drop(sender.send((index, item))),
+                    None => window.change(|state| state.closed = true),
+                });
+            });
+        });
+        let mut waiting = BTreeMap::new();
+        loop {
+            let written = match receiver.recv_timeout(PAUSE) {
+                Ok((index, item)) => {
+                    waiting.insert(index, item);
+                    let mut written = Ok(());
+                    while let (Some(item), true) = (waiting.remove(&next), written.is_ok()) {
+                        next += 1;
+                        written = write(Some(item));
+                    }
+                    window.change(|state| state.written = next);
+                    written
+                }
+                Err(RecvTimeoutError::Timeout) => write(None),
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            };
+            if written.is_err() {
+                window.change(|state| state.closed = true);
+                return written;
+            }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    /// What was written of `0..rows`, each computed after its own pause.
+    fn written(rows: u64, window: u64, last: u64) -> Vec<u64> {
+        let begun = AtomicU64::new(0);
+        let done = AtomicU64::new(0);
+        let compute = |index: u64| {
+            begun.fetch_max(index, Ordering::SeqCst);
+            assert!(index < done.load(Ordering::SeqCst) + window, "row {index} was begun too early");
+            if index.is_multiple_of(7) {
+                std::thread::sleep(Duration::from_micros(300));
+            }
+            (index < last).then_some(index)
+        };
+        let mut all = Vec::new();
+        in_order(0..rows, 4, window, &compute, &|| true, |item| {
+            if let Some(item) = item {
+                all.push(item);
+                done.store(item + 1, Ordering::SeqCst);
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert!(begun.load(Ordering::SeqCst) < all.len() as u64 + window);
+        all
+    }
+
+    #[test]
+    fn rows_come_in_order_through_a_small_window() {
+        assert!(written(500, 5, u64::MAX).into_iter().eq(0..500));
+        assert!(written(3, 1, u64::MAX).into_iter().eq(0..3));
+        assert!(written(0, 1, u64::MAX).is_empty());
+    }
+
+    #[test]
+    fn what_is_before_the_end_is_written() {
+        assert!(written(500, 16, 100).into_iter().eq(0..100));
+        let count = AtomicU64::new(0);
+        let go_on = || count.fetch_add(1, Ordering::SeqCst) < 50;
+        let mut all = Vec::new();
+        in_order(10..500, 2, 100, &Some, &go_on, |item| {
+            all.extend(item);
+            Ok(())
+        })
+        .unwrap();
+        assert!(all.into_iter().eq(10..60));
+    }
+
+    #[test]
+    fn a_failed_write_ends_all() {
+        let failed = || OutputError::Threads("no".to_owned());
+        let mut all = Vec::new();
+        let result = in_order(0..1000, 4, 10, &Some, &|| true, |item| {
+            all.extend(item);
+            if all.len() == 30 { Err(failed()) } else { Ok(()) }
+        });
+        assert!(result.is_err());
+        assert!(all.into_iter().eq(0..30));
+    }
+}

@@ -1,0 +1,143 @@
+//! The file beside the results, `RESULTS.csv.spec.toml`: which sweep they are of, which part of it, what the columns are.
+//!
+//! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
+//! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
+
+use super::record;
+use super::shard::Shard;
+use super::spec::Spec;
+use crate::preset::file::{self, FileError, read_text};
+use crate::preset::text::{sanitize, show_path};
+use crate::units::{Quantity, UnitSystem};
+use serde::Deserialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// What is behind the name of the results.
+const ENDING: &str = ".spec.toml";
+
+/// Why the file beside some results says nothing.
+#[derive(Debug, Error)]
+pub enum SideError {
+    /// It cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is none of ours.
+    #[error("{path}: {what}")]
+    Unknown {
+        /// The file, safe to show.
+        path: String,
+        /// What is wrong, safe to show.
+        what: String,
+    },
+}
+
+/// A column of the results.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct ColumnInfo {
+    /// Its name.
+    pub name: String,
+    /// The unit of its numbers; `None` for pure numbers, texts, and in reduced units.
+    pub unit: Option<String>,
+    /// What it is, in one line.
+    pub meaning: String,
+}
+
+/// What the file says.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct Side {
+    /// The hash of the sweep.
+    pub identity: String,
+    /// The part, as text.
+    shard: String,
+    /// The rows of the whole sweep.
+    pub rows: u64,
+    /// The columns, in their order.
+    #[serde(rename = "column")]
+    pub columns: Vec<ColumnInfo>,
+}
+
+/// The file beside these results.
+#[must_use]
+pub fn path(results: &Path) -> PathBuf {
+    let mut name = results.as_os_str().to_owned();
+    name.push(ENDING);
+    PathBuf::from(name)
+}
+
+/// The text of the file for a part of a sweep.
+#[must_use]
+pub fn text(spec: &Spec, shard: Shard) -> String {
+    let mut text = format!(
+        "# What the results beside this file are of. `pulloff sweep` reads it, to go on and to join shards.\n\
+         identity = \"{}\"\nshard = \"{shard}\"\nrows = {}\n\n{}",
+        spec.identity(),
+        spec.rows,
+        spec.canonical()
+    );
+    for ColumnInfo { name, unit, meaning } in columns(spec) {
+        let quoted = |text: String| toml::Value::String(text).to_string();
+        let unit = unit.map_or_else(String::new, |unit| format!("unit = {}\n", quoted(unit)));
+        // Writing to a String cannot fail.
+        let _ = write!(text, "\n[[column]]\nname = {}\n{unit}meaning = {}\n", quoted(name), quoted(meaning));
+    }
+    text
+}
+
+/// The text for the whole sweep, made from that of a part.
+#[must_use]
+pub fn of_whole(text: &str, part: Shard) -> String {
+    let line = |shard: Shard| format!("\nshard = \"{shard}\"\n");
+    text.replacen(&line(part), &line(Shard::WHOLE), 1)
+}
+
+fn columns(spec: &Spec) -> Vec<ColumnInfo> {
+    let is_si = spec.preset.units != UnitSystem::Reduced;
+    let unit = |quantity: Quantity| is_si.then(|| quantity.si()).flatten().map(str::to_owned);
+    let meanings = spec.axes.iter().map(|axis| {
+        let row = spec.preset.row(&axis.key);
+        (row.as_ref().and_then(|row| unit(row.quantity)), row.map(|row| row.meaning.to_string()))
+    });
+    let meanings = std::iter::once((None, Some("number of the row, from 0".to_owned())))
+        .chain(meanings)
+        .chain(spec.columns.iter().map(|column| {
+            let under = match column.name().strip_prefix(column.quantity.name) {
+                Some("") if column.quantity.is_of_control() => ", under path.control",
+                Some("_displacement") => ", the approach held",
+                Some("_force") => ", the force held",
+                _ => "",
+            };
+            (unit(column.quantity.unit), Some(format!("{}{under}", column.quantity.meaning)))
+        }))
+        .chain([(None, Some("why a quantity could not be had; empty where all is well".to_owned()))]);
+    let column = |(name, (unit, meaning)): (String, (_, Option<String>))| ColumnInfo {
+        name,
+        unit,
+        meaning: meaning.unwrap_or_default(),
+    };
+    record::names(spec).into_iter().zip(meanings).map(column).collect()
+}
+
+impl Side {
+    /// Reads the file beside `results`, with its text.
+    ///
+    /// # Errors
+    /// It is not there, or none of ours.
+    pub fn read(results: &Path) -> Result<(Self, String), SideError> {
+        let path = path(results);
+        // Every value of every axis stands in it.
+        let (text, _) = read_text(&path, 4 * file::LARGEST)?;
+        let unknown = |what: &str| SideError::Unknown { path: show_path(&path), what: sanitize(what, 120) };
+        let side: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
+        side.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
+        Ok((side, text))
+    }
+
+    /// The part.
+    #[must_use]
+    pub fn shard(&self) -> Shard {
+        // Checked when it was read.
+        self.shard.parse().unwrap_or(Shard::WHOLE)
+    }
+}

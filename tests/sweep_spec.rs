@@ -1,0 +1,337 @@
+//! The spec of a sweep: what it says of each row, and what is wrong with a bad one.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
+use pulloff::preset::Store;
+use pulloff::sweep::{MOST_ROWS, Spec, SpecError};
+use std::path::Path;
+
+fn read(text: &str) -> Result<Spec, SpecError> {
+    Spec::read(&Store::at("presets", &[]), Path::new("."), "s.toml", text)
+}
+
+fn axis(text: &str) -> String {
+    format!("preset = \"wavy-sphere\"\n[[axis]]\n{text}")
+}
+
+/// The values of every row, as the results have them.
+fn rows(text: &str) -> Vec<String> {
+    let spec = read(text).unwrap();
+    let row = |row| spec.values(row).iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    (0..spec.rows).map(row).collect()
+}
+
+#[test]
+fn values_of_every_kind() {
+    let one = |text: &str| rows(&axis(text));
+    assert_eq!(one("key = 'gap.amplitude'\nvalues = [1, 0.5, '1/8', 0]"), ["1.0", "0.5", "0.125", "0.0"]);
+    assert_eq!(
+        one("key = 'gap.wavelength'\nlinear = { from = 0.1, to = 0.3, count = 3 }"),
+        ["0.1", "0.2", "0.3"]
+    );
+    assert_eq!(
+        one("key = 'groups.adhesion'\nlogarithmic = { from = 1e-3, to = 0.1, count = 3 }"),
+        ["0.001", "0.01", "0.1"]
+    );
+    assert_eq!(
+        one("key = 'basis.functions'\nlinear = { from = 10, to = 40, count = 4 }"),
+        ["10", "20", "30", "40"]
+    );
+    assert_eq!(one("key = 'basis.functions'\nvalues = ['auto', 12]"), ["auto", "12"]);
+    assert_eq!(
+        one("key = 'path.control'\nvalues = ['force', 'displacement', 'stiffness=0.1', '2']"),
+        ["force", "displacement", "stiffness=0.1", "stiffness=2"]
+    );
+    assert_eq!(
+        one("key = 'path.control.stiffness'\nlogarithmic = { from = 1, to = 4, count = 3 }"),
+        ["1.0", "2.0", "4.0"]
+    );
+    // The ends are those that were typed, downwards too.
+    assert_eq!(one("key = 'gap.amplitude'\nlinear = { from = 0.3, to = 0.1, count = 2 }"), ["0.3", "0.1"]);
+    let two = format!(
+        "{}\n[[axis]]\nkey = 'gap.wavelength'\nvalues = [3, 4, 5]",
+        axis("key = 'gap.amplitude'\nvalues = [1, 2]")
+    );
+    assert_eq!(rows(&two), ["1.0 3.0", "1.0 4.0", "1.0 5.0", "2.0 3.0", "2.0 4.0", "2.0 5.0"]);
+}
+
+#[test]
+fn values_that_belong_together_are_laid_down_together() {
+    // One after the other, each of the two would be refused.
+    let text = r#"
+        preset = "random-waves"
+        combine = "pairs"
+        [[axis]]
+        key = "gap.longest_wavelength"
+        values = [0.02, 5]
+        [[axis]]
+        key = "gap.shortest_wavelength"
+        values = [0.01, 4]
+    "#;
+    let spec = read(text).unwrap();
+    for (row, longest) in [(0, 0.02), (1, 5.0)] {
+        assert_eq!(spec.problem(row).unwrap().get("gap.longest_wavelength"), Some(longest.into()));
+    }
+    // Groups come last, whatever the order; a shape brings its own keys.
+    let text = r#"
+        preset = "fig-3-jkr"
+        [[axis]]
+        key = "groups.amplitude_over_wavelength"
+        values = [0.02]
+        [[axis]]
+        key = "gap.wavelength"
+        values = [0.5]
+        [[axis]]
+        key = "gap.shape"
+        values = ["wavy-sphere", "cone"]
+    "#;
+    let spec = read(text).unwrap();
+    assert_eq!(spec.problem(0).unwrap().get("gap.amplitude"), Some(0.01.into()));
+    let fault = spec.problem(1).unwrap_err();
+    assert_eq!(
+        fault.to_string(),
+        "refused value: gap.wavelength belongs to wavy-sphere, and the gap is a cone"
+    );
+}
+
+#[test]
+#[allow(clippy::too_many_lines, reason = "a table of texts and messages")]
+fn each_mistake_names_its_line_and_what_is_allowed() {
+    let mut wrong = Vec::new();
+    for (text, message) in [
+        ("x", "s.toml:1: "),
+        ("", "s.toml:1: preset is missing: it must be the name of a preset"),
+        (
+            "preset = 3",
+            "s.toml:1: preset must be the name of a preset, or a preset file (with a '/' or ending in .toml), not 3",
+        ),
+        (
+            "\npreset = 'wavy-spher'",
+            "s.toml:2: preset: no preset is called \"wavy-spher\"; did you mean wavy-sphere?",
+        ),
+        ("preset = './none.toml'", "s.toml:1: preset: ./none.toml: cannot read: No such file"),
+        ("preset = 'cone'\naxes = 1", "s.toml:2: unknown key axes; did you mean axis?"),
+        ("preset = 'cone'", "s.toml:1: axis is missing: it must be one or more tables [[axis]]"),
+        ("preset = 'cone'\naxis = []", "s.toml:2: axis must be one or more tables [[axis]]"),
+        (
+            "preset = 'wavy-sphere'\nset = ['gap.amplitude=-1']\n[[axis]]\nkey = 'gap.amplitude'\nvalues = [1]",
+            "s.toml:2: --set gap.amplitude=-1: gap.amplitude = -1.0 is out of range: it must be 0 or a number from 1e-30 to 1e30",
+        ),
+        (
+            &axis("values = [1]"),
+            "s.toml:2: axis.key is missing: it must be a key of the preset, such as \"gap.amplitude\"",
+        ),
+        (
+            &axis("key = 'gap.amplitud'\nvalues = [1]"),
+            "s.toml:3: axis.key: unknown key gap.amplitud; did you mean gap.amplitude?",
+        ),
+        (
+            &axis("key = 'groups.adhesio'\nvalues = [1]"),
+            "s.toml:3: axis.key: unknown key groups.adhesio; did you mean groups.adhesion?",
+        ),
+        (
+            &axis("key = 'title'\nvalues = ['a']"),
+            "s.toml:3: title is no quantity of the problem: it cannot be swept",
+        ),
+        (
+            &axis("key = 'gap.slope'\nvalues = [1]"),
+            "s.toml:3: gap.slope belongs to cone, and the gap is a wavy-sphere",
+        ),
+        (
+            &axis("key = 'gap.amplitude'"),
+            "s.toml:3: the axis gap.amplitude must have exactly one of values, linear, logarithmic, distribution",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalues = [1]\nlinear = {}"),
+            "s.toml:5: the axis gap.amplitude must have exactly one of",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalue = [1]"),
+            "s.toml:4: unknown key axis.value; did you mean values?",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalues = []"),
+            "s.toml:4: axis.values of the axis gap.amplitude is empty",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalues = [\n1,\n-1]"),
+            "s.toml:6: gap.amplitude = -1.0 is out of range: it must be 0 or a number from 1e-30 to 1e30",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalues = ['3 um']"),
+            "s.toml:4: gap.amplitude: the problem is in reduced units: expected a pure number, got 3 um, a length",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nvalues = [true]"),
+            "s.toml:4: axis.values: gap.amplitude is the boolean true; write a number or a text",
+        ),
+        (
+            &axis("key = 'path.control'\nvalues = ['forse']"),
+            "s.toml:4: path.control = \"forse\" is not known",
+        ),
+        (
+            &axis("key = 'basis.functions'\nvalues = [3]"),
+            "s.toml:4: basis.functions = 3 is out of range: it must be",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2 }"),
+            "s.toml:4: axis.linear.count is missing: it must be the number of values",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2, count = 1 }"),
+            "s.toml:4: axis.linear.count = 1 is out of range: it must be a whole number from 2 to 10000000",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2, count = 2.5 }"),
+            "s.toml:4: axis.linear.count must be a whole number from 2 to 10000000, not 2.5",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\nlinear = { from = 1, til = 2, count = 9 }"),
+            "s.toml:4: unknown key axis.linear.til",
+        ),
+        (
+            &axis("key = 'path.start_approach'\nlogarithmic = { from = -1, to = 2, count = 9 }"),
+            "s.toml:4: axis.logarithmic.from = -1.0 is out of range: path.start_approach must be above 0 to have a logarithm",
+        ),
+        (
+            &axis("key = 'basis.functions'\nlinear = { from = 10, to = 15, count = 4 }"),
+            "s.toml:4: basis.functions takes whole numbers: 4 values in equal steps from 10 to 15 are none",
+        ),
+        (
+            &axis("key = 'basis.functions'\nlogarithmic = { from = 10, to = 15, count = 4 }"),
+            "s.toml:4: axis.logarithmic.from: basis.functions = 10 is no real number",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { uniform = [1, 2] }"),
+            "s.toml:2: the axis gap.amplitude has a distribution: it needs [random] with draws and seed",
+        ),
+        (
+            &format!("random = {{ draws = 3, seed = 1 }}\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
+            "s.toml:3: with [random] the axis gap.amplitude must have a distribution",
+        ),
+        (
+            &format!(
+                "combine = 'grid'\nrandom = {{ draws = 3, seed = 1 }}\n{}",
+                axis("key = 'gap.amplitude'\nvalues = [1]")
+            ),
+            "s.toml:1: combine is of a grid or of pairs: [random] has neither",
+        ),
+        (
+            &format!(
+                "random = {{ draws = 0, seed = 1 }}\n{}",
+                axis("key = 'gap.amplitude'\ndistribution = { uniform = [1, 2] }")
+            ),
+            "s.toml:1: random.draws = 0 is out of range: it must be a whole number from 1 to 10000000",
+        ),
+        (
+            &format!(
+                "random = {{ draws = 3 }}\n{}",
+                axis("key = 'gap.amplitude'\ndistribution = { uniform = [1, 2] }")
+            ),
+            "s.toml:1: random.seed is missing",
+        ),
+        (
+            &format!("combine = 'pair'\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
+            "s.toml:1: combine = \"pair\" is not known: it must be \"grid\" or \"pairs\"; did you mean pairs?",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { uniform = [2, 1] }"),
+            "s.toml:4: axis.distribution.uniform: 2.0 is not below 1.0",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { uniform = [2] }"),
+            "s.toml:4: axis.distribution.uniform must be two values, [from, to], not an array of 1",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { log-uniform = [0, 1] }"),
+            "s.toml:4: axis.distribution.log-uniform = 0.0 is out of range",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { gauss = 1 }"),
+            "s.toml:4: unknown key axis.distribution.gauss",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { normal = { mean = 1, deviation = 0 } }"),
+            "s.toml:4: axis.distribution.normal.deviation = 0.0 is out of range: it must be above 0",
+        ),
+        (
+            &axis("key = 'basis.functions'\ndistribution = { uniform = [10, 20] }"),
+            "s.toml:4: axis.distribution.uniform: basis.functions = 10 is no real number",
+        ),
+        (
+            &axis("key = 'gap.amplitude'\ndistribution = { integers = [3, 2] }"),
+            "s.toml:4: axis.distribution.integers: 3 is above 2",
+        ),
+        (
+            &format!(
+                "{}\n[[axis]]\nkey = 'gap.amplitude'\nvalues = [2]",
+                axis("key = 'gap.amplitude'\nvalues = [1]")
+            ),
+            "s.toml:5: the axis gap.amplitude is at odds with the axis gap.amplitude",
+        ),
+        (
+            &format!(
+                "{}\n[[axis]]\nkey = 'path.start_force'\nvalues = [2]",
+                axis("key = 'path.start_approach'\nvalues = [1]")
+            ),
+            "s.toml:5: the axis path.start_force is at odds with the axis path.start_approach",
+        ),
+        (
+            &format!(
+                "combine = 'pairs'\n{}\n[[axis]]\nkey = 'gap.wavelength'\nvalues = [2]",
+                axis("key = 'gap.amplitude'\nvalues = [1, 2]")
+            ),
+            "s.toml:6: pairs need axes of one length: gap.wavelength has 1 values, gap.amplitude has 2",
+        ),
+        (
+            &format!(
+                "{}\n[[axis]]\nkey = 'gap.wavelength'\nlinear = {{ from = 1, to = 2, count = 5001 }}",
+                axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2, count = 2000 }")
+            ),
+            "s.toml:5: 2000 x 5001 rows are out of range: at most 10000000",
+        ),
+        (
+            &format!("quantities = []\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
+            "s.toml:1: quantities is empty",
+        ),
+        (
+            &format!("quantities = ['snap']\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
+            "s.toml:1: quantities: no quantity is called \"snap\"; did you mean snaps?",
+        ),
+        (
+            &format!("quantities = ['snaps',\n'snaps']\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
+            "s.toml:2: quantities: snaps stands there twice",
+        ),
+    ] {
+        let found = match read(text) {
+            Ok(_) => "nothing wrong".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        if !found.starts_with(message) || found.lines().count() != 1 {
+            wrong.push(format!("{text}\n  {found}\n  {message}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+    assert_eq!(MOST_ROWS, 10_000_000);
+}
+
+#[test]
+fn the_identity_is_that_of_what_is_computed() {
+    let base = axis("key = 'gap.amplitude'\nvalues = [0.001, 0.002]");
+    let identity = |text: &str| read(text).unwrap().identity();
+    assert_eq!(identity(&base).len(), 64);
+    let same = base.replace("0.001", "1e-3").replace("[[axis]]", "combine = 'grid' # as it is\n[[axis]]");
+    assert_eq!(identity(&same), identity(&base));
+    for other in [
+        base.replace("0.001", "0.0011"),
+        base.replace("wavy-sphere", "fig-9"),
+        format!("combine = 'pairs'\n{base}"),
+        format!("quantities = ['snaps']\n{base}"),
+        format!("set = ['gap.wavelength=0.06']\n{base}"),
+    ] {
+        assert_ne!(identity(&other), identity(&base), "{other}");
+    }
+    // A measured profile is known by its data, not by its name.
+    let profile = "preset = 'profile'\n[[axis]]\nkey = 'material.work_of_adhesion'\nvalues = [0.01]";
+    assert!(read(profile).unwrap().canonical().contains("\ndata = [\""));
+}
