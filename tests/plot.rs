@@ -146,3 +146,23 @@ fn the_figures_of_the_paper_agree_with_theory() {
     assert_eq!(apart.len(), 8);
     assert!(apart.iter().all(|share| *share < 3e-3), "{apart:?}");
 }
+
+#[test]
+fn a_sweep_over_two_axes_is_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = "preset = \"wavy-sphere\"\nquantities = [\"enhancement\", \"snaps\"]\n\
+        [[axis]]\nkey = \"groups.amplitude_over_wavelength\"\nlinear = { from = 0.01, to = 0.05, count = 4 }\n\
+        [[axis]]\nkey = \"groups.adhesion\"\nlogarithmic = { from = 0.01, to = 0.2, count = 4 }\n";
+    std::fs::write(folder.path().join("map.toml"), spec).unwrap();
+    let output = pulloff(folder.path(), &["sweep", "map.toml", "-o", "map.csv"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && said.contains("pulloff plot --sweep"), "{said}");
+    let svg = svg(folder.path(), &["--sweep", "map.csv"]);
+    let texts = structure(&svg).join("\n");
+    for word in ["groups.amplitude_over_wavelength", "groups.adhesion", "enhancement"] {
+        assert!(texts.contains(word), "{word}: {texts}");
+    }
+    let refused = pulloff(folder.path(), &["plot", "--sweep", "map.csv", "--quantity", "snps"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("did you mean snaps?"));
+}

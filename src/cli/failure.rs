@@ -32,6 +32,9 @@ pub enum Failure {
     /// The data of a figure could not be written as CSV.
     #[error(transparent)]
     Csv(#[from] csv::Error),
+    /// The results of a sweep make no map.
+    #[error(transparent)]
+    Map(#[from] crate::plot::map::MapError),
     /// A figure of the paper could not be computed.
     #[error(transparent)]
     Paper(#[from] crate::plot::paper::PaperError),
@@ -99,7 +102,8 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Closed => 0,
-            Self::Preset(_)
+            Self::Map(_)
+            | Self::Preset(_)
             | Self::Session(
                 ArchiveError::NotFound { .. }
                 | ArchiveError::Empty

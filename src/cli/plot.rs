@@ -4,9 +4,11 @@ use super::{Failure, Problem, output, warn};
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View, Window};
 use crate::figure::Subject;
+use crate::plot::map::{Map, MapError};
 use crate::plot::{Chart, Width, svg, table};
 use crate::preset::{Overwrite, Preset, write_atomically};
 use crate::quasistatic::jump::Run;
+use crate::sweep::Results;
 use crate::units::Quantity;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -18,6 +20,12 @@ use std::sync::Arc;
 pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
+    /// Draw a map of the results of a sweep over its two axes instead of a view of a preset
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius", "data"])]
+    sweep: Option<PathBuf>,
+    /// The column of the results that the map shows
+    #[arg(long, value_name = "COLUMN", requires = "sweep", default_value = "enhancement")]
+    quantity: String,
     /// What is drawn
     #[arg(long, value_enum, default_value = "force-approach")]
     view: Shown,
@@ -76,6 +84,12 @@ fn width(text: &str) -> Result<Width, String> {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = Format::of(arguments.output.as_deref())?;
+    if let Some(path) = &arguments.sweep {
+        let results = Results::open(path).map_err(MapError::from)?;
+        let map = Map::of(&results, &results.axes, &arguments.quantity)?;
+        write(&map.svg(arguments.width), format, arguments.output.as_deref())?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let preset = arguments.problem.load()?.preset;
     let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
@@ -104,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         axes: if arguments.raw { Axes::Raw } else { Axes::Reduced },
     };
     let chart = Chart::of(&subject.figure(view), &Window::WHOLE);
-    write(&chart, arguments.width, format, arguments.output.as_deref())?;
+    write(&svg::svg(&chart, arguments.width), format, arguments.output.as_deref())?;
     if let (Some(path), true) = (&arguments.output, arguments.data) {
         let text = table::csv(&chart)?;
         write_atomically(&path.with_extension("csv"), text.as_bytes(), Overwrite::Always)?;
@@ -170,14 +184,13 @@ impl Format {
     }
 }
 
-fn write(chart: &Chart, width: Width, format: Format, path: Option<&Path>) -> Result<(), Failure> {
-    let text = svg::svg(chart, width);
+fn write(text: &str, format: Format, path: Option<&Path>) -> Result<(), Failure> {
     match (format, path) {
         #[cfg(feature = "png")]
         (Format::Png, Some(path)) => {
-            write_atomically(path, &crate::plot::png::png(&text)?, Overwrite::Always)?;
+            write_atomically(path, &crate::plot::png::png(text)?, Overwrite::Always)?;
             Ok(())
         }
-        (_, path) => output::write(&text, path),
+        (_, path) => output::write(text, path),
     }
 }

@@ -191,10 +191,13 @@ impl Sweep {
     }
 }
 
-/// A line that plots the first quantity over the first axis.
+/// How to draw it: a map of two axes by this program, the first quantity over the first axis by another.
 fn how_to_plot(spec: &Spec, results: &Path) -> String {
     let (axis, quantity) = (&spec.axes[0].key, spec.columns[0].name());
     let file = show_name(&results.to_string_lossy());
+    if spec.axes.len() == 2 {
+        return format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o map.svg");
+    }
     format!(
         "to plot it: gnuplot -p -e \"set datafile separator ','; set xlabel '{axis}'; set ylabel '{quantity}'; \
          plot '{file}' using '{axis}':'{quantity}' notitle\""

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`chart`] | what is drawn: axes, lines, marks, areas; made from a figure of the explorer or by hand |
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
+//! | [`map`] | a quantity of a sweep over its two axes |
 //! | [`paper`] | the figures of the paper, computed again |
 //! | [`svg`] | the one place that knows the drawing library |
 //! | [`png`] | the SVG as pixels (feature `png`) |
@@ -13,6 +14,7 @@
 
 pub mod chart;
 pub mod ink;
+pub mod map;
 pub mod paper;
 #[cfg(feature = "png")]
 pub mod png;

@@ -1,9 +1,9 @@
 //! A chart as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
 
 use super::Width;
-use super::chart::{Chart, Run};
+use super::chart::{Axis, Chart, Run};
 use super::ink::{self, Stroke};
-use crate::figure::{Line, Mark, Role};
+use crate::figure::{Bounds, Line, Mark, Role};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -40,16 +40,36 @@ pub fn svg(chart: &Chart, width: Width) -> String {
     let field = ComputedLayout::from_layout(&layout);
     let mut scene = render_multiple(plots(chart), layout);
     hatch(chart, &field, &mut scene);
+    finish(&scene, if legend.is_empty() { 0.0 } else { CROPPED })
+}
+
+/// The frame of a map over two ranges, which its colours stand beside.
+pub(super) fn frame(
+    width: Width,
+    titles: [&str; 2],
+    ranges: [[f64; 2]; 2],
+    logarithmic: [bool; 2],
+) -> Layout {
+    let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
+    let axis = |k: usize| Axis { title: titles[k].to_owned(), run: run(logarithmic[k]) };
+    let bounds = Bounds { x: ranges[0], y: ranges[1] };
+    let chart = Chart { bounds, ..Chart::new(axis(0), axis(1), Vec::new()) };
+    let wide = width.get() * UNITS_PER_MM;
+    layout(&chart, &[], wide, (ASPECT * wide).round())
+}
+
+/// A scene as a document in millimetres, `cropped` units off its lower end.
+pub(super) fn finish(scene: &Scene, cropped: f64) -> String {
     let own_name = scene.elements.iter().find_map(|element| match element {
         Primitive::ClipStart { id, .. } => Some(id.clone()),
         _ => None,
     });
-    let mut text = SvgBackend::new().with_pretty(true).render_scene(&scene);
+    let mut text = SvgBackend::new().with_pretty(true).render_scene(scene);
     if let Some(name) = own_name {
         text = text.replace(&format!("\"{name}\""), &format!("\"{FIELD}\""));
         text = text.replace(&format!("#{name})"), &format!("#{FIELD})"));
     }
-    in_millimetres(&text, wide, high - if legend.is_empty() { 0.0 } else { CROPPED })
+    in_millimetres(&text, scene.width, scene.height - cropped)
 }
 
 /// The document with its size on paper: the library knows only its own units.
@@ -228,7 +248,6 @@ fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
 mod tests {
     use super::*;
     use crate::figure::{Area, Role, Sign};
-    use crate::plot::chart::Axis;
 
     fn chart(lines: Vec<Line>) -> Chart {
         Chart::new(Axis::default(), Axis::default(), lines)

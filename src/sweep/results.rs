@@ -40,6 +40,8 @@ pub struct Results {
     path: PathBuf,
     /// What is known of the columns, in their order: the row, the axes, the quantities, the error.
     pub columns: Vec<ColumnInfo>,
+    /// The columns of the axes, in the order of the spec.
+    pub axes: Vec<String>,
     /// The rows of the whole sweep: there may be fewer.
     pub rows: u64,
 }
@@ -50,8 +52,9 @@ impl Results {
     /// # Errors
     /// The file beside them is missing or none of ours.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
-        let (Side { columns, rows, .. }, _) = Side::read(path)?;
-        Ok(Self { path: path.to_owned(), columns, rows })
+        let (side, _) = Side::read(path)?;
+        let axes = side.axes();
+        Ok(Self { path: path.to_owned(), columns: side.columns, axes, rows: side.rows })
     }
 
     fn place(&self, name: &str) -> Result<usize, ResultsError> {

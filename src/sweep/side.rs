@@ -56,6 +56,18 @@ pub struct Side {
     /// The columns, in their order.
     #[serde(rename = "column")]
     pub columns: Vec<ColumnInfo>,
+    sweep: Canonical,
+}
+
+/// What is read of the canonical form.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+struct Canonical {
+    axis: Vec<AxisKey>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+struct AxisKey {
+    key: String,
 }
 
 /// The file beside these results.
@@ -132,6 +144,12 @@ impl Side {
         let side: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
         side.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
         Ok((side, text))
+    }
+
+    /// The keys of the axes, which are the names of their columns.
+    #[must_use]
+    pub fn axes(&self) -> Vec<String> {
+        self.sweep.axis.iter().map(|axis| axis.key.clone()).collect()
     }
 
     /// The part.
