@@ -17,6 +17,7 @@ use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
+use crate::plot::{Chart, Width, svg};
 use crate::preset::schema::Kind;
 use crate::preset::text::{sanitize, show_path};
 use crate::preset::{Loaded, Source, Value};
@@ -297,8 +298,24 @@ impl App {
         let file = format!("{}-screen.txt", sanitize(&base, 60));
         let prompt = Prompt::new("Export the screen to", "a file ending in .txt", file, Purpose::Text(text));
         let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
-        self.choose("Export", items.into_iter().chain([screen]).collect(), 0);
+        let figure = self.figure().map(|svg| {
+            let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
+            let note = "a file ending in .svg; `pulloff plot` draws the same as PNG";
+            let prompt = Prompt::new("Export the figure to", note, file, Purpose::Text(svg));
+            Item::new(
+                "figure  the first view for print: zoom, pins and theory with it",
+                Action::Prompt(Box::new(prompt)),
+            )
+        });
+        self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
         Vec::new()
+    }
+
+    /// The first view as a figure for print; none before the first curve.
+    fn figure(&self) -> Option<String> {
+        let view = self.model.view;
+        let figure = Subject::of(&self.model)?.figure(view);
+        Some(svg::svg(&Chart::of(&figure, &self.model.window(view)), Width::ONE_COLUMN))
     }
 
     fn ask_copy(&mut self) -> Vec<Effect> {

@@ -54,10 +54,12 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
 }
 
 pub(super) fn export_text(model: &mut Model, text: String, path: String, replace: bool) -> Vec<Effect> {
-    if ends_in(&path, &["txt"]) {
+    // A figure is a text too; under another ending no program would know it.
+    let ending = if text.starts_with("<svg") { "svg" } else { "txt" };
+    if ends_in(&path, &[ending]) {
         return vec![file(Job::Write { text, path, replace })];
     }
-    tell(model, Level::Error, "the file must end in .txt");
+    tell(model, Level::Error, format!("the file must end in .{ending}"));
     Vec::new()
 }
 

@@ -221,6 +221,26 @@ fn the_screen_is_exported_as_text() {
 }
 
 #[test]
+fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
+    let mut screen = screen("wavy-sphere");
+    let folder = tempfile::tempdir().unwrap();
+    let mut figure = |screen: &mut Screen, name: &str| {
+        screen.keys("ejjjjj\r");
+        assert!(screen.text(120, 40).contains("wavy-sphere-force-approach.svg"));
+        for _ in 0..60 {
+            screen.press(KeyCode::Backspace);
+        }
+        let path = folder.path().join(name);
+        screen.keys(path.to_str().unwrap()).keys("\r");
+        std::fs::read_to_string(path).unwrap()
+    };
+    let whole = figure(&mut screen, "a.svg");
+    assert!(whole.starts_with("<svg ") && whole.contains("P/Pc") && whole.contains("JKR 1971"));
+    screen.keys("++");
+    assert_ne!(figure(&mut screen, "b.svg"), whole);
+}
+
+#[test]
 fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     let mut screen = screen("wavy-sphere");
     let store = Store::at(screen.folder.path(), &[]);
