@@ -3,6 +3,7 @@
 mod support;
 
 use std::{
+    collections::BTreeMap,
     fs::{self, File},
     path::{Path, PathBuf},
     time::{Duration, Instant},
@@ -11,6 +12,7 @@ use std::{
 use pulloff::preset::lock::FolderLock;
 use pulloff::preset::{Overwrite, Preset, Source, Store, shipped};
 use rustix::process::Signal;
+use serde_json::Value;
 use support::pty::{LIMIT, Pty};
 use support::sshd::{Sshd, Wire};
 
@@ -80,6 +82,45 @@ impl Far {
         again.wait_until_up();
         again.pty.keys("q");
         assert_eq!(again.pty.exit_code(), 0);
+    }
+
+    /// The documents of all sessions, by their files.
+    fn sessions(&self) -> BTreeMap<PathBuf, Value> {
+        let files = fs::read_dir(self.at("state/pulloff/sessions")).into_iter().flatten();
+        files
+            .map(|file| file.expect("a file").path())
+            .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+            .map(|path| {
+                let text = fs::read_to_string(&path).expect("a session");
+                let document = serde_json::from_str(&text).expect("a whole session");
+                (path, document)
+            })
+            .collect()
+    }
+
+    /// The session that was cut off goes on: left again, it is the same bit for bit.
+    fn assert_resumes(&self) {
+        let kept = |mut document: Value| {
+            let ended = document["ended"].take();
+            document["saved_at"] = Value::Null;
+            (ended, document)
+        };
+        let mut before = self.sessions();
+        before.retain(|_, document| document["ended"] == "dropped");
+        assert_eq!(before.len(), 1, "one session was cut off");
+        let mut again = self.start("--resume");
+        again.pty.wait_for(|screen| screen.contains("resumed "), "the session");
+        // The question about unsaved changes, where there are any, is answered.
+        again.pty.keys("qy");
+        assert_eq!(again.pty.exit_code(), 0);
+        let mut after = self.sessions();
+        for (path, document) in before {
+            let (_, before) = kept(document);
+            let (ended, after) = kept(after.remove(&path).expect("the session"));
+            assert_eq!(ended, "quit");
+            assert!(before["nodes"].as_array().is_some_and(|nodes| !nodes.is_empty()));
+            assert_eq!(before, after);
+        }
     }
 }
 
@@ -165,10 +206,13 @@ fn it_starts_takes_keys_within_the_budget_and_gives_the_terminal_back() {
 fn a_drop_while_idle() {
     let Some(far) = Far::new() else { return };
     for drop in DROPS {
-        let session = far.start("");
+        let mut session = far.start("");
         session.wait_until_up();
+        session.pty.keys("5 >");
+        session.pty.wait_for(|screen| screen.contains("unsaved"), "a change");
         session.drop_by(drop);
         far.assert_clean();
+        far.assert_resumes();
     }
 }
 
@@ -192,9 +236,10 @@ fn a_drop_while_walking() {
         // Steps so short that there are thousands of them.
         session.pty.keys(&"[".repeat(12));
         session.pty.keys("9999 ");
-        session.pty.wait_for(|screen| screen.contains("walking; Esc stops"), "the walk");
+        session.pty.wait_for(|screen| screen.contains("walking"), "the walk");
         session.drop_by(drop);
         far.assert_clean();
+        far.assert_resumes();
     }
 }
 
@@ -204,10 +249,14 @@ fn a_drop_while_a_dialog_is_open() {
     for drop in DROPS {
         let mut session = far.start("");
         session.wait_until_up();
+        // A walk with a jump, to be lost or kept.
+        session.pty.keys("nx");
+        session.pty.wait_for(|screen| screen.contains("Landed"), "the landing");
         session.pty.keys("\r0.003");
         session.pty.wait_for(|screen| screen.contains("> 0.003"), "the prompt");
         session.drop_by(drop);
         far.assert_clean();
+        far.assert_resumes();
     }
 }
 
@@ -233,6 +282,7 @@ fn a_drop_while_saving() {
         std::mem::drop(ours);
         assert_eq!(fs::read(path).expect("the preset"), old);
         far.assert_clean();
+        far.assert_resumes();
     }
 }
 
