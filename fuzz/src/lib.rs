@@ -2,7 +2,10 @@
 //!
 //! A new target is a function here and a file of five lines in `src/bin`.
 
+use pulloff::config;
 use pulloff::contact::formula::Formula;
+use pulloff::explorer::script;
+use pulloff::explorer::session::{Document, Ended};
 use pulloff::preset::profile::{self, ROW_RANGE};
 use pulloff::preset::text::is_unsafe;
 use pulloff::preset::{read, write};
@@ -67,5 +70,43 @@ pub fn value(bytes: &[u8]) {
     match parse_quantity(text) {
         Err(error) => assert_shown_safely(&error),
         Ok(value) => assert!(value.number.is_finite()),
+    }
+}
+
+/// A script's line that is read prints as a line that reads back.
+pub fn script(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Err(error) = script::read("fuzz", text) {
+        assert_shown_safely(&error);
+    }
+    for line in text.lines() {
+        match script::parse(line) {
+            Err(fault) => assert_shown_safely(&fault.what),
+            Ok(command) => {
+                if let Some(printed) = command.as_ref().and_then(script::line) {
+                    assert_eq!(script::parse(&printed).expect("a line of ours"), command, "{printed}");
+                }
+            }
+        }
+    }
+}
+
+/// The settings of a person: keys and looks.
+pub fn settings(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Err(error) = config::read("fuzz", text) {
+        assert_shown_safely(&error);
+    }
+}
+
+/// A session that is read is written and read again with the same walk.
+pub fn session(bytes: &[u8]) {
+    match Document::read(bytes).and_then(Document::snapshot) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(snapshot) => {
+            let written = Document::new(&snapshot, Ended::Quit, 0).json().expect("every session has a document");
+            let again = Document::read(&written).and_then(Document::snapshot).expect("a document of ours");
+            assert_eq!(snapshot.history.len(), again.history.len());
+        }
     }
 }
