@@ -11,6 +11,7 @@ use crate::continuation::{Stepper, Work, events, locate, step_size};
 use crate::quasistatic::curve::settings;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{Nodes, Run};
+use crate::quasistatic::landscape;
 use crate::quasistatic::unload::INWARD_REACH;
 use crate::quasistatic::{Admissibility, Equilibrium, Event, Losses, Point, State, Stiffness};
 use crate::ritz::{self, NewtonSettings};
@@ -283,6 +284,10 @@ fn landing(request: &Request, from: &Point, run: Run) -> Result<Option<Point>, &
         let tolerance = s * 1e-9;
         let node = nodes.points().iter().rposition(|p| equilibrium.contact_radius(p) >= s - tolerance);
         if let Some(landing) = nodes.run(&curve, node.unwrap_or(0), value, run) {
+            let to = equilibrium.contact_radius(&landing.point);
+            if !landscape::falls(&curve.equilibrium, control, value, s, to) {
+                return Err("the edge cannot run to the next stable state: on the way the potential rises");
+            }
             return Ok(Some(landing.point));
         }
     }

@@ -131,6 +131,34 @@ impl Landscape {
     }
 }
 
+/// A rise of the potential below this share of its range is rounding.
+const RISE: f64 = 1e-6;
+
+/// Whether the potential falls all the way when the edge runs between two radii, the control held at `value`.
+///
+/// Inward from an unstable state it always does: the control is below its value in equilibrium there, x < 0, and Π' is
+/// positive. Outward x > 0, and it falls only while `x < −2 P_s/P_sδ`: with weak adhesion, and always without, the
+/// edge is soon pressed so much that the potential rises again, and the next equilibrium may lie higher than the first.
+/// `false` also where the basis has no equilibrium on the way.
+pub fn falls(equilibrium: &Equilibrium, control: Control, value: f64, from: f64, to: f64) -> bool {
+    let (lo, hi) = (from.min(to), from.max(to));
+    let shortest = SWEEP_STEPS_PER_WAVE * (hi - lo) / SAMPLES;
+    let wave = equilibrium.problem.gap.feature_length();
+    let mut grid = radii(lo, hi, Some(wave.map_or(shortest, |wave| wave.min(shortest))), SWEEP_STEPS_PER_WAVE);
+    grid.dedup();
+    let Some(mut samples) = (Held { equilibrium, control, value }).integrate(&grid) else { return false };
+    if from > to {
+        samples.reverse();
+    }
+    let (mut lowest, mut highest, mut rise) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+    for sample in &samples {
+        lowest = lowest.min(sample.potential);
+        highest = highest.max(sample.potential);
+        rise = rise.max(sample.potential - lowest);
+    }
+    rise <= RISE * (highest - lowest)
+}
+
 /// A control held at a value.
 struct Held<'a> {
     equilibrium: &'a Equilibrium,

@@ -4,6 +4,7 @@ use super::curve::{Curve, CurveStop};
 use super::energy;
 use super::equilibrium::{Equilibrium, Point, State};
 use super::jump::{Landing, Nodes, Run};
+use super::landscape;
 use crate::contact::{Control, Units};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -110,6 +111,15 @@ impl PathStop {
     }
 }
 
+/// An unstable state asked for as the start of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// The state.
+    pub state: State,
+    /// Whether the potential falls all the way to the start of the path: if not, the edge does not run there by itself.
+    pub falls: bool,
+}
+
 /// A quasi-static unloading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unloading {
@@ -117,8 +127,8 @@ pub struct Unloading {
     pub control: Control,
     /// The first state on the physical path.
     pub start: State,
-    /// The state asked for, when it was unstable and the edge first ran outward from it.
-    pub asked: Option<State>,
+    /// The state asked for, when it was unstable and the path starts at the next stable state outward.
+    pub asked: Option<Asked>,
     /// The instabilities in order.
     pub events: Vec<Event>,
     /// The stable pieces it follows, each from its largest contact radius to its smallest.
@@ -292,7 +302,12 @@ pub fn unload_while(
     };
     let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
-    let asked = asked_state.filter(|_| unstable_start);
+    let asked = asked_state.filter(|_| unstable_start).map(|state| {
+        let value = control.value(state.approach, state.force);
+        let falls =
+            landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
+        Asked { state, falls }
+    });
     Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
 }
 

@@ -132,12 +132,20 @@ impl UnloadReport {
         let start = StateReport::new(&case.reduced, &unloading.start);
         let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
         let note = unloading.asked.map(|asked| {
-            let asked = asked.in_units(units);
+            let radius = asked.state.in_units(units).contact_radius;
+            let reached = length(start.contact_radius);
+            let start = if asked.falls {
+                format!("the edge first ran outward to {reached}")
+            } else {
+                format!(
+                    "the path starts at the next stable state outward, {reached}, to which the edge would not run by \
+                     itself (the potential rises on the way)"
+                )
+            };
             format!(
-                "the state asked for (contact radius {}) is unstable under {} control: the edge first ran outward to {}",
-                length(asked.contact_radius),
+                "the state asked for (contact radius {}) is unstable under {} control: {start}",
+                length(radius),
                 control_name(unloading.control),
-                length(start.contact_radius)
             )
         });
         let start = StartReport {
