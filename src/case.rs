@@ -251,8 +251,14 @@ impl Case {
 
     /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
     pub fn notes(&self, largest: f64) -> Vec<String> {
-        let text = "the gap falls within the contact: without adhesion it would not be one connected disc, and each state \
-                    shown is checked";
+        let text = if self.reduced.work_of_adhesion > 0.0 {
+            "the gap falls within the contact: without adhesion it would not be one connected disc. Whether the bodies stay \
+             apart outside the disc is checked; tension inside it is not, for in the JKR limit any adhesion, however weak, \
+             bears it"
+        } else {
+            "the gap falls within the contact, and there is no adhesion: of a connected disc it is checked that the bodies \
+             stay apart outside it and that nothing pulls inside it"
+        };
         falls(&self.reduced.gap, largest).then(|| text.to_owned()).into_iter().collect()
     }
 

@@ -10,6 +10,10 @@
 //! gap that opens at the edge and is positive far away is negative somewhere only if a minimum of it is, so the minima are
 //! looked for, near the crests of h. Without adhesion the pressure inside must not be negative either.
 //!
+//! With adhesion tension inside is allowed, whatever its size: the JKR limit has adhesion without range, which bears any
+//! tension until an edge runs, and no edge is there. So the limit γ → 0 is not γ = 0: states that an adhesion however
+//! weak allows are refused without any.
+//!
 //! Far out a crest cannot be reached: u is no lower than (2/π) asin(s/r) times the least δ − g(a) inside (see
 //! [`disc`](crate::theory::disc)), which is −√(2πγs) but for the waves of g. The search ends where h stays above δ by
 //! that and a margin for the waves.

@@ -14,7 +14,7 @@ const ROUNDS: usize = 20;
 /// An end is located when its bracket is this small relative to it.
 const LOCATED: f64 = 2e-7;
 
-/// Neighbouring states of a curve that are not admissible.
+/// Neighbouring states of a curve that are not admissible, for one reason: a crest, or the pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
     /// The largest contact radius.
@@ -85,7 +85,13 @@ fn along(
             return None;
         }
         let here = Admissibility::of(problem, basis, s, delta);
+        let fault = |crest: Option<Crest>| crest.map(|crest| crest.wave);
         match (here.holds, found.last_mut().filter(|_| open)) {
+            // At another crest, or for the pressure: an interval of its own, which begins where this one ends.
+            (false, Some(overlap)) if fault(here.overlapping()) != fault(overlap.crest) => {
+                overlap.to = s;
+                found.push(Overlap { from: s, to: s, crest: here.overlapping() });
+            }
             (true, Some(overlap)) => overlap.to = end(equilibrium, s, overlap.to),
             (false, Some(overlap)) => {
                 overlap.to = s;

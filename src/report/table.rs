@@ -85,9 +85,12 @@ pub fn unload(report: &UnloadReport) -> String {
         text.push_str(&aligned(&rows, 2));
     }
     if report.events.iter().any(|event| event.admissible == Some(false)) {
-        text.push_str(
-            "! limit point or landing inadmissible: the next crest would touch, or without adhesion the disc pull\n",
-        );
+        let found = report.inadmissible.as_deref().unwrap_or_default();
+        let crest = found.iter().any(|part| part.crest_radius.is_some());
+        let pull = found.iter().any(|part| part.crest_radius.is_none());
+        let faults = [(crest, "the next crest would touch"), (pull, "the disc would have to pull")];
+        let faults: Vec<&str> = faults.iter().filter(|(is, _)| *is).map(|(_, fault)| *fault).collect();
+        let _ = writeln!(text, "! limit point or landing inadmissible: {}", faults.join(", or "));
     }
     let _ = writeln!(
         text,
