@@ -167,6 +167,13 @@ fn warn(warnings: &[String]) {
     }
 }
 
+/// What is worth knowing, where the result has no place for it.
+fn note(text: Option<&str>) {
+    if let Some(text) = text {
+        let _ = writeln!(std::io::stderr(), "pulloff: note: {text}");
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! `pulloff trace`: the equilibrium curve by arc-length continuation.
 
-use super::{Failure, Problem, admissible, output, warn};
+use super::{Failure, Problem, admissible, note, output, warn};
 use crate::quasistatic::CurveStop;
 use crate::report::{TraceReport, json};
 use crate::theory::Exact;
@@ -40,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         report = report.beside(&Exact::of(&loaded.preset.problem()));
     }
     warn(&report.warnings);
+    note(report.start_note.as_deref());
     let text = match arguments.format {
         Format::Csv => report.csv()?,
         Format::Json => json(&report)?,

@@ -14,7 +14,9 @@ use crate::case::{Case, CaseError};
 use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
-use crate::quasistatic::{Admissibility, Curve, Limit, Losses, Overlap, Point, Stiffness, Unloading};
+use crate::quasistatic::{
+    Admissibility, Curve, Equilibrium, Limit, Losses, Overlap, Point, Stiffness, Unloading,
+};
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
@@ -81,7 +83,8 @@ pub struct CurveData {
     pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
     pub setting: Arc<Setting>,
-    /// The curve in the user's units, with its stability under the chosen control.
+    /// The curve in the user's units, with its stability under the chosen control: that of the sweep, and before it
+    /// the part from which a path begins whose start is unstable.
     pub points: Vec<CurvePoint>,
     /// The limit points under the chosen control, reduced, from the start inward.
     pub limits: Vec<Limit>,
@@ -177,16 +180,16 @@ impl CurveData {
         let units = *sweep.case.units();
         let control = preset.path.control.in_units(units.stiffness);
         let case = Case { control, ..sweep.case.clone() };
-        let shown = |point: &Point, control: Control| {
-            let [delta, force, s] = curve.equilibrium.quantities(&point.y);
+        let shown_of = |equilibrium: &Equilibrium, point: &Point, control: Control| {
+            let [delta, force, s] = equilibrium.quantities(&point.y);
             CurvePoint {
                 approach: delta * units.length,
                 force: force * units.force,
                 contact_radius: s * units.length,
-                stable: curve.equilibrium.stability(point).under(control),
+                stable: equilibrium.stability(point).under(control),
             }
         };
-        let points = curve.branch.points.iter().map(|p| shown(p, control)).collect();
+        let shown = |point: &Point, control: Control| shown_of(&curve.equilibrium, point, control);
         longer.hold(control);
         let limits = longer.limit_points(control);
         let other_limits = SHOWN
@@ -204,6 +207,15 @@ impl CurveData {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };
+        // Where the path of an unstable start begins further out, the curve drawn reaches to there.
+        let outward = longer
+            .branch
+            .points
+            .iter()
+            .take_while(|p| longer.equilibrium.contact_radius(p) > curve.outermost() * (1.0 + 1e-12))
+            .filter(|_| unloading.is_ok())
+            .map(|p| shown_of(&longer.equilibrium, p, control));
+        let points = outward.chain(curve.branch.points.iter().map(|p| shown(p, control))).collect();
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         Ok(Self { sweep, case, setting, points, limits, other_limits, unloading, report })

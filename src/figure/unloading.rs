@@ -50,6 +50,9 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     if unloading.events.last().is_none_or(|event| event.after.is_some()) {
         figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, None)));
     }
+    // The path may begin or land beyond the curve; where the bodies come apart may be far away.
+    let kept = figure.lines.iter().filter(|line| line.role != Role::Jump);
+    figure.bounds = Bounds::of(kept.flat_map(|line| line.points.iter().copied()));
     inadmissible(subject, scale, &mut figure);
     figure.marks.extend(events_before(subject, scale, VIEW));
     let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();

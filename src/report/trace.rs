@@ -1,7 +1,9 @@
 //! The equilibrium curve as a document.
 
+use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
+use super::unload::control_name;
 use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::contact::Control;
@@ -9,6 +11,7 @@ use crate::preset::Preset;
 use crate::quasistatic::Curve;
 use crate::quasistatic::overlap::overlaps;
 use crate::theory::{Equilibrium, Exact};
+use crate::units::Quantity;
 use serde::Serialize;
 
 /// The equilibrium curve with its limit points.
@@ -24,6 +27,9 @@ pub struct TraceReport {
     pub warnings: Vec<String>,
     /// What else is worth knowing.
     pub notes: Vec<String>,
+    /// Said when the start is unstable under the control: an unloading does not begin there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_note: Option<String>,
     /// Why the trace ended, in words.
     pub stop: String,
     /// The smallest force on the curve.
@@ -239,6 +245,14 @@ impl TraceReport {
                 .chain(overlap::warning("the curve", &inadmissible, &preset.units))
                 .collect(),
             notes: case.notes(curve.outermost()),
+            start_note: points.first().filter(|start| !start.stable.chosen).map(|start| {
+                let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
+                format!(
+                    "the start (contact radius {}) is unstable under {} control: an unloading does not begin there",
+                    length(start.contact_radius),
+                    control_name(case.control)
+                )
+            }),
             stop: curve.stop.in_units(units).words(&preset.units),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
