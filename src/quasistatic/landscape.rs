@@ -144,7 +144,8 @@ pub fn falls(equilibrium: &Equilibrium, control: Control, value: f64, from: f64,
     let (lo, hi) = (from.min(to), from.max(to));
     let shortest = SWEEP_STEPS_PER_WAVE * (hi - lo) / SAMPLES;
     let wave = equilibrium.problem.gap.feature_length();
-    let mut grid = radii(lo, hi, Some(wave.map_or(shortest, |wave| wave.min(shortest))), SWEEP_STEPS_PER_WAVE);
+    let mut grid =
+        radii(lo, hi, Some(wave.map_or(shortest, |wave| wave.min(shortest))), SWEEP_STEPS_PER_WAVE);
     grid.dedup();
     let Some(mut samples) = (Held { equilibrium, control, value }).integrate(&grid) else { return false };
     if from > to {

@@ -304,8 +304,7 @@ pub fn unload_while(
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked_state.filter(|_| unstable_start).map(|state| {
         let value = control.value(state.approach, state.force);
-        let falls =
-            landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
+        let falls = landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
         Asked { state, falls }
     });
     Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
