@@ -1,0 +1,92 @@
+//! No jump of the walk loses negative energy, whatever is controlled and wherever it runs: on random wavy spheres with
+//! weak adhesion and without.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use pulloff::contact::{Control, Shape, Start};
+use pulloff::explorer::walk::{Action, Outcome, Request, walk};
+use pulloff::explorer::{CurveData, NodeKind};
+use pulloff::preset::{BasisSpec, Functions, Material, PathSpec, Preset};
+use pulloff::quasistatic::curve::Turn;
+use std::sync::Arc;
+
+const START: f64 = 0.45;
+
+fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Control) -> Preset {
+    Preset {
+        title: String::new(),
+        units: pulloff::units::UnitSystem::Reduced,
+        material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
+        gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
+        basis: BasisSpec::Spectral { functions: Functions::Auto },
+        path: PathSpec { start: Start::ContactRadius(START), control, end_contact_radius: None },
+    }
+}
+
+/// What the jumps from every limit point of a problem come to: how many land or pull off, inward and outward, and how
+/// many are refused because the potential rises.
+fn jumps(preset: &Preset) -> [usize; 3] {
+    let curve = Arc::new(CurveData::compute(preset, |_| true).unwrap());
+    let mut counts = [0; 3];
+    for limit in &curve.limits {
+        let inward = limit.turn == Turn::Minimum;
+        let request = Request {
+            id: 0,
+            action: Action::Jump,
+            curve: Arc::clone(&curve),
+            from: Some(limit.point.clone()),
+            on_limit: true,
+            control: curve.case.control,
+            inward,
+            length: 0.1,
+        };
+        let mut event = None;
+        let outcome = walk(&request, &mut |made| {
+            let NodeKind::Jump(found) = made.kind else { panic!("{:?}", made.kind) };
+            event = Some(found);
+            true
+        });
+        match (event, outcome) {
+            (Some(event), Outcome::Done) => {
+                let size = event.before.energy.abs();
+                for lost in [event.dissipated, event.dissipated_by_area].into_iter().flatten() {
+                    assert!(lost >= -1e-9 * size, "{lost}: {event:?} {preset:?}");
+                }
+                counts[usize::from(!inward)] += 1;
+            }
+            (None, Outcome::Stopped(reason)) => {
+                assert!(!inward, "{reason}: {preset:?}");
+                counts[2] += usize::from(reason.contains("the potential rises"));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    counts
+}
+
+#[test]
+fn no_jump_loses_negative_energy() {
+    let mut random = fastrand::Rng::with_seed(20_261_121);
+    let mut between = |lo: f64, hi: f64| (lo.ln() + (hi / lo).ln() * random.f64()).exp();
+    let mut all = [0; 3];
+    for problem in 0..4 {
+        let wavelength = between(0.05, 0.15);
+        let amplitude = wavelength * wavelength / between(0.8, 8.0);
+        let gamma = if problem == 0 { 0.0 } else { between(1e-6, 5e-3) };
+        let stiffness = between(1e-2, 1e1);
+        for control in [Control::Displacement, Control::Force, Control::Stiffness(stiffness)] {
+            let found = jumps(&preset(amplitude, wavelength, gamma, control));
+            all = std::array::from_fn(|i| all[i] + found[i]);
+        }
+    }
+    // All three come about.
+    println!("inward, outward, refused: {all:?}");
+    assert!(all.iter().all(|count| *count > 0), "{all:?}");
+}
+
+/// γ = 1e-4, A = 0.008, λ = 0.1: run outward from s = 0.3695, the edge would land at s = 0.4105 with more energy.
+#[test]
+fn a_jump_to_more_energy_is_refused() {
+    let [inward, _, refused] = jumps(&preset(0.008, 0.1, 1e-4, Control::Displacement));
+    assert!(inward > 0 && refused > 0);
+}
