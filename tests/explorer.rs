@@ -498,6 +498,11 @@ fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
     assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(1.0.into()), None));
     assert_eq!(value(&session, "A"), before.get("gap.parameters.A"));
     assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    // A name misspelt is said, and begins with the value of the one it resembles.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lamda))");
+    assert_eq!(value(&session, "lamda"), Some(0.06.into()));
+    let status = session.status().to_owned();
+    assert!(status.contains("new parameter lamda = 0.06; did you mean lambda?"), "{status}");
     // The whole name again: its value is the one from before.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + 0*B");
     assert_eq!((value(&session, "lambda"), value(&session, "B")), (Some(0.06.into()), Some(1.0.into())));

@@ -94,7 +94,16 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
         (&["--width", "3"], "from 50 to 500 mm"),
         (&["--contact-radius", "0.2"], "shows the whole curve"),
         (&["--view", "gap", "--contact-radius", "7"], "outside the curve"),
-        (&["--view", "gap", "--contact-radius", "3 N"], "length"),
+        (&["--view", "gap", "--contact-radius", "3 N"], "--contact-radius: the problem is in reduced units"),
+        (&["--view", "gap", "--contact-radius", "wide"], "--contact-radius: must be a number"),
+        (
+            &["fig-9-si", "--set", "basis.rings=20", "--view", "gap", "--contact-radius", "3 N"],
+            "--contact-radius: expected a length such as um, got 3 N, a force",
+        ),
+        (
+            &["fig-9-si", "--set", "basis.rings=20", "--view", "gap", "--contact-radius", "3"],
+            "--contact-radius = 3e6 um is outside the curve, which goes from 10 um to 2500 um",
+        ),
         (&["--data"], "-o <FILE>"),
     ] {
         let output = pulloff(folder.path(), &[&["plot"], arguments].concat());
@@ -103,6 +112,24 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
         assert!(message.contains(words), "{arguments:?}: {message}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_contact_radius_is_read_as_set_reads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |preset: &str, radius: &str| {
+        let output = pulloff(
+            folder.path(),
+            &["plot", preset, "--set", "basis.rings=20", "--view", "gap", "--contact-radius", radius],
+        );
+        assert!(output.status.success(), "{radius}: {}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let in_metres = drawn("fig-9-si", "1.25e-3");
+    assert_eq!(drawn("fig-9-si", "1.25 mm"), in_metres);
+    assert_eq!(drawn("fig-9-si", "(1+1/4)mm"), in_metres);
+    assert_ne!(drawn("fig-9-si", "1 mm"), in_metres);
+    assert_ne!(drawn("fig-9", "0.2"), drawn("fig-9", "1/4"));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 
 use pulloff::case::Case;
 use pulloff::contact::{Control, Gap, Shape};
+use pulloff::preset::changes::changes;
 use pulloff::preset::{Preset, Value, read, read_with, shipped, write};
 use pulloff::quasistatic::unload::UnloadError;
 use pulloff::quasistatic::{CurveStop, PathStop};
@@ -344,19 +345,45 @@ start_contact_radius = \"1 mm\"
         assert!((got - expected).abs() <= 2.0 * f64::EPSILON * expected, "{key} = {got}");
     }
     assert_eq!(read("p", &write(&preset)).unwrap(), preset, "{}", write(&preset));
-    // On the screen in the unit of its quantity, in a document in SI.
+    // On the screen and in a file in the unit of its own, in a document in SI.
     let row = preset.row("gap.parameters.lambda").unwrap();
-    assert_eq!(said(&preset.units, row.quantity, 50e-6), "50 um");
-    assert_eq!(preset.typed(&row, "20"), Ok(Value::Typed("20 um".to_owned())));
+    assert_eq!(row.shown(&preset.units, 50e-6).text("50000", true), "50000 nm");
+    assert_eq!(preset.typed(&row, "20"), Ok(Value::Typed("20 nm".to_owned())));
+    let line = "lambda = { value = 50000.0, min = 10000.0, max = 100000.0, unit = \"nm\" }";
+    assert!(write(&preset).contains(line), "{}", write(&preset));
     let case = Case::new(&preset).unwrap();
     let document = json(&ProblemReport::new(&preset, &case)).unwrap();
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
     let parameters = &document["preset"]["gap"]["parameters"];
     assert_eq!((&parameters["lambda"]["unit"], &parameters["lambda"]["value"]), (&"m".into(), &5e-5.into()));
     assert_eq!((&parameters["k"]["unit"], &parameters["B"]["unit"]), (&"m^-1".into(), &"m^2".into()));
-    // The unit is a remark: a bare number stays in SI.
-    let bare = read_with("p", text, &["gap.parameters.lambda=6e-5"]).unwrap();
-    assert!((number(&bare, "gap.parameters.lambda") - 6e-5).abs() < 1e-20);
+    // A bare number beside a unit counts in it, wherever it comes from.
+    let near =
+        |preset: &Preset, key: &str, x: f64| assert!((number(preset, key) / x - 1.0).abs() < 1e-15, "{key}");
+    let set = ["gap.parameters.lambda=6e4", "gap.parameters.lambda.max=2e5", "gap.parameters.A=2e-6"];
+    let bare = read_with("p", text, &set).unwrap();
+    near(&bare, "gap.parameters.lambda", 6e-5);
+    near(&bare, "gap.parameters.lambda.max", 2e-4);
+    near(&bare, "gap.parameters.A", 2e-6);
+    let mut typed = preset.clone();
+    typed.assign("gap.parameters.lambda", "7e4").unwrap();
+    near(&typed, "gap.parameters.lambda", 7e-5);
+    // Assignments that lead from one to the other say their unit, so that every digit stays.
+    typed.set("gap.parameters.lambda", (1e-4 / 3.0).into()).unwrap();
+    let mut back = preset.clone();
+    for (key, text) in changes(&preset, &typed).unwrap() {
+        back.assign(&key, &text).unwrap();
+    }
+    assert_eq!(back, typed);
+    assert_eq!(read("p", &write(&typed)).unwrap(), typed, "{}", write(&typed));
+    // Reduced units take the unit for a remark; the change to SI makes it one, and the change back takes it away.
+    let mut plain =
+        read_with("f", shipped::find("formula").unwrap().text, &["gap.parameters.lambda.unit=mm"]).unwrap();
+    assert_eq!(number(&plain, "gap.parameters.lambda").to_bits(), 0.05_f64.to_bits());
+    plain.assign("units", "SI").unwrap();
+    assert_eq!(number(&plain, "gap.parameters.lambda").to_bits(), 5e-5_f64.to_bits());
+    plain.assign("units", "reduced").unwrap();
+    assert_eq!(plain.get("gap.parameters.lambda.unit"), None);
     for (set, words) in [
         (
             "gap.parameters.lambda=50 mN",
@@ -373,8 +400,10 @@ start_contact_radius = \"1 mm\"
         ("gap.parameters.k=3 mm", "expected an inverse length such as m^-1"),
         (
             "gap.parameters.lambda=0.2 mm",
-            "= 200.0 um is out of range: it must be a number from 1e-5 to 0.0001 (in m)",
+            "= 200000 nm is out of range: it must be a number from 10000 to 100000 (in nm)",
         ),
+        ("gap.parameters.lambda=200000", "= 200000 nm is out of range"),
+        ("gap.parameters.A.unit=furlong", "gap.parameters.A.unit: column 1: unknown unit furlong"),
     ] {
         let message = mistake(text, &[set]);
         assert!(message.contains(words), "{set}: {message}");

@@ -10,6 +10,7 @@ use crate::preset::{Overwrite, Preset, write_atomically};
 use crate::quasistatic::jump::Run;
 use crate::sweep::Results;
 use crate::units::Quantity;
+use crate::units::number::said;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -35,7 +36,7 @@ pub struct Arguments {
     /// Axes in the preset's own units instead of P/Pc and s/lambda
     #[arg(long)]
     raw: bool,
-    /// The state whose pressure, gap or energy is drawn, by its contact radius; the start when left out
+    /// The state whose pressure, gap or energy is drawn, by its contact radius: a number, in an SI preset in metres or with its unit, as 1.2mm; the start when left out
     #[arg(long, value_name = "RADIUS")]
     contact_radius: Option<String>,
     /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
@@ -130,34 +131,39 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<Inside, Failure> {
     let (case, equilibrium) = (&curve.case, &curve.sweep.curve.equilibrium);
     let unit = case.units().length;
+    let shown = |s: f64| said(&curve.setting.preset.units, Quantity::Length, s * unit);
     let s = match radius {
         Some(text) => length(&curve.setting.preset, text)? / unit,
         None => case.start,
     };
     if !(case.end..=case.start).contains(&s) {
         return Err(Failure::Usage(format!(
-            "--contact-radius = {:e} is outside the curve, which goes from {:e} to {:e}",
-            s * unit,
-            case.end * unit,
-            case.start * unit
+            "--contact-radius = {} is outside the curve, which goes from {} to {}",
+            shown(s),
+            shown(case.end),
+            shown(case.start)
         )));
     }
     let point = equilibrium.explicit(s).ok_or_else(|| {
-        Failure::Usage(format!("there is no equilibrium at the contact radius {:e}", s * unit))
+        Failure::Usage(format!("there is no equilibrium at the contact radius {}", shown(s)))
     })?;
     let state = equilibrium.state(&point);
     let curve = Arc::clone(curve);
     Ok(Inside::compute(&Ask { id: 0, curve, state, exact, barrier: Some(Run::Inward) }))
 }
 
-/// A length as typed, in the units of the preset.
+/// A contact radius as typed, in SI or reduced units.
 fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
-    let row = preset.row("path.start_contact_radius");
-    let typed = row.map(|row| preset.typed(&row, text)).transpose();
-    match typed.map_err(|invalid| Failure::Usage(format!("--contact-radius: {invalid}")))? {
-        Some(crate::preset::Value::Number(s)) => Ok(s),
-        _ => Err(Failure::Usage(format!("--contact-radius: expected a {}", Quantity::Length.name()))),
-    }
+    let wrong = |cause: &dyn std::fmt::Display| Failure::Usage(format!("--contact-radius: {cause}"));
+    let row = preset
+        .row("path.start_contact_radius")
+        .ok_or_else(|| wrong(&format!("expected {}", Quantity::Length.name())))?;
+    // The row is that of another key, which the message must not blame.
+    let words = |invalid: crate::preset::Invalid| {
+        let text = invalid.to_string();
+        wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
+    };
+    preset.number(&row, text).map_err(words)
 }
 
 /// The format of a figure.

@@ -4,7 +4,7 @@
 
 use super::curve::CurveData;
 use crate::preset::{Preset, Row, Value};
-use crate::report::number::{short, with_unit};
+use crate::report::number::short;
 use crate::units::UnitSystem;
 use std::sync::Arc;
 
@@ -125,11 +125,19 @@ fn differences(pinned: &Preset, now: &Preset) -> Vec<(Row, Value)> {
 
 /// The label of a row and a value of it, short and in its unit.
 pub(super) fn labelled(row: &Row, value: &Value, units: &UnitSystem) -> String {
+    labelled_with(row, value, units, " ")
+}
+
+/// The same with `between` the two.
+pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, between: &str) -> String {
     let shown = match value {
-        Value::Number(x) => with_unit(units, row.quantity, *x, false, |x| short(x, 4)),
+        Value::Number(x) => {
+            let shown = row.shown(units, *x);
+            shown.text(&short(shown.number, 4), false)
+        }
         other => other.to_string(),
     };
-    format!("{} {shown}", row.label)
+    format!("{}{between}{shown}", row.label)
 }
 
 /// The values of `pinned` that `now` has not, as labels and values; the first few of them.

@@ -40,7 +40,7 @@ pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
     rows.filter_map(|row| {
         let value = to.get(&row.key).filter(|value| from.get(&row.key).as_ref() != Some(value))?;
-        Some((row.key.clone(), typed(&row, &value)))
+        Some((row.key.clone(), typed(&row, &to.units, &value)))
     })
     .collect()
 }
@@ -51,20 +51,29 @@ fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, S
     if now.get(&row.key).as_ref() == Some(&value) {
         return false;
     }
-    let text = typed(row, &value);
+    let text = typed(row, &to.units, &value);
+    let mut changed = now.clone();
     // The rows of a file are at hand, and need not be read for this.
     let done = match row.kind {
-        Kind::File => now.set(&row.key, value),
-        _ => now.assign(&row.key, &text),
+        Kind::File => changed.set(&row.key, value.clone()),
+        _ => changed.assign(&row.key, &text),
     };
-    if done.is_ok() {
+    // A bare number may count in a unit that `now` still has and `to` has not.
+    let done = done.is_ok() && changed.get(&row.key).as_ref() == Some(&value);
+    if done {
+        *now = changed;
         made.push((row.key.clone(), text));
     }
-    done.is_ok()
+    done
 }
 
 /// A value as a person types it, quoted where it would be read as something else.
-fn typed(row: &Parameter, value: &Value) -> String {
+fn typed(row: &Parameter, units: &UnitSystem, value: &Value) -> String {
+    if let Value::Number(x) = value
+        && let Some(exact) = row.exact_in_si(units, *x)
+    {
+        return exact;
+    }
     let plain = value.to_string();
     match row.parse(&plain) {
         Ok(back) if back == *value => plain,

@@ -66,6 +66,12 @@ pub fn is_parameter(key: &str) -> bool {
     below(key, PARAMETER_TABLE).is_some_and(is_name)
 }
 
+/// Whether a key is the unit of a parameter.
+#[must_use]
+pub fn is_unit(key: &str) -> bool {
+    key.strip_suffix(".unit").is_some_and(is_parameter)
+}
+
 /// Whether a key may have a knob: the waves after the first [`WAVE_KNOBS`] have none.
 #[must_use]
 pub fn has_knob(key: &str) -> bool {
@@ -117,6 +123,7 @@ pub(super) fn parameter(name: &str) -> Parameter {
         meaning: Borrowed("a parameter of the formula"),
         dimension: Borrowed(""),
         quantity: Quantity::Number,
+        unit: None,
         kind: Kind::Finite,
         fallback: Fallback::Required,
         applies: of_formula(),
@@ -129,7 +136,7 @@ pub(super) fn limit(name: &str, part: &str) -> Option<Parameter> {
         "max" => ("max", "its largest value", Kind::Finite),
         "unit" => (
             "unit",
-            "its unit, as a remark: a bare value is taken as it stands, in an SI preset as SI",
+            "its unit: in an SI preset bare numbers of value, min and max count in it; in reduced units a remark",
             Kind::Text { max_chars: 20 },
         ),
         _ => return None,
@@ -140,6 +147,7 @@ pub(super) fn limit(name: &str, part: &str) -> Option<Parameter> {
         meaning: Borrowed(meaning),
         dimension: Borrowed(""),
         quantity: Quantity::Number,
+        unit: None,
         kind,
         fallback: Fallback::Described("none"),
         applies: of_formula(),
@@ -159,6 +167,7 @@ pub(super) fn wave(number: impl Display, name: &str) -> Option<Parameter> {
         meaning: Borrowed(meaning),
         dimension: Borrowed(dimension),
         quantity: if dimension.is_empty() { Quantity::Number } else { Quantity::Length },
+        unit: None,
         kind,
         fallback,
         applies: Applies::With { key: CHOOSERS[0], words: &["harmonics"] },

@@ -89,6 +89,14 @@ pub enum Invalid {
         /// The values it takes.
         allowed: String,
     },
+    /// A parameter of a formula just chosen that nothing gives a value.
+    #[error("the formula needs a value for {key}, as {key}=1{}", hint(.meant.as_ref()))]
+    Unset {
+        /// The key.
+        key: Key,
+        /// The parameter of the formula before most alike.
+        meant: Option<Key>,
+    },
     /// A required table that is not there.
     #[error("the table [{table}] is missing: it needs {keys}")]
     MissingTable {
@@ -209,6 +217,7 @@ impl Invalid {
             | Self::Rings { key, .. }
             | Self::Units { key, .. }
             | Self::Gap { key, .. }
+            | Self::Unset { key, .. }
             | Self::Unused { key, .. }
             | Self::Beyond { key, .. }
             | Self::Wide { key, .. } => Some(key),

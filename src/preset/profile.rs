@@ -26,7 +26,7 @@ pub const LARGEST: u64 = 64 << 20;
 /// The allowed numbers of rows: fewer are no profile, more belong in a mean before.
 pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
 /// How many faults a message lists.
-pub const FAULTS_SHOWN: usize = 20;
+pub const FAULTS_SHOWN: usize = 3;
 /// The longest line, in bytes; two numbers need far less.
 pub const LONGEST_LINE: usize = 1024;
 /// The largest number, as in presets.
@@ -69,7 +69,9 @@ pub enum Fault {
         text: String,
     },
     /// Not finite, or absurdly large.
-    #[error("the {what} \"{text}\" is out of range: it must be at most {LARGEST_NUMBER:e} in size")]
+    #[error(
+        "the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to {LARGEST_NUMBER:e}"
+    )]
     Range {
         /// Which cell.
         what: &'static str,
@@ -396,7 +398,8 @@ fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
         }
     }
     if repeated > 0 {
-        columns.notes.push(format!("{repeated} rows were there twice and count once"));
+        let rows = if repeated == 1 { "1 row was" } else { &format!("{repeated} rows were") };
+        columns.notes.push(format!("{rows} there twice and counted once"));
     }
     faults.total += twice.len();
     faults.shown.append(&mut twice);

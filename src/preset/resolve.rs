@@ -89,11 +89,7 @@ fn parameter_of(key: &str) -> Option<&str> {
 /// The number of a parameter of a formula, or of one end of its range, in SI: of the dimension that the parameter's own
 /// unit names, or of any where that is no unit of ours.
 fn of_parameter(values: &Values, parameter: &str, typed: &Typed) -> Result<f64, String> {
-    let stated = match values.get(&*format!("{parameter}.unit")) {
-        Some(Value::Text(unit)) => Unit::parse(unit, 0).ok(),
-        _ => None,
-    };
-    match (stated, &typed.unit) {
+    match (stated_unit(values, parameter), &typed.unit) {
         (Some(stated), Some(own)) if stated.dimension() != own.dimension() => Err(format!(
             "expected {} such as {}, the unit of the parameter, got {typed}, {}",
             stated.measures(),
@@ -101,6 +97,30 @@ fn of_parameter(values: &Values, parameter: &str, typed: &Typed) -> Result<f64, 
             own.measures()
         )),
         _ => typed.in_own_si().map_err(|cause| cause.to_string()),
+    }
+}
+
+/// The unit that stands beside a parameter of a formula, where it is one of ours.
+fn stated_unit(values: &Values, parameter: &str) -> Option<Unit> {
+    match values.get(&*format!("{parameter}.unit")) {
+        Some(Value::Text(unit)) => Unit::parse(unit, 0).ok(),
+        _ => None,
+    }
+}
+
+/// Gives the bare numbers of a formula's parameters, as a person writes them, the unit beside them where the preset is in
+/// SI. Not for values that are in SI already.
+pub(super) fn count_in_own_units(values: &mut Values) {
+    if chosen(values, CHOOSERS[2]).as_deref() != Some(SYSTEMS[1]) {
+        return;
+    }
+    let bare = values.iter().filter_map(|(key, value)| {
+        let Value::Number(x) = value else { return None };
+        let unit = stated_unit(values, parameter_of(key)?)?;
+        Some((key.clone(), Value::Typed(format!("{x:?} {}", unit.ascii()))))
+    });
+    for (key, typed) in bare.collect::<Vec<_>>() {
+        values.insert(key, typed);
     }
 }
 

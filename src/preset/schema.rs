@@ -9,7 +9,7 @@ pub use table::PARAMETERS;
 pub(super) use table::row;
 
 use super::family;
-use crate::units::Quantity;
+use crate::units::{Quantity, Shown, Unit, UnitSystem};
 use std::borrow::Cow::{self, Borrowed};
 
 /// The format number of the files this program reads and writes.
@@ -127,6 +127,8 @@ pub struct Parameter {
     pub dimension: Cow<'static, str>,
     /// What is measured, for values with units; a pure number where there is no such quantity.
     pub quantity: Quantity,
+    /// A unit of its own, in which an SI preset has it typed, shown and written, in place of that of the quantity.
+    pub unit: Option<Unit>,
     /// What values it takes.
     pub kind: Kind,
     /// What it is when not given.
@@ -212,6 +214,32 @@ impl Parameter {
     #[must_use]
     pub fn is_part(&self) -> bool {
         self.table().and_then(parameter).is_some_and(|whole| whole.kind == Kind::Control)
+    }
+
+    /// The unit in which a preset of these units has it typed and shown, if there is one.
+    #[must_use]
+    pub fn unit_in<'a>(&'a self, units: &'a UnitSystem) -> Option<&'a Unit> {
+        let quantity = if self.kind == Kind::Control { Quantity::ForcePerLength } else { self.quantity };
+        self.own_unit_in(units).or_else(|| units.unit(quantity))
+    }
+
+    /// The unit of its own, where it counts: bare numbers are of it.
+    pub(super) fn own_unit_in(&self, units: &UnitSystem) -> Option<&Unit> {
+        self.unit.as_ref().filter(|_| *units != UnitSystem::Reduced)
+    }
+
+    /// How a number of it, in SI or reduced units, is shown.
+    #[must_use]
+    pub fn shown<'a>(&'a self, units: &'a UnitSystem, x: f64) -> Shown<'a> {
+        let unit = self.unit_in(units);
+        Shown { number: unit.map_or(x, |unit| unit.from_si(x)), unit }
+    }
+
+    /// A number in SI with its SI unit, to be read back as the very same number, where a bare one would count in a unit
+    /// of its own.
+    pub(super) fn exact_in_si(&self, units: &UnitSystem, x: f64) -> Option<String> {
+        let base = self.own_unit_in(units)?.dimension().si();
+        Some(format!("{x:?} {}", if base.is_empty() { "rad" } else { &base }))
     }
 
     /// Whether a person changes it by factors rather than by differences.

@@ -6,7 +6,7 @@ use super::invalid::Invalid;
 use super::measured;
 use super::resolve::told;
 use super::schema::{
-    AUTO, COEFFICIENT, Key, Kind, NONE, Parameter, Row, START_KEYS, START_OVER_CURVATURE, parameter,
+    AUTO, COEFFICIENT, Key, Kind, LARGEST, NONE, Parameter, Row, START_KEYS, START_OVER_CURVATURE, parameter,
 };
 use super::suggest::closest;
 use super::value::Value;
@@ -14,6 +14,7 @@ use crate::contact::Shape;
 use crate::contact::formula::typed::{MOST_PARAMETERS, RADIUS};
 use crate::contact::formula::{Formula, FormulaParameter, TypedError, TypedGap};
 use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Smoothing};
+use crate::units::number::short;
 use crate::units::{Quantity, Unit, UnitSystem};
 use std::sync::Arc;
 
@@ -151,11 +152,17 @@ impl Given<'_> {
             _ => None,
         };
         let parameter = FormulaParameter { name: name.to_owned(), value, min, max, unit };
-        let (row, value) = (bounded(&parameter), Value::Number(value));
-        if !parameter.value.is_nan()
-            && let Err(fault) = row.check(value.clone())
+        let row = bounded(&parameter);
+        if !value.is_nan()
+            && let Err(fault) = row.check(value.into())
         {
-            self.faults.push(told(&self.units, Some(row.quantity), &value, fault));
+            self.faults.push(told_in_own(&row, &self.units, value, fault));
+        }
+        // In SI a bare number counts in the unit, which therefore must be one.
+        if let (Some(unit), UnitSystem::Si(_)) = (&parameter.unit, &self.units)
+            && let Err(cause) = Unit::parse(unit, 0)
+        {
+            self.faults.push(Invalid::Units { key: format!("{key}.unit").into(), cause: cause.into() });
         }
         parameter
     }
@@ -201,16 +208,34 @@ impl Given<'_> {
 fn bounded(given: &FormulaParameter) -> Parameter {
     let mut row = family::parameter(&given.name);
     if given.min.is_some() || given.max.is_some() {
-        row.kind = Kind::Between {
-            min: given.min.unwrap_or(-super::schema::LARGEST),
-            max: given.max.unwrap_or(super::schema::LARGEST),
-        };
+        row.kind = Kind::Between { min: given.min.unwrap_or(-LARGEST), max: given.max.unwrap_or(LARGEST) };
     }
     if let Some(unit) = &given.unit {
         row.dimension = unit.clone().into();
-        row.quantity = measured_in(unit).unwrap_or(Quantity::Number);
+        row.unit = Unit::parse(unit, 0).ok();
+        row.quantity = row.unit.as_ref().and_then(measured_in).unwrap_or(Quantity::Number);
     }
     row
+}
+
+/// The row of one end of a parameter's range, or of its unit: a range has the unit of the parameter.
+fn limit(given: &FormulaParameter, part: &str) -> Option<Parameter> {
+    let Parameter { unit, quantity, .. } = bounded(given);
+    let row = family::limit(&given.name, part)?;
+    Some(if row.kind == Kind::Finite { Parameter { unit, quantity, ..row } } else { row })
+}
+
+/// A value beyond the range of its parameter, told in the parameter's own unit.
+fn told_in_own(row: &Parameter, units: &UnitSystem, x: f64, fault: Invalid) -> Invalid {
+    let (Invalid::Range { key, .. }, Some(unit), Kind::Between { min, max }) =
+        (&fault, row.own_unit_in(units), row.kind)
+    else {
+        return told(units, Some(row.quantity), &x.into(), fault);
+    };
+    let number = |x: f64| if x.abs() == LARGEST { format!("{x:?}") } else { short(unit.from_si(x), 12) };
+    let value = format!("{} {}", number(x), unit.ascii());
+    let allowed = format!("a number from {} to {} (in {})", number(min), number(max), unit.ascii());
+    Invalid::Range { key: key.clone(), value, allowed }
 }
 
 /// The quantity of the coefficient c of a gap c rⁿ, a length to the power 1 − n; `None` where that power is not whole or
@@ -231,8 +256,8 @@ pub(super) fn own(shape: &Shape, row: &'static Parameter) -> Row {
 }
 
 /// The quantity that is measured in a unit, if it is one of ours.
-fn measured_in(unit: &str) -> Option<Quantity> {
-    let dimension = Unit::parse(unit, 0).ok()?.dimension();
+fn measured_in(unit: &Unit) -> Option<Quantity> {
+    let dimension = unit.dimension();
     Quantity::ALL.into_iter().find(|quantity| quantity.dimension() == dimension)
 }
 
@@ -243,7 +268,7 @@ pub(super) fn rows(shape: &Shape) -> Vec<Parameter> {
             .parameters()
             .iter()
             .flat_map(|given| {
-                let limits = PARAMETER_KEYS.iter().filter_map(|part| family::limit(&given.name, part));
+                let limits = PARAMETER_KEYS.iter().filter_map(|part| limit(given, part));
                 std::iter::once(bounded(given)).chain(limits)
             })
             .collect(),
@@ -310,20 +335,38 @@ fn wave_value(waves: &Harmonics, key: &str) -> Option<Value> {
     }
 }
 
-/// Fits the parameters in `values` to a formula just chosen: names it does not have go, unless `keep` says that they
-/// stay, and names without a value begin with 1.
-pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) {
-    let Some(Value::Text(text)) = values.get("gap.formula") else { return };
-    let Ok(formula) = Formula::parse(text) else { return };
+/// Takes away the parameters in `values` that a formula just chosen does not have, unless `keep` says that they stay, and
+/// gives back the names it has without a value, each with the one most alike of those taken away and its value.
+pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) -> Vec<Unvalued> {
+    let Some(Value::Text(text)) = values.get("gap.formula") else { return Vec::new() };
+    let Ok(formula) = Formula::parse(text) else { return Vec::new() };
     let names = formula.parameters();
-    values.retain(|key, _| {
-        let name =
-            family::below(key, family::PARAMETER_TABLE).map(|rest| rest.split('.').next().unwrap_or(rest));
-        name.is_none_or(|name| names.iter().any(|known| known == name) || keep(key))
+    let mut gone = Vec::new();
+    values.retain(|key, value| {
+        let Some(rest) = family::below(key, family::PARAMETER_TABLE) else { return true };
+        let name = rest.split('.').next().unwrap_or(rest);
+        let stays = names.iter().any(|known| known == name) || keep(key);
+        if !stays && rest == name {
+            gone.push((name.to_owned(), value.clone()));
+        }
+        stays
     });
-    for name in names {
-        values.entry(parameter_key(name).into()).or_insert(Value::Number(1.0));
-    }
+    let missing = names.iter().filter(|name| !values.contains_key(&*parameter_key(name)));
+    missing
+        .map(|name| {
+            let alike = closest(name, gone.iter().map(|(name, _)| name.as_str()));
+            let alike = alike.and_then(|alike| gone.iter().find(|(name, _)| name == alike).cloned());
+            Unvalued { name: name.clone(), alike }
+        })
+        .collect()
+}
+
+/// A parameter without a value.
+pub(super) struct Unvalued {
+    /// Its name.
+    pub(super) name: String,
+    /// The one of the formula before that it may be, misspelt, with its value.
+    pub(super) alike: Option<(String, Value)>,
 }
 
 /// What a shape chosen on the screen begins with where `values` lack it: a body of the radius `radius`, with the waves of

@@ -56,7 +56,7 @@ pub fn write(preset: &Preset) -> String {
 }
 
 /// A value of a row as TOML: in an SI preset as text with the unit in which it is shown, where that reads back as the
-/// very same number.
+/// very same number; bare where a unit of its own stands beside it.
 fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
     let text = |quantity, number| {
         let shown = preset.units.shown(quantity, number);
@@ -65,6 +65,15 @@ fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
         (shown.unit.is_some() && back == Ok(number)).then(|| toml::Value::String(text).to_string())
     };
     match value {
+        Value::Number(x) if row.own_unit_in(&preset.units).is_some() => {
+            let shown = row.shown(&preset.units, *x);
+            let same = shown.unit.is_some_and(|unit| unit.to_si(shown.number).to_bits() == x.to_bits());
+            if same {
+                Some(format!("{:?}", shown.number))
+            } else {
+                row.exact_in_si(&preset.units, *x).map(|text| toml::Value::String(text).to_string())
+            }
+        }
         Value::Number(x) => text(row.quantity, *x),
         Value::Control(Control::Stiffness(k)) => {
             text(Quantity::ForcePerLength, *k).map(|text| format!("{{ stiffness = {text} }}"))

@@ -101,12 +101,17 @@ pub fn unload(report: &UnloadReport) -> String {
     let smallest = ascii_unit(units, Quantity::Length, report.min_approach, |x| significant(x, 7));
     let _ = writeln!(text, "smallest approach on the path: {smallest}");
     let unbounded = report.events.iter().any(|event| event.dissipated.is_none());
-    let more = if unbounded { ", and without bound in the pull-off" } else { "" };
-    let _ = writeln!(
-        text,
-        "energy lost: {}{more}",
-        ascii_unit(units, Quantity::Energy, report.total_dissipated, loss)
-    );
+    let lost = ascii_unit(units, Quantity::Energy, report.total_dissipated, loss);
+    let bounded = report.events.iter().any(|event| event.dissipated.is_some());
+    let _ = match (unbounded, bounded) {
+        (false, _) => writeln!(text, "energy lost: {lost}"),
+        (true, true) => {
+            writeln!(text, "energy lost before the pull-off: {lost}; the pull-off loses without bound")
+        }
+        (true, false) => {
+            writeln!(text, "energy lost: the pull-off, the only instability, loses without bound")
+        }
+    };
     let _ = writeln!(text, "end: {}", report.stop);
     for event in report.events.iter().filter(|event| event.dissipated.is_none()) {
         let _ = writeln!(text, "{}: {}", event.kind, event.reason);

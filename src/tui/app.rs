@@ -405,13 +405,16 @@ impl App {
         let units = &self.model.preset.units;
         let text = value.map_or_else(String::new, |value| match value {
             // With its unit, which holds for a bare number typed instead of it too.
-            Value::Number(x) => with_unit(units, row.quantity, x, true, |x| format!("{x:?}")),
+            Value::Number(x) => {
+                let shown = row.shown(units, x);
+                shown.text(&format!("{:?}", shown.number), true)
+            }
             Value::Control(Control::Stiffness(k)) => {
                 with_unit(units, Quantity::ForcePerLength, k, true, |k| format!("stiffness={k}"))
             }
             other => other.to_string(),
         });
-        let note = match units.unit(row.quantity) {
+        let note = match row.unit_in(units) {
             Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
             None => row.allowed(),
         };

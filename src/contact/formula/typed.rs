@@ -26,7 +26,7 @@ pub struct FormulaParameter {
     pub min: Option<f64>,
     /// The largest value that makes sense to the writer.
     pub max: Option<f64>,
-    /// Its unit, as a remark: the value is taken as it stands.
+    /// The unit beside it in its file; the value here is in SI or in reduced units.
     pub unit: Option<String>,
 }
 

@@ -12,11 +12,13 @@ use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
 use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
-use crate::explorer::pins::labelled;
+use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::walk::Action;
+use crate::preset::family::is_parameter;
 use crate::preset::schema::Kind;
+use crate::preset::suggest::closest;
 use crate::preset::text::{greek, show_name, show_path};
-use crate::preset::{Preset, Value, groups};
+use crate::preset::{Preset, Row, Value, groups};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -200,6 +202,31 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
+/// What a formula's parameters that the one before had not begin with; a like name that is gone may be what was meant.
+fn tell_new_parameters(model: &mut Model, before: &Preset, changed: &Preset) {
+    let names = |preset: &Preset| -> Vec<Row> {
+        preset.rows().filter(|row| is_parameter(&row.key)).map(|row| Row::Owned(row.into_owned())).collect()
+    };
+    let (old, new) = (names(before), names(changed));
+    let lacks = |rows: &[Row], row: &Row| !rows.iter().any(|other| other.key == row.key);
+    let gone = || old.iter().filter(|row| lacks(&new, row)).map(|row| &*row.label);
+    let told: Vec<String> = new
+        .iter()
+        .filter(|row| lacks(&old, row))
+        .filter_map(|row| {
+            let value = labelled_with(row, &changed.get(&row.key)?, &changed.units, " = ");
+            let meant = closest(&row.label, gone());
+            Some(format!(
+                "new parameter {value}{}",
+                meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"))
+            ))
+        })
+        .collect();
+    if !told.is_empty() {
+        tell(model, Level::Info, told.join("; "));
+    }
+}
+
 /// Another value for a key, in place of those tried for it.
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let mut preset = before_tried(model).clone();
@@ -211,6 +238,10 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     };
     match result {
         Ok(()) => {
+            if row.key == "gap.formula" {
+                let before = before_tried(model).clone();
+                tell_new_parameters(model, &before, &preset);
+            }
             model.untried = None;
             tell_effect(model, &row.key, &preset);
             change(model, preset)

@@ -3,21 +3,23 @@
 use super::Preset;
 use crate::contact::{Control, Shape};
 use crate::preset::build::{Values, build};
+use crate::preset::family::{self, parameter_key};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured;
-use crate::preset::resolve::in_units;
-use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, parameter};
+use crate::preset::resolve::{count_in_own_units, in_units};
+use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, SYSTEMS, parameter};
 use crate::preset::shape;
+use crate::preset::text::quote;
 use crate::preset::value::Value;
-use crate::units::{Quantity, parse_quantity};
+use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 impl Preset {
     /// Gives a key another value.
     ///
     /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
     /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
-    /// parameters it has in common with the old one, its others begin with 1; a `basis.kind` drops the keys of the old
+    /// parameters it has in common with the old one, its others begin with the value of an old one of a like name, or with 1; a `basis.kind` drops the keys of the old
     /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. A `gap.file` is
     /// read here, relative to the folder of the one before.
     ///
@@ -71,12 +73,24 @@ impl Preset {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
                 shape::begin(values, &value.to_string(), radius, self.gap.wave());
             }
+            // A number beside a unit, which was a remark, is one of it from now on; what is in SI has lost its unit.
+            key if key == CHOOSERS[2] && self.units == UnitSystem::Reduced => {
+                values.insert(row.key.clone(), value.clone());
+                count_in_own_units(values);
+            }
+            key if key == CHOOSERS[2] && value.to_string() != SYSTEMS[1] => {
+                values.retain(|key, _| !family::is_unit(key));
+            }
             key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
             _ => {}
         }
         put(values, row, value);
         if row.key == "gap.formula" {
-            shape::fit_parameters(values, |_| false);
+            for new in shape::fit_parameters(values, |_| false) {
+                // A name typed in part, or misspelt, does least harm with the value of the one it resembles.
+                let value = new.alike.map_or(Value::Number(1.0), |(_, value)| value);
+                values.insert(parameter_key(&new.name).into(), value);
+            }
         }
     }
 
@@ -109,13 +123,15 @@ impl Preset {
         Ok(())
     }
 
-    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI.
+    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI, that
+    /// of a formula's parameter with a unit of its own is one of that unit.
     ///
     /// # Errors
     /// As [`Parameter::parse`] and [`Preset::set`].
     pub fn assign(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
-        let value = row.parse(text)?;
+        let own = row.own_unit_in(&self.units).is_some();
+        let value = if own { self.typed(&row, text)? } else { row.parse(text)? };
         self.set(key, value)
     }
 
@@ -124,9 +140,8 @@ impl Preset {
     /// # Errors
     /// As [`Parameter::parse`].
     pub fn typed(&self, row: &Parameter, text: &str) -> Result<Value, Invalid> {
-        let quantity = if row.kind == Kind::Control { Quantity::ForcePerLength } else { row.quantity };
         let (Some(unit), true) =
-            (self.units.unit(quantity), row.kind.is_number() || row.kind == Kind::Control)
+            (row.unit_in(&self.units), row.kind.is_number() || row.kind == Kind::Control)
         else {
             return row.parse(text);
         };
@@ -139,6 +154,17 @@ impl Preset {
         match parse_quantity(number) {
             Ok(value) if value.unit.is_none() => row.parse(&format!("{number} {}", unit.ascii())),
             _ => row.parse(text),
+        }
+    }
+
+    /// The number of a text for a row, as an assignment on the command line would read it, in SI or reduced units.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`]; a unit of another dimension; a word.
+    pub fn number(&self, row: &Parameter, text: &str) -> Result<f64, Invalid> {
+        match self.resolved(&row.key, row.parse(text)?)? {
+            Value::Number(x) => Ok(x),
+            _ => Err(row.wrong_type(format!("the text \"{}\"", quote(text)))),
         }
     }
 

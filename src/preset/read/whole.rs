@@ -4,8 +4,10 @@ use super::MISTAKES;
 use super::mistake::{Mistake, Origin, ReadError};
 use super::sheet::{Entry, Sheet};
 use crate::preset::build::{Values, build};
+use crate::preset::family::parameter_key;
 use crate::preset::invalid::Invalid;
 use crate::preset::model::Preset;
+use crate::preset::resolve::count_in_own_units;
 use crate::preset::schema::{Key, START_KEYS, table_of};
 use crate::preset::shape::fit_parameters;
 
@@ -39,8 +41,16 @@ impl Sheet {
             let assigned = |key: &str| {
                 self.entries.get(key).is_some_and(|entry| matches!(entry.origin, Origin::Assignment(_)))
             };
-            fit_parameters(&mut values, assigned);
+            // Another formula's parameters are not guessed: a misspelt one would be a gap that nobody meant.
+            for new in fit_parameters(&mut values, assigned) {
+                let meant = new.alike.map(|(name, _)| parameter_key(&name).into());
+                let key = parameter_key(&new.name).into();
+                let origin = self.entries.get("gap.formula").map(|entry| entry.origin.clone());
+                let origin = origin.unwrap_or(Origin::File { name: self.name.clone(), line: None });
+                mistakes.push(Mistake { origin, invalid: Invalid::Unset { key, meant } });
+            }
         }
+        count_in_own_units(&mut values);
         match build(&values) {
             Ok(mut preset) if mistakes.is_empty() => {
                 for (key, text, origin) in &self.groups {
@@ -104,10 +114,12 @@ impl Sheet {
     }
 }
 
-/// What the unknown keys were meant to be.
+/// What the unknown keys were meant to be, and what has been said to lack a value.
 fn meant_keys(mistakes: &[Mistake]) -> Vec<Key> {
     let meant = |mistake: &Mistake| match &mistake.invalid {
         Invalid::UnknownKey { meant, .. } => meant.clone(),
+        // Said already, in words of its own.
+        Invalid::Unset { key, .. } => Some(key.clone()),
         _ => None,
     };
     mistakes.iter().filter_map(meant).collect()

@@ -36,6 +36,7 @@ const fn measured(
         meaning: Borrowed(meaning),
         dimension: Borrowed(dimension),
         quantity,
+        unit: None,
         kind,
         fallback: Fallback::Required,
         applies: Applies::Always,

@@ -4,10 +4,10 @@ use super::{is_selected, pair, side_panel};
 use crate::contact::{Control, Groups};
 use crate::explorer::{Model, Panel};
 use crate::preset::{Parameter, Row, Value, groups};
-use crate::report::number::{short, with_unit};
+use crate::report::number::short;
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
-use crate::units::{Quantity, UnitSystem};
+use crate::units::UnitSystem;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -97,15 +97,16 @@ fn knob_line(
     let label = format!("{mark}{:<9} ", theme.symbols(&row.label));
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.len());
     // As many digits as there is room for, so that no unit is cut.
-    let shown = |quantity, x, most: usize| {
-        let text = |digits| with_unit(units, quantity, x, theme.ascii, |x| short(x, digits));
+    let shown = |x, most: usize| {
+        let shown = row.shown(units, x);
+        let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
         (4..=most).rev().map(text).find(|text| text.chars().count() <= room).unwrap_or_else(|| text(3))
     };
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => shown(row.quantity, *x, 7),
+        Some(Value::Number(x)) => shown(*x, 7),
         Some(Value::Control(Control::Stiffness(k))) => {
-            format!("k {}", shown(Quantity::ForcePerLength, *k, 5))
+            format!("k {}", shown(*k, 5))
         }
         Some(value) => theme.text(&value.to_string()),
     };

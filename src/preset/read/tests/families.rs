@@ -46,8 +46,21 @@ fn formulas_and_waves_read() {
     }
     let with = |assignments: &[&str]| read_with("f.toml", FORMULA, assignments).unwrap();
     assert_eq!(with(&["gap.parameters.A=0.005"]).get("gap.parameters.A"), Some(0.005.into()));
-    let other = with(&["gap.formula=r^2/(2*R) + b*r^4", "gap.parameters.R=2"]);
+    let formula = "gap.formula=r^2/(2*R) + b*r^4";
+    let other = with(&[formula, "gap.parameters.R=2", "gap.parameters.b=1"]);
     assert_eq!(other.get("gap.parameters.R"), Some(2.0.into()));
+    // A name without a value is not guessed.
+    for (set, message) in [
+        (formula, "the formula needs a value for gap.parameters.b, as gap.parameters.b=1"),
+        (
+            "gap.formula=r^2/(2*R) + A*cos(r/lamda)",
+            "the formula needs a value for gap.parameters.lamda, as gap.parameters.lamda=1; did you mean \
+             gap.parameters.lambda?",
+        ),
+    ] {
+        let error = read_with("f.toml", FORMULA, &[set]).unwrap_err().to_string();
+        assert_eq!(error, format!("--set {set}: {message}"));
+    }
     assert_eq!((other.get("gap.parameters.b"), other.get("gap.parameters.A")), (Some(1.0.into()), None));
 
     let preset = read("h.toml", WAVES).unwrap();
