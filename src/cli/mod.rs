@@ -11,6 +11,7 @@
 //! Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
 
+mod assigned;
 mod completions;
 mod explore;
 mod failure;
@@ -90,6 +91,10 @@ struct Problem {
     #[arg(value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
+    ///
+    /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
+    /// changes what it follows from: groups.amplitude_over_wavelength, groups.wavelength_over_radius, groups.adhesion.
+    /// An SI preset is shown in the units of its display keys: display.force=mN.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,
 }
@@ -113,7 +118,9 @@ fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Fai
         Some(argument) => store.resolve(argument)?,
         None => store.resolve(crate::preset::shipped::DEFAULT)?,
     };
-    Ok(store.load(&source, assignments)?)
+    let loaded = store.load(&source, assignments)?;
+    assigned::tell(&store, &source, assignments, &loaded.preset);
+    Ok(loaded)
 }
 
 /// Runs the command line of this process.

@@ -16,6 +16,14 @@ pub enum Invalid {
         /// The known key most alike.
         meant: Option<Key>,
     },
+    /// A group that cannot be set.
+    #[error("unknown key {key}; of the groups, {known} can be set")]
+    UnknownGroup {
+        /// The key as written.
+        key: String,
+        /// The groups that can.
+        known: String,
+    },
     /// The text is no TOML.
     #[error("{what}")]
     Syntax {
@@ -223,6 +231,7 @@ impl Invalid {
             | Self::Wide { key, .. } => Some(key),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }
+            | Self::UnknownGroup { .. }
             | Self::Syntax { .. }
             | Self::Assignment
             | Self::NotTable { .. }

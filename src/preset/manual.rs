@@ -1,6 +1,7 @@
 //! The key table as Markdown, for the manual.
 
 use super::family;
+use super::groups;
 use super::schema::PARAMETERS;
 use std::fmt::Write;
 
@@ -11,7 +12,7 @@ pub fn key_table() -> String {
     let shape = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
     let (before, after) = PARAMETERS.split_at(shape);
     let families: Vec<_> = family::examples().collect();
-    for row in before.iter().chain(&families).chain(after) {
+    for row in before.iter().chain(&families).chain(after).chain(&groups::GROUPS) {
         let dimension =
             if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
         // Writing to a string cannot fail.
@@ -35,7 +36,10 @@ mod tests {
     #[test]
     fn every_key_has_a_row_of_five_cells() {
         let text = key_table();
-        assert_eq!(text.lines().count(), PARAMETERS.len() + family::examples().count() + 2);
+        assert_eq!(
+            text.lines().count(),
+            PARAMETERS.len() + family::examples().count() + groups::GROUPS.len() + 2
+        );
         assert!(text.lines().all(|line| line.matches('|').count() == 6), "{text}");
     }
 }

@@ -6,7 +6,9 @@ use crate::preset::build::Values;
 use crate::preset::family;
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
-use crate::preset::schema::{AUTO, CHOOSERS, DISPLAY, FORMAT, PARAMETERS, Row, SYSTEMS, parameter};
+use crate::preset::schema::{
+    AUTO, CHOOSERS, DISPLAY, FORMAT, PARAMETERS, Parameter, Row, SYSTEMS, parameter,
+};
 use crate::preset::shape;
 use crate::preset::suggest::closest_key;
 use crate::preset::text::quote;
@@ -100,8 +102,10 @@ impl Preset {
 
     pub(super) fn unknown_key(&self, key: &str) -> Invalid {
         let rows: Vec<Row> = self.rows().chain(groups::GROUPS.iter().map(Row::Borrowed)).collect();
-        let meant = closest_key(key, rows.iter().map(|row| (&*row.key, &*row.label)));
-        Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
+        unknown_among(
+            key,
+            rows.iter().map(AsRef::as_ref).filter(|row| row.fits(CHOOSERS[0], self.gap.name())),
+        )
     }
 
     pub(super) fn keyed(&self) -> Values {
@@ -119,8 +123,17 @@ pub fn is_of_units(key: &str) -> bool {
     key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
 }
 
-/// The error for a key without a row.
-pub(in crate::preset) fn unknown_key(key: &str) -> Invalid {
-    let meant = closest_key(key, PARAMETERS.iter().map(|row| (&*row.key, &*row.label)));
-    Invalid::UnknownKey { key: quote(key), meant: meant.map(Into::into) }
+/// The error for a key without a row, in a preset whose gap has the shape `shape`, where that is known: the keys of other
+/// shapes are not offered.
+pub(in crate::preset) fn unknown_key(key: &str, shape: Option<&str>) -> Invalid {
+    unknown_among(key, PARAMETERS.iter().filter(|row| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape))))
+}
+
+fn unknown_among<'a>(key: &str, rows: impl Iterator<Item = &'a Parameter>) -> Invalid {
+    if key.starts_with("groups.") {
+        let known: Vec<&str> = groups::GROUPS.iter().map(|row| &*row.key).collect();
+        return Invalid::UnknownGroup { key: quote(key), known: known.join(", ") };
+    }
+    let meant = closest_key(key, rows.map(|row| (&*row.key, &*row.label)));
+    Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
 }

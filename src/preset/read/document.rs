@@ -9,7 +9,7 @@ use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured::located;
 use crate::preset::model::unknown_key;
-use crate::preset::schema::{Key, Kind, PARAMETERS, parameter, tables};
+use crate::preset::schema::{CHOOSERS, Key, Kind, PARAMETERS, parameter, tables};
 use crate::preset::suggest::closest;
 use crate::preset::text::{quote, sanitize};
 use crate::preset::value::Value;
@@ -68,7 +68,7 @@ impl Sheet {
                         (_, Some(table)) if value.get_ref().is_table() => {
                             Invalid::UnknownKey { key: quote(&full), meant: Some(table.into()) }
                         }
-                        _ => unknown_key(&full),
+                        _ => unknown_key(&full, None),
                     };
                     self.mistake(origin, invalid);
                 }
@@ -135,7 +135,12 @@ impl Sheet {
             (None, Some(table), _) => {
                 self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
             }
-            (None, None, _) => self.mistake(origin, unknown_key(key)),
+            (None, None, _) => {
+                // The file is laid down by now.
+                let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
+                let unknown = unknown_key(key, shape.map(ToString::to_string).as_deref());
+                self.mistake(origin, unknown);
+            }
         }
     }
 

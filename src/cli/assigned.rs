@@ -1,0 +1,76 @@
+//! What assignments on the command line did that their text does not show, on standard error: the values that a group
+//! changed, and bare numbers of an SI preset that may have been meant in another unit.
+
+use super::warn;
+use crate::preset::{Preset, Source, Store, Value, groups};
+use crate::units::number::short;
+use crate::units::parse_quantity;
+use std::io::Write;
+
+/// A bare number further than this factor from the preset's own value is worth a word.
+const FAR: f64 = 1e3;
+
+/// Tells what the assignments made of the preset from `source`, which is now `after`.
+pub(super) fn tell(store: &Store, source: &Source, assignments: &[String], after: &Preset) {
+    let parted =
+        || assignments.iter().filter_map(|text| text.split_once('=')).map(|(key, text)| (key.trim(), text));
+    let is_group = |key: &str| groups::row(key).is_some();
+    if parted().any(|(key, _)| is_group(key)) {
+        let rest: Vec<&String> = assignments
+            .iter()
+            .filter(|text| !is_group(text.split('=').next().unwrap_or_default().trim()))
+            .collect();
+        if let Ok(before) = store.load(source, &rest) {
+            // Nobody may be listening.
+            let _ = writeln!(
+                std::io::stderr(),
+                "pulloff: note: groups changed {}",
+                changed(&before.preset, after)
+            );
+        }
+    }
+    let bare = |text: &str| parse_quantity(text).is_ok_and(|value| value.unit.is_none());
+    if parted().any(|(_, text)| bare(text))
+        && let Ok(own) = store.load(source, &[] as &[&str])
+    {
+        let far = parted().filter(|(_, text)| bare(text)).filter_map(|(key, _)| far(&own.preset, after, key));
+        warn(&far.collect::<Vec<_>>());
+    }
+}
+
+/// The values of `after` that `before` has otherwise.
+fn changed(before: &Preset, after: &Preset) -> String {
+    let moved = after.rows().filter(|row| before.get(&row.key) != after.get(&row.key));
+    let told: Vec<String> =
+        moved.filter_map(|row| Some(format!("{} = {}", row.key, said(after, &row.key)?))).collect();
+    if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
+}
+
+/// A number as it is shown.
+fn said(preset: &Preset, key: &str) -> Option<String> {
+    let row = preset.row(key)?;
+    let Some(Value::Number(x)) = preset.get(key) else { return None };
+    let shown = row.shown(&preset.units, x);
+    Some(shown.text(&short(shown.number, 6), true))
+}
+
+/// What was understood by a bare number in SI that is far from the preset's own value.
+fn far(own: &Preset, after: &Preset, key: &str) -> Option<String> {
+    let row = after.row(key)?;
+    row.unit_in(&after.units)?;
+    let (Some(Value::Number(before)), Some(Value::Number(now))) = (own.get(key), after.get(key)) else {
+        return None;
+    };
+    let ratio = (now / before).abs();
+    let is_far =
+        own.units == after.units && ratio.is_finite() && ratio > 0.0 && !(1.0 / FAR..=FAR).contains(&ratio);
+    is_far.then(|| {
+        let (now, before) = (said(after, key), said(own, key));
+        format!(
+            "{key} is {} now, {} in the preset: a bare number is {}",
+            now.unwrap_or_default(),
+            before.unwrap_or_default(),
+            row.unit.as_ref().map_or_else(|| "SI".to_owned(), |unit| format!("in {}", unit.ascii()))
+        )
+    })
+}
