@@ -2,7 +2,8 @@
 
 use super::Width;
 use super::svg::{finish, frame};
-use crate::sweep::{Results, ResultsError};
+use crate::sweep::Results;
+use crate::sweep::results::ResultsError;
 use kuva::plot::ContourPlot;
 use kuva::render::render::render_multiple;
 

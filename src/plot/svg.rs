@@ -4,15 +4,17 @@ use super::Width;
 use super::chart::{Axis, Chart, Run};
 use super::ink::{self, Stroke};
 use crate::figure::{Bounds, Line, Mark, Role};
+use crate::report::number::short;
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
 use kuva::prelude::{Layout, Plot, SvgBackend, TextAnnotation, Theme, TickAlign};
 use kuva::render::color::Color;
-use kuva::render::layout::ComputedLayout;
+use kuva::render::layout::{ComputedLayout, TickFormat};
 use kuva::render::plots::Plot as Drawn;
 use kuva::render::render::{PathData, Primitive, Scene, render_multiple};
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// The library counts in units of 1/96 inch.
 const UNITS_PER_MM: f64 = 96.0 / 25.4;
@@ -28,6 +30,9 @@ const SMALL_LETTERS: u32 = 9;
 const FONT: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 /// The name of the field's outline in the document; the library's own would change from figure to figure.
 const FIELD: &str = "field";
+
+/// Axes whose largest number is in this range have plain numbers.
+const PLAIN: (f64, f64) = (2e-3, 1e5);
 
 /// `chart` as an SVG document of this width; the height follows from what the legend needs.
 pub fn svg(chart: &Chart, width: Width) -> String {
@@ -114,12 +119,14 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
         .with_x_axis_max(bounds.x[1])
         .with_y_axis_min(bounds.y[0])
         .with_y_axis_max(bounds.y[1]);
-    if x.run == Run::Logarithmic {
-        layout = layout.with_log_x();
-    }
-    if y.run == Run::Logarithmic {
-        layout = layout.with_log_y();
-    }
+    layout = match x.run {
+        Run::Linear => layout.with_x_tick_format(ticks(bounds.x)),
+        Run::Logarithmic => layout.with_log_x(),
+    };
+    layout = match y.run {
+        Run::Linear => layout.with_y_tick_format(ticks(bounds.y)),
+        Run::Logarithmic => layout.with_log_y(),
+    };
     if !legend.is_empty() {
         layout = layout
             .with_legend_entries(legend.to_vec())
@@ -132,6 +139,21 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
             layout.with_annotation(TextAnnotation::new(plain(reason), x, y).with_font_size(SMALL_LETTERS));
     }
     layout
+}
+
+/// One format for all numbers of an axis: plain, or with the power of ten of the largest.
+fn ticks([lo, hi]: [f64; 2]) -> TickFormat {
+    let largest = lo.abs().max(hi.abs());
+    // What is left of a zero by rounding is one.
+    let clean = move |x: f64| if x.abs() < 1e-9 * largest { 0.0 } else { x };
+    if largest == 0.0 || (PLAIN.0..PLAIN.1).contains(&largest) {
+        return TickFormat::Custom(Arc::new(move |x| short(clean(x), 6)));
+    }
+    let power = largest.log10().floor();
+    TickFormat::Custom(Arc::new(move |x| match short(clean(x) / 10.0_f64.powf(power), 6) {
+        zero if zero == "0" => zero,
+        mantissa => format!("{mantissa}e{power}"),
+    }))
 }
 
 /// A text as it stands: to the library a dollar sign begins a formula, and no document holds control characters.
@@ -251,6 +273,17 @@ mod tests {
 
     fn chart(lines: Vec<Line>) -> Chart {
         Chart::new(Axis::default(), Axis::default(), lines)
+    }
+
+    #[test]
+    fn the_numbers_of_an_axis_have_one_format() {
+        let all = |bounds, ticks: &[f64]| -> Vec<String> {
+            let format = super::ticks(bounds);
+            ticks.iter().map(|tick| format.format(*tick)).collect()
+        };
+        assert_eq!(all([-0.004, 0.02], &[-1e-19, 0.005, 0.01, 0.015]), ["0", "0.005", "0.01", "0.015"]);
+        assert_eq!(all([0.0, 2e-5], &[0.0, 5e-6, 1e-5]), ["0", "0.5e-5", "1e-5"]);
+        assert_eq!(all([-3e7, 1e6], &[-2e7, -5e6]), ["-2e7", "-0.5e7"]);
     }
 
     #[test]

@@ -153,12 +153,12 @@ pub fn run(
         keeper.offer(Snapshot::of(&app.model));
     });
     drop(guard);
-    // A file still being written would be cut off.
-    temporary::finish(SAVE_PATIENCE);
     if let Err(reason) = keeper.finish(Ended::Quit, PATIENCE[0]) {
         // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
         let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
     }
+    // A file still being written would be cut off; nothing is written after this.
+    temporary::finish(SAVE_PATIENCE);
     Ok(ExitCode::SUCCESS)
 }
 

@@ -56,6 +56,14 @@ pub enum UnitError {
         /// What stands there.
         found: String,
     },
+    /// The expression goes on behind its unit.
+    #[error("column {}: found {found} behind a unit, which stands once behind the whole expression, as in (1+1/2) um", place.column)]
+    Behind {
+        /// Where.
+        place: Place,
+        /// What stands there.
+        found: String,
+    },
     /// A name that is no unit.
     #[error("column {}: unknown unit {name}", place.column)]
     Unknown {
@@ -96,7 +104,13 @@ impl Unit {
             blanks(&mut input);
             let at = place(&input);
             let Some(name) = word(&mut input) else {
-                return Err(UnitError::Expected { place: at, found: piece(&input) });
+                let goes_on = input.starts_with(|c: char| c.is_ascii_digit() || "+-(".contains(c));
+                let found = piece(&input);
+                return Err(if goes_on && !factors.is_empty() {
+                    UnitError::Behind { place: at, found }
+                } else {
+                    UnitError::Expected { place: at, found }
+                });
             };
             let Some((prefix, unit)) = lookup(name) else {
                 return Err(UnitError::Unknown { place: at, name: name.chars().take(NAME).collect() });
@@ -293,6 +307,14 @@ mod tests {
             ("3 furlong", "column 3: unknown unit furlong"),
             ("3 Nm", "column 3: unknown unit Nm"),
             ("3 1/", "column 5: expected a unit such as um, mN, kPa or mJ/m^2, found the end"),
+            (
+                "3 um/75",
+                "column 6: found 75 behind a unit, which stands once behind the whole expression, as in (1+1/2) um",
+            ),
+            (
+                "3 um+1um",
+                "column 5: found '+' behind a unit, which stands once behind the whole expression, as in (1+1/2) um",
+            ),
             ("3 1 m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 1"),
             ("3 2/m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 2"),
             ("3 m^x", "column 4: the power of a unit must be an integer from -9 to 9, not 0"),

@@ -224,7 +224,7 @@ fn the_screen_is_exported_as_text() {
 fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     let mut screen = screen("wavy-sphere");
     let folder = tempfile::tempdir().unwrap();
-    let mut figure = |screen: &mut Screen, name: &str| {
+    let figure = |screen: &mut Screen, name: &str| {
         screen.keys("ejjjjj\r");
         assert!(screen.text(120, 40).contains("wavy-sphere-force-approach.svg"));
         for _ in 0..60 {
