@@ -47,8 +47,14 @@ pub trait Gap: Debug + Send + Sync {
 
     /// The shortest wave of the gap, or `None` when it has none.
     ///
-    /// Step lengths, mesh warnings and the crest index are measured by it.
+    /// Step lengths and mesh warnings are measured by it.
     fn feature_length(&self) -> Option<f64>;
+
+    /// λ of a gap with one wave alone, whose crests are at r = mλ; `None` for every other, where s over the shortest
+    /// wave counts no crests.
+    fn wavelength(&self) -> Option<f64> {
+        None
+    }
 
     /// The shortest wave of a gap that is smooth in r apart from its waves, or `None` where nothing is promised.
     ///
@@ -118,6 +124,10 @@ impl<G: Gap> Gap for Scaled<G> {
         self.gap.feature_length().map(|f| f / self.length)
     }
 
+    fn wavelength(&self) -> Option<f64> {
+        self.gap.wavelength().map(|wavelength| wavelength / self.length)
+    }
+
     fn band_limit(&self) -> Option<f64> {
         self.gap.band_limit().map(|f| f / self.length)
     }
@@ -150,6 +160,10 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
 
     fn feature_length(&self) -> Option<f64> {
         (**self).feature_length()
+    }
+
+    fn wavelength(&self) -> Option<f64> {
+        (**self).wavelength()
     }
 
     fn band_limit(&self) -> Option<f64> {

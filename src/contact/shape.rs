@@ -217,6 +217,10 @@ impl Gap for Shape {
         if let Some(other) = self.other() {
             return other.gap().feature_length();
         }
+        self.wavelength()
+    }
+
+    fn wavelength(&self) -> Option<f64> {
         // A wave without amplitude is no feature: the mesh and the steps need not resolve it.
         self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
     }

@@ -49,7 +49,7 @@ pub struct Inside {
     pub id: u64,
     /// The way to the user's units.
     pub units: Units,
-    /// λ, where the gap has waves.
+    /// λ, where the gap has one wave alone.
     pub wave: Option<f64>,
     /// Pressure and gap across the radius.
     pub profile: Profile,
@@ -70,7 +70,7 @@ impl Inside {
         Self {
             id: ask.id,
             units: *case.units(),
-            wave: case.reduced.gap.feature_length(),
+            wave: case.reduced.gap.wavelength(),
             profile: Profile::of(&case.reduced, case.basis.as_ref(), s, approach),
             exact: if ask.exact { exact_pressure(ask) } else { Vec::new() },
             barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),

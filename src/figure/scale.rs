@@ -5,7 +5,8 @@ use crate::contact::Gap;
 use crate::explorer::{Axes, CurveData, View};
 use crate::units::{Quantity, UnitSystem};
 
-/// The divisors of the axes; without adhesion there is no `P_c`, without waves no λ, and those axes stay raw.
+/// The divisors of the axes; without adhesion there is no `P_c`, without one wave alone no λ,
+/// and those axes stay raw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale<'a> {
     /// `P_c`.
@@ -28,7 +29,7 @@ impl<'a> Scale<'a> {
         let problem = &curve.case.problem;
         Self {
             force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
-            wave: problem.shape.feature_length(),
+            wave: problem.shape.wavelength(),
             modulus: Some(problem.effective_modulus),
             units,
         }

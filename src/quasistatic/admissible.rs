@@ -153,7 +153,7 @@ pub fn nearest_crest(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -
         let (r, w, _) = vertex(near, [a, b, c]);
         (radius, gap) = (r, w);
     }
-    Some(Crest { radius, gap, wave: wave_index(radius, wave) })
+    Some(Crest { radius, gap, wave: wave_index(radius, problem.gap.wavelength()) })
 }
 
 /// Where the parabola through three points is smallest, its value, and half their width.

@@ -139,10 +139,10 @@ impl Stiffness {
 }
 
 /// The crest at which an edge of radius `s` sits: floor(s/λ + ½); crests are at r = mλ.
-pub fn wave_index(s: f64, feature_length: Option<f64>) -> Option<u64> {
+pub fn wave_index(s: f64, wavelength: Option<f64>) -> Option<u64> {
     // s/λ is positive and far below 2^53.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    feature_length.map(|wave| (s / wave + 0.5).floor() as u64)
+    wavelength.map(|wave| (s / wave + 0.5).floor() as u64)
 }
 
 /// A reduced problem, its basis and the scales of its curve.
@@ -242,9 +242,9 @@ impl Equilibrium {
         self.point(&self.basis.equilibrium(&self.problem, s)?)
     }
 
-    /// The wave index of an edge.
+    /// The wave index of an edge, where the gap has one wave alone.
     pub fn wave(&self, s: f64) -> Option<u64> {
-        wave_index(s, self.problem.gap.feature_length())
+        wave_index(s, self.problem.gap.wavelength())
     }
 
     /// Where `miss` changes its sign between two points of the curve, by halving in s through the explicit root.

@@ -202,7 +202,7 @@ impl UnloadReport {
 impl StateReport {
     /// A state of `problem` in the user's units.
     pub fn new(problem: &Reduced, state: &State) -> Self {
-        let wave = wave_index(state.contact_radius, problem.gap.feature_length());
+        let wave = wave_index(state.contact_radius, problem.gap.wavelength());
         let State { contact_radius, approach, force, .. } = state.in_units(&problem.units);
         Self { contact_radius, approach, force, wave }
     }

@@ -106,7 +106,7 @@ fn quantities(node: &Node) -> String {
         ("U", shown(Quantity::Energy, state.energy)),
     ];
     lines.extend(critical_force(&setting.preset).map(|critical| ("P/Pc", pure(state.force / critical))));
-    let wave = setting.reduced.gap.feature_length();
+    let wave = setting.reduced.gap.wavelength();
     lines.extend(wave.map(|wave| ("s/λ", pure(node.state.contact_radius / wave))));
     lines.push(("control", setting.shown_control(node.control).to_string()));
     lines.push(("δ held", word(Control::Displacement).to_owned()));

@@ -1,7 +1,7 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
 use super::{is_selected, pair, side_panel};
-use crate::contact::{Control, Groups};
+use crate::contact::{Control, Gap, Groups};
 use crate::explorer::{Model, Panel};
 use crate::preset::{Parameter, Row, Value, groups};
 use crate::report::number::short;
@@ -137,6 +137,7 @@ fn group_lines(
     for (name, value) in [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)] {
         items.extend(value.map(|value| (theme.text(name), value, false)));
     }
+    let shortest = shortest_wave(theme, model);
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
     for (name, value, is_chosen) in items {
@@ -157,5 +158,15 @@ fn group_lines(
             line.spans.extend(spans);
         }
     }
+    lines.extend(shortest);
     lines
+}
+
+/// By what mesh and steps are measured, where that is no λ among the parameters: the waves of a formula or of measured
+/// rows are found, not given.
+fn shortest_wave(theme: Theme, model: &Model) -> Option<Line<'static>> {
+    let gap = &model.preset.gap;
+    let length = gap.feature_length().filter(|_| gap.wavelength().is_none())?;
+    let text = with_unit(&model.preset.units, Quantity::Length, length, theme.ascii, |x| short(x, 4));
+    Some(Line::from(pair(theme, " shortest wave ", &text).to_vec()))
 }

@@ -55,7 +55,7 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
     let critical = critical_force(&setting.preset);
-    let wave = setting.reduced.gap.feature_length();
+    let wave = setting.reduced.gap.wavelength();
     let s = node.state.contact_radius;
     let mut force = pair(theme, " P ", &shown(theme, node, Quantity::Force, state.force, 4)).to_vec();
     if let Some(critical) = critical {
