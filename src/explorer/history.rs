@@ -113,6 +113,19 @@ impl Node {
         matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
     }
 
+    /// Of a state that cannot be, the reduced r at fault: of the crest that would touch, with its number where it has one,
+    /// or `None` with it where the disc would have to pull.
+    pub fn fault_radius(&self) -> Option<(f64, Option<Option<u64>>)> {
+        let found = self.admissibility;
+        if found.holds || self.is_apart() {
+            return None;
+        }
+        match found.overlapping() {
+            Some(crest) => Some((crest.radius, Some(crest.wave))),
+            None => found.least_pressure.map(|(radius, _)| (radius, None)),
+        }
+    }
+
     /// A limit point under `control`.
     pub fn is_limit(&self, control: Control) -> bool {
         self.kind == NodeKind::Limit && self.control == control

@@ -32,8 +32,32 @@ fn progress(model: &Model) -> String {
     model.progress.map_or_else(String::new, |progress| format!(": {}; Esc gives up", progress.text()))
 }
 
-/// What the state is and which key is next.
+/// What the state is and which key is next, behind why the state cannot be.
 pub fn hint(model: &Model) -> String {
+    let fault =
+        model.walker().filter(|_| model.curve_error.is_none() && model.walking.is_none()).and_then(fault);
+    let next = next(model);
+    match fault {
+        Some(fault) => format!("Inadmissible: {fault}. {next}"),
+        None => next,
+    }
+}
+
+/// Why a state cannot be, in words: the crest that would touch, or where the disc would have to pull.
+fn fault(node: &Node) -> Option<String> {
+    let (radius, crest) = node.fault_radius()?;
+    let length = node.setting.units().length;
+    let radius = with_unit(&node.setting.preset.units, Quantity::Length, radius * length, false, |r| {
+        significant(r, 4)
+    });
+    Some(match crest {
+        Some(Some(number)) => format!("crest {number} at r {radius} would touch"),
+        Some(None) => format!("the crest at r {radius} would touch"),
+        None => format!("the disc would have to pull at r {radius}"),
+    })
+}
+
+fn next(model: &Model) -> String {
     if let Some(error) = &model.curve_error {
         return error.clone();
     }

@@ -1,7 +1,7 @@
 //! The instabilities, one line each, and behind those of the curve its inadmissible parts.
 
 use super::{is_selected, panel};
-use crate::explorer::{EventSource, Inadmissible, Model, Panel};
+use crate::explorer::{Axes, EventSource, Inadmissible, Model, Panel};
 use crate::report::OverlapReport;
 use crate::report::number::{fixed, loss, significant, with_unit};
 use crate::report::unload::EventReport;
@@ -29,8 +29,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(block, area);
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
     let wide = inner.width >= WIDE;
-    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.sweep.critical_force);
-    frame.render_widget(Line::styled(theme.text(&heads(wide, critical)), theme.dim()), head);
+    let critical = critical(model, wide);
+    let (heads, texts) = table(&model.preset.units, &events, critical, wide);
+    frame.render_widget(Line::styled(theme.text(&heads), theme.dim()), head);
     let parts = model.shown_inadmissible();
     if events.is_empty() && parts.is_empty() {
         frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
@@ -41,8 +42,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let first = first(model, count, rows);
     let here = here(model, &events);
     let hidden = count.saturating_sub(first + rows);
-    let texts = events.iter().enumerate().map(|(i, event)| {
-        let mut text = row(&model.preset.units, i + 1, event, critical, wide);
+    let texts = events.iter().zip(texts).map(|(event, mut text)| {
         if event.admissible == Some(false) {
             text.push_str(" !");
         }
@@ -111,9 +111,21 @@ fn title(model: &Model) -> String {
     let named: Vec<String> = named.into_iter().flatten().map(ToString::to_string).collect();
     let units = if named.is_empty() { String::new() } else { format!(" in {}", named.join(", ")) };
     match model.events {
-        EventSource::Curve => format!("Events on the curve: {on_curve}{units} (v: walked {walked})"),
+        EventSource::Curve => {
+            let parts = match model.shown_inadmissible().len() {
+                0 => String::new(),
+                count => format!(", {count} inadmissible"),
+            };
+            format!("Events on the curve: {on_curve}{parts}{units} (v: walked {walked})")
+        }
         EventSource::Walked => format!("Events walked: {walked}{units} (v: on the curve {on_curve})"),
     }
+}
+
+/// `P_c`, by which forces are divided; 0 without adhesion, and on raw axes where forces have no column of their own.
+fn critical(model: &Model, wide: bool) -> f64 {
+    let curve = model.curve.as_ref().filter(|_| wide || model.axes == Axes::Reduced);
+    curve.map_or(0.0, |curve| curve.sweep.critical_force)
 }
 
 /// Pull-off and total loss, as much of it as there is room for.
@@ -131,20 +143,24 @@ fn headline(model: &Model, room: usize) -> String {
         return lost(total, events.iter().all(|(_, e)| e.dissipated.is_some()));
     }
     let Some(report) = &curve.report else { return String::new() };
-    let force = if curve.sweep.critical_force > 0.0 {
-        format!("{} Pc", significant(report.min_force / curve.sweep.critical_force, 4))
-    } else {
-        shown(Quantity::Force, report.min_force)
-    };
+    let least = shown(Quantity::Force, report.min_force);
+    let share = (curve.sweep.critical_force > 0.0)
+        .then(|| format!("{} Pc", significant(report.min_force / curve.sweep.critical_force, 4)));
+    let force = share.clone().filter(|_| model.axes == Axes::Reduced).unwrap_or_else(|| least.clone());
+    // Both, where the one has a unit and there is room.
+    let both =
+        share.filter(|_| units.unit(Quantity::Force).is_some()).map(|share| format!("{least} = {share}"));
     let bounded = report.events.iter().all(|e| e.dissipated.is_some());
     let parts = [
         format!("least P {force}"),
         format!("least δ {}", shown(Quantity::Length, report.min_approach)),
         lost(report.total_dissipated, bounded),
     ];
-    let [force, _, lost] = &parts;
-    [parts.join(", "), format!("{force}, {lost}"), force.clone()]
+    let [force, approach, lost] = &parts;
+    let whole = both.map(|both| format!("least P {both}, {approach}, {lost}"));
+    whole
         .into_iter()
+        .chain([parts.join(", "), format!("{force}, {lost}"), force.clone()])
         .find(|text| text.chars().count() <= room)
         .unwrap_or_default()
 }
@@ -160,22 +176,79 @@ fn empty(model: &Model) -> String {
     }
 }
 
-/// The heads of the columns; without a `P_c` the forces over it are forces.
-fn heads(wide: bool, critical: f64) -> String {
-    let heads = if wide {
-        "  # event            δ     after         P     after   P/Pc  after         s     after  crest lost      by area"
-    } else {
-        "   #          δ   P/Pc  after         s     after  crest lost      event"
+/// A column: its head, its least width, and whether its cells begin at its left.
+type Column = (&'static str, usize, bool);
+
+/// The columns on a wide screen.
+const LONG: &[Column] = &[
+    ("#", 2, false),
+    ("event", 8, true),
+    ("δ", 9, false),
+    ("after", 9, false),
+    ("P", 9, false),
+    ("after", 9, false),
+    ("P/Pc", 6, false),
+    ("after", 6, false),
+    ("s", 9, false),
+    ("after", 9, false),
+    ("crest", 6, false),
+    ("lost", 9, true),
+    ("by area", 0, true),
+];
+
+/// The columns on a narrow one.
+const SHORT: &[Column] = &[
+    ("#", 3, false),
+    ("δ", 10, false),
+    ("P/Pc", 6, false),
+    ("after", 6, false),
+    ("s", 9, false),
+    ("after", 9, false),
+    ("crest", 6, false),
+    ("lost", 9, true),
+    ("event", 0, true),
+];
+
+/// The heads and the rows of the events, the columns as wide as their longest cell; without a `P_c` the forces over it
+/// are forces.
+fn table(units: &UnitSystem, events: &[EventReport], critical: f64, wide: bool) -> (String, Vec<String>) {
+    let columns = if wide { LONG } else { SHORT };
+    let cells =
+        |(i, event)| if wide { long(units, i, event, critical) } else { row(units, i, event, critical) };
+    let rows: Vec<Vec<String>> = (1..).zip(events).map(cells).collect();
+    let heads: Vec<String> = columns
+        .iter()
+        .map(|(head, ..)| if *head == "P/Pc" && critical <= 0.0 { "P" } else { head }.to_owned())
+        .collect();
+    let width = |at: usize| rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> =
+        columns.iter().enumerate().map(|(at, (_, least, _))| width(at).unwrap_or(0).max(*least)).collect();
+    let join = |cells: &[String]| {
+        let padded = cells.iter().zip(columns).zip(&widths).map(|((cell, (_, _, left)), width)| {
+            if *left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        padded.collect::<Vec<_>>().join(" ").trim_end().to_owned()
     };
-    if critical > 0.0 { heads.to_owned() } else { heads.replace("P/Pc", "   P") }
+    (format!(" {}", join(&heads)), rows.iter().map(|row| join(row)).collect())
 }
 
-fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64, wide: bool) -> String {
-    let in_digits = |x, digits| significant(units.shown(Quantity::Length, x).number, digits);
-    let length = |x| in_digits(x, 4);
+/// The crests before and after.
+fn crests(event: &EventReport) -> String {
+    let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
+    format!("{}>{}", crest(event.before.wave), crest(event.after.as_ref().and_then(|after| after.wave)))
+}
+
+fn dash() -> String {
+    "-".to_owned()
+}
+
+fn lost(units: &UnitSystem, event: &EventReport) -> String {
     let energy = |x| loss(units.shown(Quantity::Energy, x).number);
-    let dash = || "-".to_owned();
-    let after = event.after.as_ref();
+    event.dissipated.map_or_else(|| "no bound".to_owned(), energy)
+}
+
+/// P before and after over `P_c`, or in its unit.
+fn forces(units: &UnitSystem, event: &EventReport, critical: f64) -> [String; 2] {
     let force = |p: f64| {
         if critical > 0.0 {
             fixed(p / critical, 3)
@@ -183,34 +256,48 @@ fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64, wi
             significant(units.shown(Quantity::Force, p).number, 3)
         }
     };
-    let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
-    let crests = format!("{}>{}", crest(event.before.wave), crest(after.and_then(|a| a.wave)));
-    let lost = event.dissipated.map_or_else(|| "no bound".to_owned(), energy);
-    let before = &event.before;
-    let landed_force = after.map_or_else(dash, |a| force(a.force));
-    if !wide {
-        return format!(
-            "{number:>3} {:>10} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {}",
-            length(before.approach),
-            force(before.force),
-            length(before.contact_radius),
-            after.map_or_else(dash, |a| length(a.contact_radius)),
-            event.kind,
-        );
-    }
+    [force(event.before.force), event.after.as_ref().map_or_else(dash, |after| force(after.force))]
+}
+
+fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let [before, after] = forces(units, event, critical);
+    vec![
+        number.to_string(),
+        length(event.before.approach),
+        before,
+        after,
+        length(event.before.contact_radius),
+        event.after.as_ref().map_or_else(dash, |after| length(after.contact_radius)),
+        crests(event),
+        lost(units, event),
+        event.kind.to_owned(),
+    ]
+}
+
+fn long(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+    let shown = |quantity, x, digits| significant(units.shown(quantity, x).number, digits);
+    let (before, after) = (&event.before, event.after.as_ref());
+    let [share, share_after] = forces(units, event, critical);
     let agreement = match event.losses_agree() {
         Some(true) => "agrees".to_owned(),
-        _ => event.dissipated_by_area.map_or_else(|| "dead load".to_owned(), energy),
+        _ => event
+            .dissipated_by_area
+            .map_or_else(|| "dead load".to_owned(), |x| loss(units.shown(Quantity::Energy, x).number)),
     };
-    format!(
-        "{number:>2} {:<8} {:>9} {:>9} {:>9} {:>9} {:>6} {landed_force:>6} {:>9} {:>9} {crests:>6} {lost:<9} {agreement}",
-        event.kind,
-        length(before.approach),
-        after.map_or_else(dash, |a| length(a.approach)),
-        significant(units.shown(Quantity::Force, before.force).number, 4),
-        after.map_or_else(dash, |a| significant(units.shown(Quantity::Force, a.force).number, 4)),
-        force(before.force),
-        in_digits(before.contact_radius, 5),
-        after.map_or_else(dash, |a| in_digits(a.contact_radius, 5)),
-    )
+    vec![
+        number.to_string(),
+        event.kind.to_owned(),
+        shown(Quantity::Length, before.approach, 4),
+        after.map_or_else(dash, |a| shown(Quantity::Length, a.approach, 4)),
+        shown(Quantity::Force, before.force, 4),
+        after.map_or_else(dash, |a| shown(Quantity::Force, a.force, 4)),
+        share,
+        share_after,
+        shown(Quantity::Length, before.contact_radius, 5),
+        after.map_or_else(dash, |a| shown(Quantity::Length, a.contact_radius, 5)),
+        crests(event),
+        lost(units, event),
+        agreement,
+    ]
 }

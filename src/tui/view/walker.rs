@@ -25,7 +25,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(block, area);
     let Some(node) = node else { return };
     let stale = matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node);
-    let mut lines = if node.is_apart() { apart(theme, node) } else { state(theme, model, node) };
+    let mut lines = if node.is_apart() {
+        apart(theme, node)
+    } else {
+        state(theme, model, node, usize::from(inner.width))
+    };
     if stale {
         let style = theme.dim();
         lines = lines.into_iter().map(|line| Line::styled(line.to_string(), style)).collect();
@@ -51,7 +55,7 @@ fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
     ]
 }
 
-fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
+fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'static>> {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
     let critical = critical_force(&setting.preset);
@@ -97,7 +101,12 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
         Line::from(stable),
     ];
     lines.extend(inadmissible(theme, node));
-    lines.push(Line::from([pair(theme, " step ", &short(model.length, 3)), pair(theme, "  ", way)].concat()));
+    // A share of the range of every quantity, said where there is room.
+    let step = short(model.length, 3);
+    let said = format!("{step} of range");
+    let room = width.saturating_sub(" step   ".len() + way.chars().count());
+    let step = if said.len() <= room { said } else { step };
+    lines.push(Line::from([pair(theme, " step ", &step), pair(theme, "  ", way)].concat()));
     let mut last = Vec::new();
     if let Some(crest) = wave_index(s, wave) {
         last.extend(pair(theme, " crest ", &crest.to_string()));
@@ -112,12 +121,7 @@ fn state(theme: Theme, model: &Model, node: &Node) -> Vec<Line<'static>> {
 
 /// Said of a state that cannot be: r of the crest that would touch, or where the disc would have to pull.
 fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
-    let found = node.admissibility;
-    let radius = match (found.holds, found.overlapping(), found.least_pressure) {
-        (true, ..) => return None,
-        (false, Some(crest), _) => crest.radius,
-        (false, None, pressure) => pressure?.0,
-    };
+    let (radius, _) = node.fault_radius()?;
     let radius = shown(theme, node, Quantity::Length, radius * node.setting.units().length, 4);
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
