@@ -388,6 +388,7 @@ pub(super) fn begin(values: &mut Values, word: &str, radius: f64, wave: Option<(
         (COEFFICIENT.into(), Value::Number(0.5 / radius)),
         ("gap.exponent".into(), Value::Number(2.0)),
         ("gap.file".into(), "shipped:rough-sphere.csv".into()),
+        ("gap.smoothing".into(), AUTO.into()),
         ("gap.formula".into(), "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))".into()),
         ("gap.parameters.R".into(), Value::Number(radius)),
         ("gap.parameters.A".into(), Value::Number(amplitude)),

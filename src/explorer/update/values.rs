@@ -3,8 +3,8 @@
 use super::files::{file, read};
 use super::walk::{begin_walk, stop, walk};
 use super::{number, tell};
-use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::contact::{Control, Gap, Shape, Start};
 use crate::explorer::command::Assignment;
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
@@ -15,10 +15,13 @@ use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::walk::Action;
 use crate::preset::family::is_parameter;
-use crate::preset::schema::Kind;
+use crate::preset::invalid::Invalid;
+use crate::preset::schema::{Kind, RADIUS_OVER_CURVATURE, START_KEYS};
 use crate::preset::suggest::closest;
 use crate::preset::text::{greek, show_name, show_path};
 use crate::preset::{Preset, Row, Value, groups};
+use crate::report::number::{short, with_unit};
+use crate::units::Quantity;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -234,16 +237,19 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let result = match preset.typed(&row, text) {
         // A file is read by those who may wait for it.
         Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, name)],
-        value => value.and_then(|value| preset.set(key, value)),
+        value => value.and_then(|value| set_in_range(&mut preset, key, value)),
     };
     match result {
-        Ok(()) => {
+        Ok(moved) => {
             if row.key == "gap.formula" {
                 let before = before_tried(model).clone();
                 tell_new_parameters(model, &before, &preset);
             }
             model.untried = None;
             tell_effect(model, &row.key, &preset);
+            if let Some(moved) = moved {
+                tell(model, Level::Info, moved);
+            }
             change(model, preset)
         }
         Err(invalid) => {
@@ -251,6 +257,53 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             Vec::new()
         }
     }
+}
+
+/// Gives `preset` another value; a start that is not on the profile it gets moves onto it, which is returned in words.
+fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<String>, Invalid> {
+    /// The start on a profile that the start before does not fit, over the last radius.
+    const START: f64 = 0.8;
+    /// A start below this share of the last radius is of another size than the profile.
+    const FITTING: f64 = 0.05;
+    let Start::ContactRadius(start) = preset.path.start else { return preset.set(key, value).map(|()| None) };
+    if !matches!(key, "gap.shape" | "gap.file") {
+        return preset.set(key, value).map(|()| None);
+    }
+    let mut changed = preset.clone();
+    let result = changed.set(key, value.clone());
+    if result.is_err() {
+        // Perhaps for the range alone: once more with nothing of the path in the way.
+        changed.reset("path.end_contact_radius")?;
+        changed.set(START_KEYS[0], Value::Number(1e-6 * start))?;
+        if changed.set(key, value).is_err() {
+            return result.map(|()| None);
+        }
+    }
+    let largest = match &changed.gap {
+        Shape::Profile(measured) => measured.profile().largest_radius(),
+        _ => None,
+    };
+    let Some(largest) = largest else {
+        *preset = if result.is_ok() { changed } else { return result.map(|()| None) };
+        return Ok(None);
+    };
+    if result.is_ok() && start >= FITTING * largest {
+        *preset = changed;
+        return Ok(None);
+    }
+    let within =
+        changed.gap.radius_of_curvature().map_or(f64::INFINITY, |radius| RADIUS_OVER_CURVATURE * radius);
+    let moved = (START * largest).min(within);
+    changed.set(START_KEYS[0], Value::Number(moved))?;
+    let shown = |s| with_unit(&changed.units, Quantity::Length, s, false, |s| short(s, 4));
+    let told = format!(
+        "the start s {} is not on the profile, known up to {}: it is {} now",
+        shown(start),
+        shown(largest),
+        shown(moved)
+    );
+    *preset = changed;
+    Ok(Some(told))
 }
 
 /// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
@@ -313,8 +366,9 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
     let read = format!("{name}: {} rows", rows.radii.len());
     let said = std::iter::once(read).chain(notes).collect::<Vec<_>>().join("; ");
     let mut preset = model.preset.clone();
-    match preset.set("gap.file", Value::Profile(rows)) {
-        Ok(()) => {
+    match set_in_range(&mut preset, "gap.file", Value::Profile(rows)) {
+        Ok(moved) => {
+            let said = moved.map_or(said.clone(), |moved| format!("{said}; {moved}"));
             tell(model, Level::Info, said);
             change(model, preset)
         }
