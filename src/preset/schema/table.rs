@@ -96,8 +96,8 @@ pub static PARAMETERS: &[Parameter] = &[
     ),
     measured(
         "material.work_of_adhesion",
-        "gamma",
-        "work of adhesion w, the energy gained per unit area of contact (of both faces together)",
+        "w",
+        "work of adhesion (gamma of the paper): twice a face's surface energy",
         Kind::NonNegative,
         ("stress x length", Quantity::EnergyPerArea),
     ),
