@@ -287,6 +287,11 @@ fn walking(model: &Model) -> bool {
     model.history.current().is_some()
 }
 
+/// Without a curve, which was given up or failed, it is computed again.
+fn can_restart(model: &Model) -> bool {
+    walking(model) || !model.is_computing()
+}
+
 fn knob(model: &Model) -> bool {
     model.panel == Panel::Problem
 }
@@ -425,7 +430,7 @@ pub static ROWS: &[Row] = &[
             has_branches,
         ),
     ),
-    row(Id::Restart, "restart", WALK, "restart", "back to the start state", walking),
+    row(Id::Restart, "restart", WALK, "restart", "back to the start state", can_restart),
     taking(
         "control",
         row(

@@ -16,6 +16,9 @@ const PAN: f64 = 0.125;
 const ACROSS: f64 = 1.0 / 64.0;
 const UPWARDS: f64 = 1.0 / 32.0;
 
+/// Where there is an envelope of small waves.
+pub const NO_ENVELOPE: &str = "for wavy spheres with adhesion only";
+
 /// The middle of a window.
 pub const MIDDLE: (f64, f64) = (0.5, 0.5);
 
@@ -66,7 +69,7 @@ pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     model.overlays.toggle(overlay);
     let missing = model.curve.as_ref().is_some_and(|curve| curve.sweep.theory.envelope.is_none());
     if overlay == Overlay::Envelope && model.overlays.envelope && missing {
-        tell(model, Level::Info, "the envelope needs waves and adhesion: it is drawn where both are");
+        tell(model, Level::Info, format!("the envelope is {NO_ENVELOPE}"));
     }
 }
 

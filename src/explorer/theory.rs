@@ -24,7 +24,7 @@ pub struct Theory {
     pub exact: Vec<Place>,
     /// Its name.
     pub exact_name: &'static str,
-    /// The envelope of small waves; none without adhesion or waves.
+    /// The envelope of small waves; none without adhesion, and for wavy spheres alone.
     pub envelope: Option<Envelope>,
 }
 

@@ -76,12 +76,14 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
 
 #[test]
 fn radii_are_counted_in_waves_only_where_the_gap_has_one_alone() {
-    for (preset, title) in [("formula", "s over P/Pc"), ("harmonics", "s over P/Pc"), ("wavy-sphere", "s/λ over P/Pc")]
+    for (preset, title) in
+        [("formula", "s over P/Pc"), ("harmonics", "s over P/Pc"), ("wavy-sphere", "s/λ over P/Pc")]
     {
         let session = Session::new(preset);
         let curve = session.model.curve.as_ref().unwrap();
         assert_eq!(session.figure(View::RadiusForce).title, title);
-        let has_crests = curve.report.as_ref().unwrap().events.iter().any(|event| event.before.wave.is_some());
+        let has_crests =
+            curve.report.as_ref().unwrap().events.iter().any(|event| event.before.wave.is_some());
         assert_eq!(has_crests, title.starts_with("s/λ"), "{preset}");
     }
 }

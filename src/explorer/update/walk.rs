@@ -169,8 +169,12 @@ pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.inward = true;
-    let start = model.curve.as_ref().map(|curve| curve.case.start);
-    start.map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
+    match model.curve.as_ref().map(|curve| curve.case.start) {
+        Some(s) => walk(model, Action::MoveTo(s)),
+        // Given up or failed before: asked for again.
+        None if model.is_computing() => Vec::new(),
+        None => vec![want_curve(model)],
+    }
 }
 
 pub(super) fn scale_length(model: &mut Model, by: f64) {

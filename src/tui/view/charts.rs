@@ -20,24 +20,33 @@ const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
 /// Draws one view; the first one has the cross-hair and the keys.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
     let selected = first && is_selected(app, Panel::Charts);
-    let chart = Subject::of(&app.model).map_or_else(computing, |subject| {
-        let figure = subject.figure(view);
-        let mut chart = chart(&figure, &app.model.window(view), app.theme);
-        if first {
-            let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
-            let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
-            if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
-                chart.title.push_str(&hint);
+    let chart = Subject::of(&app.model).map_or_else(
+        || without_curve(app),
+        |subject| {
+            let figure = subject.figure(view);
+            let mut chart = chart(&figure, &app.model.window(view), app.theme);
+            if first {
+                let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
+                let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
+                if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
+                    chart.title.push_str(&hint);
+                }
+                cross_hair(&subject, view, app, &mut chart);
             }
-            cross_hair(&subject, view, app, &mut chart);
-        }
-        chart
-    });
+            chart
+        },
+    );
     chart.draw(frame, area, app.theme, selected);
 }
 
-/// The chart before there is a curve.
-fn computing() -> Chart {
+/// The chart while there is no curve: on its way, or given up or failed, which the status line explains.
+fn without_curve(app: &App) -> Chart {
+    let missing = if app.model.is_computing() {
+        "computing".to_owned()
+    } else {
+        let key = app.keymap.first(Id::Restart);
+        format!("no curve: {key} computes it again, and so does another value")
+    };
     Chart {
         title: "Curve".to_owned(),
         note: String::new(),
@@ -48,7 +57,7 @@ fn computing() -> Chart {
         cross: None,
         bounds: Bounds::of([]),
         legend: Vec::new(),
-        missing: Some("computing".to_owned()),
+        missing: Some(missing),
     }
 }
 

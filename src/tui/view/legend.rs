@@ -31,7 +31,7 @@ pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
     let up_to = |limit: u8| {
         let kept: Vec<&str> =
             words.iter().filter(|(rank, _)| *rank <= limit).map(|(_, word)| word.as_str()).collect();
-        kept.join(" ")
+        kept.join(", ")
     };
     (0..=worst).rev().map(up_to).collect()
 }
