@@ -1,5 +1,6 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
 
+mod choose;
 mod gap;
 mod help;
 mod line;
@@ -12,15 +13,15 @@ use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Promp
 use super::theme::Theme;
 use crate::contact::Control;
 use crate::explorer::branches::are_several;
-use crate::explorer::files::Document;
-use crate::explorer::look::{MIDDLE, make_room};
+use crate::explorer::files::{Document, Done};
+use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
 use crate::plot::{Chart, Width, svg};
 use crate::preset::schema::Kind;
 use crate::preset::text::{sanitize, show_path};
-use crate::preset::{Loaded, Source, Value};
+use crate::preset::{Listed, Loaded, Source, Value};
 use crate::report::number::with_unit;
 use crate::units::Quantity;
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
@@ -109,7 +110,9 @@ impl App {
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         let Some(mut over) = self.overlay.take() else { return Vec::new() };
         let mut effects = Vec::new();
-        if let Over::Prompt(prompt) = &mut over {
+        if let Over::Prompt(prompt) = &mut over
+            && !prompt.waits
+        {
             if std::mem::take(&mut prompt.fresh) {
                 prompt.input.reset();
             }
@@ -130,10 +133,40 @@ impl App {
 
     /// A worker has answered.
     pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
+        let is_answer = matches!(&reply, Reply::File(done) if !matches!(**done, Done::Named(_)));
         let effects = answer(&mut self.model, reply);
+        if is_answer {
+            self.file_answered();
+        }
         // A line being typed, or an offer, is not torn away: the question waits for its end.
         if !matches!(self.overlay, Some(Over::Prompt(_) | Over::Offer(_))) {
             self.raise_questions();
+        }
+        effects
+    }
+
+    /// A prompt that waited for a file closes, or stays with the reason why it was refused.
+    fn file_answered(&mut self) {
+        let model = &mut self.model;
+        let Some(Over::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
+        // What is asked instead says the reason itself.
+        if model.question.is_none()
+            && let Some((_, reason)) = model.message.take_if(|(level, _)| *level == Level::Error)
+        {
+            (prompt.waits, prompt.error) = (false, Some(reason));
+        } else {
+            self.overlay = None;
+        }
+    }
+
+    /// A prompt whose line was taken: it stays with the reason if that was refused, and while it waits for a file.
+    fn taken(&mut self, mut prompt: Prompt, effects: Vec<Effect>) -> Vec<Effect> {
+        prompt.error =
+            self.model.message.take_if(|(level, _)| *level == Level::Error).map(|(_, reason)| reason);
+        prompt.waits =
+            prompt.error.is_none() && effects.iter().any(|effect| matches!(effect, Effect::File(_)));
+        if prompt.waits || prompt.error.is_some() {
+            self.overlay = Some(Over::Prompt(prompt));
         }
         effects
     }
@@ -157,11 +190,18 @@ impl App {
                 Ok(title) => title.clone(),
                 Err(error) => format!("cannot be read: {error}"),
             };
+            // A preset saved under another name keeps its title: which one it is must be told.
+            let titles: Vec<_> =
+                listing.presets.iter().filter_map(|entry| entry.title.as_ref().ok()).collect();
+            let own = |entry: &Listed| {
+                let same = titles.iter().filter(|title| Ok(**title) == entry.title.as_ref()).count();
+                if same > 1 && matches!(entry.source, Source::User { .. }) { " (saved by you)" } else { "" }
+            };
             let mut items: Vec<Item> = listing
                 .presets
                 .iter()
                 .map(|entry| Item {
-                    text: format!("{:<14} {}", entry.name, sanitize(&shown(&entry.title), 90)),
+                    text: format!("{:<14} {}{}", entry.name, sanitize(&shown(&entry.title), 90), own(entry)),
                     action: Action::Command(Command::Open(entry.name.clone())),
                     delete: deletion(&entry.source),
                 })
@@ -208,6 +248,9 @@ impl App {
         }
         let count = self.count.take();
         let Some(id) = self.keymap.command(key) else {
+            if let Some(effects) = self.page_key(key) {
+                return effects;
+            }
             let text = format!("that key does nothing here; {} shows all keys", self.keymap.first(Id::Help));
             self.model.message = Some((Level::Info, text));
             return Vec::new();
@@ -365,7 +408,7 @@ impl App {
                 (Overlay::Smooth, _) => format!("smooth sphere ({})", theory.smooth_name),
                 (Overlay::Exact, _) => format!("exact solution ({})", theory.exact_name),
                 (Overlay::Envelope, Some(_)) => "envelope of small waves (Kesari-Lew)".to_owned(),
-                (Overlay::Envelope, None) => "envelope of small waves: needs waves and adhesion".to_owned(),
+                (Overlay::Envelope, None) => format!("envelope of small waves: {NO_ENVELOPE}"),
             };
             let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
             Item::new(format!("[{on}] {name}"), Action::Command(Command::Overlay(overlay)))
@@ -391,7 +434,8 @@ impl App {
     /// Offers a list.
     fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
         let picture = items.get(selected).and_then(|item| self.picture(&item.action));
-        self.overlay = Some(Over::Choose(Choose { title: title.to_owned(), items, selected, picture }));
+        let (title, filter) = (title.to_owned(), String::new());
+        self.overlay = Some(Over::Choose(Choose { title, items, filter, selected, picture }));
     }
 
     fn ask_value(&mut self) -> Vec<Effect> {
@@ -439,6 +483,7 @@ impl App {
         }
         match key.code {
             KeyCode::Esc => return self.close(&prompt),
+            _ if prompt.waits => {}
             KeyCode::Enter => {
                 let text = prompt.input.value().to_owned();
                 if let Some(fault) = gap::fault(&prompt) {
@@ -448,14 +493,7 @@ impl App {
                 }
                 let Some(command) = prompt.purpose.clone().command(text) else { return effects };
                 let effects = self.run(command);
-                // A value that was refused stays to be mended.
-                if let Some((Level::Error, reason)) =
-                    self.model.message.take_if(|(level, _)| *level == Level::Error)
-                {
-                    prompt.error = Some(reason);
-                    self.overlay = Some(Over::Prompt(prompt));
-                }
-                return effects;
+                return self.taken(prompt, effects);
             }
             _ if self.closes(key) => return self.close(&prompt),
             _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
@@ -473,46 +511,6 @@ impl App {
         }
         self.overlay = Some(Over::Prompt(prompt));
         effects
-    }
-
-    fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
-        let last = choose.items.len().saturating_sub(1);
-        match self.keymap.in_list(key) {
-            Some(Id::Up) => choose.selected = choose.selected.saturating_sub(1),
-            Some(Id::Down) => choose.selected = (choose.selected + 1).min(last),
-            Some(Id::Cancel | Id::Quit) => return Vec::new(),
-            Some(Id::Edit) => {
-                return match choose.items.into_iter().nth(choose.selected).map(|item| item.action) {
-                    // Several may be wanted: the list stays until it is closed.
-                    Some(Action::Command(command @ Command::Overlay(_))) => {
-                        let effects = self.run(command);
-                        self.ask_overlays(choose.selected);
-                        effects
-                    }
-                    Some(Action::Command(command)) => self.open_or_ask(command),
-                    Some(Action::Prompt(prompt)) => {
-                        self.overlay = Some(Over::Prompt(*prompt));
-                        Vec::new()
-                    }
-                    Some(Action::Copy(content)) => {
-                        self.copy(content);
-                        Vec::new()
-                    }
-                    None => Vec::new(),
-                };
-            }
-            _ if matches!(key.code, KeyCode::Char('D') | KeyCode::Delete) => {
-                if let Some(confirm) = choose.items.get(choose.selected).and_then(|item| item.delete.clone())
-                {
-                    self.overlay = Some(Over::Confirm(*confirm));
-                    return Vec::new();
-                }
-            }
-            _ => {}
-        }
-        choose.picture = choose.items.get(choose.selected).and_then(|item| self.picture(&item.action));
-        self.overlay = Some(Over::Choose(choose));
-        Vec::new()
     }
 
     /// Opening another preset gives up unsaved changes: asked first.

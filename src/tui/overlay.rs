@@ -24,6 +24,13 @@ pub enum Overlay {
     Help(Help),
 }
 
+impl Overlay {
+    /// Whether a line was taken and waits for a file.
+    pub fn waits(&self) -> bool {
+        matches!(self, Self::Prompt(prompt) if prompt.waits)
+    }
+}
+
 /// A line to type.
 #[derive(Debug, Clone)]
 pub struct Prompt {
@@ -39,6 +46,8 @@ pub struct Prompt {
     pub purpose: Purpose,
     /// Why the last try was refused.
     pub error: Option<String>,
+    /// Whether its line was taken and waits for the file it needs: no key changes it until that is read or written.
+    pub waits: bool,
     /// The column of what is wrong in the text, from 1, where it has one.
     pub fault: Option<usize>,
 }
@@ -88,6 +97,7 @@ impl Prompt {
             fresh: matches!(purpose, Purpose::Value(_)),
             purpose,
             error: None,
+            waits: false,
             fault: None,
         }
     }
@@ -120,10 +130,26 @@ pub struct Choose {
     pub title: String,
     /// Its lines.
     pub items: Vec<Item>,
-    /// The selected one.
+    /// What was typed: only lines with it are shown.
+    pub filter: String,
+    /// The selected one of those shown.
     pub selected: usize,
     /// What the selected one looks like.
     pub picture: Option<Figure>,
+}
+
+impl Choose {
+    /// The lines with what was typed, and their place among all.
+    pub fn shown(&self) -> Vec<(usize, &Item)> {
+        let wanted = self.filter.to_lowercase();
+        let items = self.items.iter().enumerate();
+        items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect()
+    }
+
+    /// The selected line, and its place among all; `None` where no line has what was typed.
+    pub fn current(&self) -> Option<(usize, &Item)> {
+        self.shown().get(self.selected).copied()
+    }
 }
 
 /// One line of a list.

@@ -2,7 +2,6 @@
 
 use super::{App, LINE};
 use crate::explorer::command::ROWS;
-use crate::explorer::model::Level;
 use crate::explorer::script::{Completion, complete, parse};
 use crate::explorer::{Command, Effect, Id};
 use crate::preset::text::sanitize;
@@ -61,6 +60,7 @@ impl App {
     pub(super) fn line_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
         match key.code {
             KeyCode::Esc => return Vec::new(),
+            _ if prompt.waits => {}
             KeyCode::Enter => return self.obey_line(prompt),
             KeyCode::Tab => self.complete(&mut prompt),
             KeyCode::Up | KeyCode::Down => {
@@ -118,13 +118,7 @@ impl App {
             }
         };
         // What was refused stays to be mended.
-        if self.overlay.is_none()
-            && let Some((_, reason)) = self.model.message.take_if(|(level, _)| *level == Level::Error)
-        {
-            prompt.error = Some(reason);
-            self.overlay = Some(Overlay::Prompt(prompt));
-        }
-        effects
+        if self.overlay.is_none() { self.taken(prompt, effects) } else { effects }
     }
 }
 

@@ -69,7 +69,7 @@ impl App {
     fn select_item(&mut self, line: usize) {
         let Some(Over::Choose(mut choose)) = self.overlay.take() else { return };
         choose.selected = line;
-        choose.picture = choose.items.get(line).and_then(|item| self.picture(&item.action));
+        choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
         self.overlay = Some(Over::Choose(choose));
     }
 

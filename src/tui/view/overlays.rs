@@ -2,6 +2,7 @@
 
 use super::{charts, panel};
 use crate::explorer::Window;
+use crate::preset::text::sanitize;
 use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
@@ -43,7 +44,10 @@ fn lower(area: Rect, width: u16, height: u16) -> Rect {
 
 fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
     let place = if matches!(prompt.purpose, Purpose::Formula(_) | Purpose::Line) { lower } else { middle };
-    let area = place(area, 76, if prompt.error.is_some() { 7 } else { 5 });
+    // A long reason takes as many lines as it needs at this width.
+    let wide = usize::from(area.width.saturating_sub(4).clamp(1, 74));
+    let lines = prompt.error.as_ref().map_or(0, |error| error.chars().count().div_ceil(wide) + 1);
+    let area = place(area, 76, u16::try_from(lines).unwrap_or(u16::MAX).saturating_add(5));
     let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
@@ -90,14 +94,18 @@ fn first(choose: &Choose, rows: usize) -> usize {
 pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
     let inner = place_of(choose, area).inner(Margin::new(1, 1));
     let line = first(choose, usize::from(inner.height)) + usize::from(at.y.checked_sub(inner.y)?);
-    (inner.contains(at) && line < choose.items.len()).then_some(line)
+    (inner.contains(at) && line < choose.shown().len()).then_some(line)
 }
 
 fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
     let area = place_of(choose, area);
-    let can_delete = choose.items.get(choose.selected).is_some_and(|item| item.delete.is_some());
+    let can_delete = choose.current().is_some_and(|(_, item)| item.delete.is_some());
     let delete = if can_delete { ", D deletes" } else { "" };
-    let block = panel(theme, &format!("{}: Enter takes{delete}, Esc closes", choose.title), true);
+    let typed = match &*choose.filter {
+        "" => ", letters filter".to_owned(),
+        filter => format!(", with \"{}\"", sanitize(filter, 20)),
+    };
+    let block = panel(theme, &format!("{}: Enter takes{delete}, Esc closes{typed}", choose.title), true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
@@ -111,19 +119,22 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
     }
     let rows = usize::from(inner.height);
     let first = first(choose, rows);
-    let lines: Vec<Line> = choose
-        .items
+    let shown = choose.shown();
+    let mut lines: Vec<Line> = shown
         .iter()
         .enumerate()
         .skip(first)
         .take(rows)
-        .map(|(i, item)| {
+        .map(|(i, (_, item))| {
             let chosen = i == choose.selected;
             let mark = if chosen { '>' } else { ' ' };
             let text = format!("{mark} {}", theme.text(&item.text));
             if chosen { Line::styled(text, theme.selection()) } else { Line::raw(text) }
         })
         .collect();
+    if shown.is_empty() {
+        lines.push(Line::styled("  no line has that; Backspace takes a letter back", theme.dim()));
+    }
     frame.render_widget(Paragraph::new(lines), inner);
 }
 

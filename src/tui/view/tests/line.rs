@@ -6,7 +6,7 @@ use crate::contact::Control;
 use crate::explorer::Id;
 use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Overlay;
-use crossterm::event::KeyCode;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 fn prompt(screen: &Screen) -> (String, Option<String>, Option<usize>) {
     match &screen.app.overlay {
@@ -128,4 +128,48 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     screen.keys("\x1be\r");
     assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
     assert_eq!(screen.app.keymap.first(Id::Edit), "z");
+}
+
+#[test]
+fn a_name_that_is_refused_stays_to_be_mended_and_keys_meanwhile_are_no_commands() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("S");
+    screen.app.key(KeyEvent::new(KeyCode::Char('u'), KeyModifiers::CONTROL));
+    screen.keys("my waves/2");
+    let effects = screen.app.key(KeyCode::Enter.into());
+    assert!(prompt(&screen).1.is_none());
+    // Until the answer comes nothing typed is a command, nor text.
+    screen.keys("nq");
+    screen.settle(effects);
+    let (line, error, _) = prompt(&screen);
+    assert_eq!(line, "my waves/2");
+    assert!(error.unwrap().contains("not saved"));
+    assert_eq!(screen.app.model.history.nodes().len(), 1);
+    screen.keys("\x1bSx\r");
+    assert!(screen.app.overlay.is_none());
+    // A path that cannot be written stays as well.
+    screen.keys(":export curve /nowhere/at/all.csv\r");
+    assert!(prompt(&screen).1.unwrap().contains("not exported"));
+}
+
+#[test]
+fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("ofig-3");
+    let Some(Overlay::Choose(choose)) = &screen.app.overlay else { unreachable!() };
+    assert_eq!(choose.shown().len(), 1);
+    assert!(choose.current().unwrap().1.text.starts_with("fig-3-jkr"));
+    screen.keys("xx\r");
+    assert!(screen.text(80, 24).contains("no line has that"));
+    screen.press(KeyCode::Backspace);
+    screen.press(KeyCode::Backspace);
+    screen.keys("\r");
+    assert_eq!(screen.app.model.source.shown(), "fig-3-jkr");
+    screen.keys("o");
+    screen.press(KeyCode::End);
+    let Some(Overlay::Choose(choose)) = &screen.app.overlay else { unreachable!() };
+    assert_eq!(choose.selected, choose.items.len() - 1);
+    screen.keys("\x1b");
+    screen.press(KeyCode::End);
+    assert_eq!(screen.app.model.parameter, screen.app.model.knobs().len() - 1);
 }

@@ -1,0 +1,96 @@
+//! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
+
+use super::{App, Over};
+use crate::explorer::{Command, Effect, Id, Panel};
+use crate::tui::overlay::{Action, Choose};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+/// So many lines a page.
+const PAGE: usize = 10;
+/// Longest text a list is filtered by.
+const FILTER: usize = 40;
+
+/// The line that a key leads to from `line` of so many; `None` for another key.
+fn turned(key: KeyEvent, line: usize, count: usize) -> Option<usize> {
+    let last = count.saturating_sub(1);
+    Some(match key.code {
+        KeyCode::Home => 0,
+        KeyCode::End => last,
+        KeyCode::PageUp => line.saturating_sub(PAGE),
+        KeyCode::PageDown => (line + PAGE).min(last),
+        _ => return None,
+    })
+}
+
+impl App {
+    /// Home, End and the page keys in the selected panel, where that has lines.
+    pub(super) fn page_key(&mut self, key: KeyEvent) -> Option<Vec<Effect>> {
+        let (panel, model) = (self.model.panel, &self.model);
+        let (line, count) = match panel {
+            Panel::Problem => (model.parameter, model.knobs().len()),
+            Panel::Events => (model.event, model.shown_events().len() + model.shown_inadmissible().len()),
+            Panel::Walker | Panel::Charts => return None,
+        };
+        let line = turned(key, line, count)?;
+        Some(self.run(Command::Pick { panel, line: Some(line) }))
+    }
+
+    pub(super) fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
+        let count = choose.shown().len();
+        // Letters are text; only before the first one those that go through a list or leave it do what they always do.
+        let is_command = choose.filter.is_empty()
+            && matches!(self.keymap.in_list(key), Some(Id::Up | Id::Down | Id::Cancel | Id::Quit | Id::Edit));
+        let is_text = key.modifiers.difference(KeyModifiers::SHIFT).is_empty() && !is_command;
+        match key.code {
+            KeyCode::Char('D') | KeyCode::Delete => {
+                if let Some(confirm) = choose.current().and_then(|(_, item)| item.delete.clone()) {
+                    self.overlay = Some(Over::Confirm(*confirm));
+                    return Vec::new();
+                }
+            }
+            KeyCode::Char(c) if is_text => {
+                if choose.filter.chars().count() < FILTER {
+                    choose.filter.push(c);
+                    choose.selected = 0;
+                }
+            }
+            KeyCode::Backspace => {
+                choose.filter.pop();
+                choose.selected = 0;
+            }
+            _ => match (self.keymap.in_list(key), turned(key, choose.selected, count)) {
+                (_, Some(line)) => choose.selected = line,
+                (Some(Id::Up), _) => choose.selected = choose.selected.saturating_sub(1),
+                (Some(Id::Down), _) => choose.selected = (choose.selected + 1).min(count.saturating_sub(1)),
+                (Some(Id::Cancel | Id::Quit), _) => return Vec::new(),
+                (Some(Id::Edit), _) if count > 0 => return self.take(&choose),
+                _ => {}
+            },
+        }
+        choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
+        self.overlay = Some(Over::Choose(choose));
+        Vec::new()
+    }
+
+    /// Does what the selected line says.
+    fn take(&mut self, choose: &Choose) -> Vec<Effect> {
+        let Some((at, item)) = choose.current() else { return Vec::new() };
+        match item.action.clone() {
+            // Several may be wanted: the list stays until it is closed.
+            Action::Command(command @ Command::Overlay(_)) => {
+                let effects = self.run(command);
+                self.ask_overlays(at);
+                effects
+            }
+            Action::Command(command) => self.open_or_ask(command),
+            Action::Prompt(prompt) => {
+                self.overlay = Some(Over::Prompt(*prompt));
+                Vec::new()
+            }
+            Action::Copy(content) => {
+                self.copy(content);
+                Vec::new()
+            }
+        }
+    }
+}
