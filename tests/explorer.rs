@@ -501,7 +501,7 @@ fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
     // A name misspelt is said, and begins with the value of the one it resembles.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lamda))");
     assert_eq!(value(&session, "lamda"), Some(0.06.into()));
-    let status = session.status().to_owned();
+    let status = session.status().clone();
     assert!(status.contains("new parameter lamda = 0.06; did you mean lambda?"), "{status}");
     // The whole name again: its value is the one from before.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + 0*B");

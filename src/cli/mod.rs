@@ -93,7 +93,7 @@ struct Problem {
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
     ///
     /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
-    /// changes what it follows from: groups.amplitude_over_wavelength, groups.wavelength_over_radius, groups.adhesion.
+    /// changes what it follows from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`, `groups.adhesion`.
     /// An SI preset is shown in the units of its display keys: display.force=mN.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     assignments: Vec<String>,

@@ -187,8 +187,18 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Cancel => model.cross = None,
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
-        Id::SaveAs | Id::Export | Id::Overlays | Id::Pins | Id::Copy | Id::Mouse | Id::Help => {}
-        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo | Id::Branches => {}
+        Id::SaveAs
+        | Id::Export
+        | Id::Overlays
+        | Id::Pins
+        | Id::Branches
+        | Id::Copy
+        | Id::Mouse
+        | Id::Help
+        | Id::Assign
+        | Id::StepLength
+        | Id::SelectEvent
+        | Id::MoveTo => {}
     }
     Vec::new()
 }

@@ -222,7 +222,7 @@ fn bounded(given: &FormulaParameter) -> Parameter {
 fn limit(given: &FormulaParameter, part: &str) -> Option<Parameter> {
     let Parameter { unit, quantity, .. } = bounded(given);
     let row = family::limit(&given.name, part)?;
-    Some(if row.kind == Kind::Finite { Parameter { unit, quantity, ..row } } else { row })
+    Some(if row.kind == Kind::Finite { Parameter { quantity, unit, ..row } } else { row })
 }
 
 /// A value beyond the range of its parameter, told in the parameter's own unit.

@@ -99,7 +99,7 @@ pub struct Document {
     saved: usize,
     look: Look,
     pins: Vec<(usize, usize)>,
-    journal: Lines,
+    journal: Script,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
@@ -108,7 +108,7 @@ pub struct Document {
 
 /// The script that leads to where the session is.
 #[derive(Debug, Serialize, Deserialize)]
-struct Lines {
+struct Script {
     lines: Vec<String>,
     /// Where the walk began: the source of its preset, and the number of the preset.
     start: Option<(Origin, usize)>,
@@ -118,7 +118,7 @@ struct Lines {
     broken: Option<String>,
 }
 
-impl Lines {
+impl Script {
     fn of(kept: &Kept, problems: &mut Collector) -> Self {
         let start = kept.start.as_ref();
         let replay = kept.replay.as_ref();
@@ -183,7 +183,7 @@ impl Document {
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
-        let journal = Lines::of(&snapshot.journal, &mut problems);
+        let journal = Script::of(&snapshot.journal, &mut problems);
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
         let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
         Self {
