@@ -26,11 +26,13 @@ fn line(pty: &Pty, text: &str) -> String {
 /// Goes down the parameters to the one of this label.
 fn select(pty: &mut Pty, label: &str) {
     let selected = format!(">{label}");
+    // The line alone: what is computed changes the rest of the screen at any time.
+    let line = |screen: &str| screen.lines().find(|line| line.contains("│>")).map(str::to_owned);
     while !pty.screen().contains(&selected) {
-        let before = pty.screen();
+        let before = line(&pty.screen());
         pty.keys("j");
         // At the last parameter nothing moves, and this fails.
-        pty.wait_for(|screen| screen != before, "another parameter");
+        pty.wait_for(|screen| line(screen) != before, "another parameter");
     }
 }
 

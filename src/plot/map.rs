@@ -4,7 +4,9 @@ use super::Width;
 use super::svg::{finish, frame};
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
-use kuva::plot::ContourPlot;
+use kuva::plot::scatter::MarkerShape;
+use kuva::plot::{ContourPlot, ScatterPlot};
+use kuva::prelude::Plot;
 use kuva::render::render::render_multiple;
 
 /// The column that tells where snaps begin.
@@ -94,21 +96,56 @@ impl Map {
             [is_logarithmic(x), is_logarithmic(y)],
         );
         let filled = ContourPlot::new()
-            .with_grid(self.cells.clone(), x.clone(), y.clone())
+            .with_grid(self.filled(), x.clone(), y.clone())
             .with_n_levels(BANDS)
             .with_filled()
             .with_line_color("none")
             .with_legend(self.quantity.as_str());
         let mut plots = vec![filled.into()];
         if let Some(snaps) = &self.snaps {
+            // Where nothing is known nothing snaps.
+            let known =
+                snaps.iter().map(|row| row.iter().map(|n| if n.is_finite() { *n } else { 0.0 }).collect());
             let line = ContourPlot::new()
-                .with_grid(snaps.clone(), x.clone(), y.clone())
+                .with_grid(known.collect(), x.clone(), y.clone())
                 .with_levels(&[0.5])
                 .with_line_color("black")
                 .with_line_width(1.2);
             plots.push(line.into());
         }
+        plots.extend(self.holes());
         finish(&render_multiple(plots, layout), 0.0)
+    }
+}
+
+impl Map {
+    /// The cells with the least value where there is none: the places are crossed out.
+    fn filled(&self) -> Vec<Vec<f64>> {
+        let least = self
+            .cells
+            .iter()
+            .flatten()
+            .copied()
+            .filter(|cell| cell.is_finite())
+            .fold(f64::INFINITY, f64::min);
+        let fill = |cell: &f64| if cell.is_finite() { *cell } else { least };
+        self.cells.iter().map(|row| row.iter().map(fill).collect()).collect()
+    }
+
+    /// A cross where the sweep has no value.
+    fn holes(&self) -> Option<Plot> {
+        let [x, y] = &self.values;
+        let missing: Vec<(f64, f64)> = self
+            .cells
+            .iter()
+            .zip(y)
+            .flat_map(|(row, y)| {
+                row.iter().zip(x).filter(|(cell, _)| !cell.is_finite()).map(|(_, x)| (*x, *y))
+            })
+            .collect();
+        let crosses =
+            ScatterPlot::new().with_data(missing.iter().copied()).with_color("black").with_size(2.5);
+        (!missing.is_empty()).then(|| crosses.with_marker(MarkerShape::Cross).into())
     }
 }
 

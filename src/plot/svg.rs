@@ -60,7 +60,9 @@ pub(super) fn frame(
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
     let chart = Chart { bounds, ..Chart::new(axis(0), axis(1), Vec::new()) };
     let wide = width.get() * UNITS_PER_MM;
-    layout(&chart, &[], wide, (ASPECT * wide).round())
+    let mut layout = layout(&chart, &[], wide, (ASPECT * wide).round());
+    layout.show_colorbar = true;
+    layout
 }
 
 /// A scene as a document in millimetres, `cropped` units off its lower end.

@@ -235,6 +235,9 @@ fn table(units: &UnitSystem, events: &[EventReport], critical: f64, wide: bool) 
 /// The crests before and after.
 fn crests(event: &EventReport) -> String {
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
+    if event.before.wave.is_none() {
+        return dash();
+    }
     format!("{}>{}", crest(event.before.wave), crest(event.after.as_ref().and_then(|after| after.wave)))
 }
 

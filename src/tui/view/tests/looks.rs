@@ -141,7 +141,7 @@ fn without_colour_selection_errors_and_keys_are_seen() {
     screen.keys("n");
     let buffer = screen.draw(80, 24);
     let text = screen.text(80, 24);
-    assert!(text.contains("━ stable ┈ unstable"), "{text}");
+    assert!(text.contains("━ stable, ┈ unstable"), "{text}");
     assert!(super::find(&buffer, "Problem").modifier.contains(Modifier::REVERSED));
     assert!(!super::find(&buffer, "Walker").modifier.contains(Modifier::REVERSED));
     assert!(super::find(&buffer, "LIMIT").modifier.contains(Modifier::UNDERLINED));
