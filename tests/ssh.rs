@@ -103,6 +103,8 @@ impl Far {
         let kept = |mut document: Value| {
             let ended = document["ended"].take();
             document["saved_at"] = Value::Null;
+            // A walk that was cut short is not waited for any more.
+            document["settled"] = Value::Null;
             (ended, document)
         };
         let mut before = self.sessions();

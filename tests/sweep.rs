@@ -93,7 +93,10 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
     let home = Home::new();
     home.file("grid.toml", GRID);
     let said = home.sweep("grid.toml", "r.csv", &["--jobs", "2"]);
-    assert!(said.starts_with("pulloff: 10 of 10 rows in r.csv; ") && said.contains("gnuplot"), "{said}");
+    assert!(
+        said.starts_with("pulloff: 10 of 10 rows in r.csv; ") && said.contains("pulloff plot --sweep"),
+        "{said}"
+    );
     assert!(!said.contains('\u{1b}'), "no progress where there is no terminal: {said}");
     let text = home.text("r.csv");
     assert!(text.starts_with(

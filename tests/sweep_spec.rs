@@ -127,7 +127,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'groups.adhesio'\nvalues = [1]"),
-            "s.toml:3: axis.key: unknown key groups.adhesio; did you mean groups.adhesion?",
+            "s.toml:3: axis.key: unknown key groups.adhesio; of the groups, groups.amplitude_over_wavelength, ",
         ),
         (
             &axis("key = 'title'\nvalues = ['a']"),

@@ -90,7 +90,9 @@ impl Axis {
             return Err(entry.fault(&format!("{key} is no quantity of the problem: it cannot be swept")));
         }
         // Unknown keys are told here, whatever the values are.
-        if let Err(unknown @ Invalid::UnknownKey { .. }) = preset.resolved(key, 0.0.into()) {
+        if let Err(unknown @ (Invalid::UnknownKey { .. } | Invalid::UnknownGroup { .. })) =
+            preset.resolved(key, 0.0.into())
+        {
             return Err(entry.fault(&format!("axis.key: {unknown}")));
         }
         let given: Vec<Entry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();

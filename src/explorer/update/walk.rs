@@ -1,6 +1,7 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
 use super::values::{adopt_parameters, want_curve};
+use super::words::unavailable;
 use super::{number, tell};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::curve::CurveData;
@@ -118,7 +119,10 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     }
     match model.queue.pop_front() {
         // It could be asked for on the way, and cannot be done from where the way ended.
-        Some(Action::Jump) if !model.can_jump() => Vec::new(),
+        Some(Action::Jump) if !model.can_jump() => {
+            tell(model, Level::Error, unavailable(model, Id::Jump));
+            Vec::new()
+        }
         Some(next) => walk(model, next),
         None => Vec::new(),
     }
