@@ -29,7 +29,7 @@ pub fn csv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsErr
 /// The same with tabs between the cells, as spreadsheets take it from a clipboard.
 ///
 /// # Errors
-/// As [`csv`].
+/// As [`csv()`].
 pub fn tsv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
     separated(b'\t', columns, rows)
 }

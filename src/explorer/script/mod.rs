@@ -27,7 +27,7 @@
 //! | `parse` | words → a command |
 //! | `print` | a command → its line |
 //! | `complete` | what a line begun could go on with |
-//! | [`play`] | a script driven through a model, without a terminal |
+//! | [`mod@play`] | a script driven through a model, without a terminal |
 //! | `borders` | where a script may write |
 
 mod borders;
