@@ -242,7 +242,11 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
         },
         "the curve of what is typed",
     );
-    pty.wait_for(|screen| !screen.contains("computing"), "the last of it");
+    // The state is solved anew after the curve.
+    pty.wait_for(
+        |screen| !screen.contains("computing") && chart(screen)[1].contains('@'),
+        "the state on the curve",
+    );
     let smooth = chart(&pty.screen());
     pty.keys(" + * B");
     pty.wait_for(|screen| screen.contains("column 13: expected a number"), "what is wrong, and where");
