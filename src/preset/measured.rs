@@ -6,11 +6,11 @@
 //! says.
 
 use super::invalid::Invalid;
-use super::profile::{LARGEST, TextError, parse};
+use super::profile::{TextError, parse, read_profile};
 use super::schema::{Kind, Parameter};
+use super::shipped;
 use super::text::{is_unsafe, quote, sanitize, show_path};
 use super::value::Value;
-use super::{file, shipped};
 use crate::contact::shapes::Rows;
 use crate::units::dimension::Quantity;
 use crate::units::unit::Unit;
@@ -41,8 +41,7 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
     } else {
         let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
         let shown = show_path(&path);
-        let (bytes, _) = file::read_bytes(&path, LARGEST).map_err(|error| words(error.to_string()))?;
-        (parse(&bytes).map_err(|error| words(format!("{shown}: {error}")))?, shown)
+        (read_profile(&path).map_err(|error| words(error.to_string()))?, shown)
     };
     let notes = columns.notes.iter().map(|note| format!("{shown}: {note}")).collect();
     let radii_in = columns.units[0].clone();

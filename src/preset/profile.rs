@@ -14,7 +14,7 @@
 //! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
 //! come in runs, and every fault must name its line.
 
-use super::file::{FileError, Fingerprint, read_bytes};
+use super::file::{FileError, read_bytes};
 use super::text::{is_unsafe, quote, show_path};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -157,10 +157,9 @@ const COLUMNS: [&str; 2] = ["radius", "gap"];
 ///
 /// # Errors
 /// [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
-pub fn read_profile(path: &Path) -> Result<(Columns, Fingerprint), ProfileError> {
-    let (bytes, fingerprint) = read_bytes(path, LARGEST)?;
-    let columns = parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })?;
-    Ok((columns, fingerprint))
+pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
+    let (bytes, _) = read_bytes(path, LARGEST)?;
+    parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
 }
 
 impl Columns {

@@ -150,7 +150,7 @@ fn files_are_regular_and_named_in_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("profile.csv");
     std::fs::write(&path, rows(",")).unwrap();
-    assert_eq!(read_profile(&path).unwrap().0, good(&rows(",")));
+    assert_eq!(read_profile(&path).unwrap(), good(&rows(",")));
     std::fs::write(&path, "0,0\n").unwrap();
     assert!(
         read_profile(&path)
