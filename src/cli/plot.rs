@@ -107,17 +107,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None
     };
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
-    let subject = Subject {
-        curve: &curve,
-        walk: Vec::new(),
-        branches: Vec::new(),
-        inside: inside.as_ref(),
-        device: None,
-        pins: &[],
-        preset: &preset,
-        overlays,
-        axes: if arguments.raw { Axes::Raw } else { Axes::Reduced },
-    };
+    let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
+    let subject = Subject { inside: inside.as_ref(), axes, ..Subject::alone(&curve, overlays) };
     let chart = Chart::of(&subject.figure(view), &Window::WHOLE);
     write(&svg::svg(&chart, arguments.width), format, arguments.output.as_deref())?;
     if let (Some(path), true) = (&arguments.output, arguments.data) {

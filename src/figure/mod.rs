@@ -78,6 +78,21 @@ impl<'a> Subject<'a> {
         })
     }
 
+    /// A curve nobody walks on, with its theory.
+    pub fn alone(curve: &'a CurveData, overlays: Overlays) -> Self {
+        Self {
+            curve,
+            walk: Vec::new(),
+            branches: Vec::new(),
+            inside: None,
+            device: None,
+            pins: &[],
+            preset: &curve.setting.preset,
+            overlays,
+            axes: Axes::Reduced,
+        }
+    }
+
     /// The figure of `view`.
     pub fn figure(&self, view: View) -> Figure {
         match view {

@@ -13,7 +13,7 @@
 use super::chart::{Axis, Chart, Run};
 use crate::case::{Case, CaseError};
 use crate::contact::Control;
-use crate::explorer::{Axes, CurveData, Overlays, View, Window};
+use crate::explorer::{CurveData, Overlays, View, Window};
 use crate::figure::{Line, Role, Subject};
 use crate::preset::{Preset, ReadError, read_with, shipped};
 use crate::quasistatic::Profile;
@@ -99,7 +99,7 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
     let case = &data.case;
     let theory = Exact::of(&case.problem).name();
     let sheet = |name, view, what: &str| {
-        let chart = chart(&data, &preset, view);
+        let chart = chart(&data, view);
         let caption = format!(
             "{title}: {what}. {} rings, stable parts solid, unstable ones dashed under displacement control, limit points \
              marked. {theory} (dots): our curve is nowhere further from it than {} of the picture.",
@@ -145,19 +145,9 @@ fn distance((x, y): (f64, f64), (ax, ay): (f64, f64), (bx, by): (f64, f64)) -> f
 }
 
 /// A view of a curve with the exact solution.
-fn chart(data: &CurveData, preset: &Preset, view: View) -> Chart {
+fn chart(data: &CurveData, view: View) -> Chart {
     let overlays = Overlays { smooth: true, exact: true, envelope: false };
-    let subject = Subject {
-        curve: data,
-        walk: Vec::new(),
-        branches: Vec::new(),
-        inside: None,
-        device: None,
-        pins: &[],
-        preset,
-        overlays,
-        axes: Axes::Reduced,
-    };
+    let subject = Subject::alone(data, overlays);
     Chart::of(&subject.figure(view), &Window::WHOLE)
 }
 
@@ -181,7 +171,7 @@ fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
         events.iter().filter(|event| event.dissipated.is_some()).count(),
         significant(apart, 2)
     );
-    Ok(Sheet { name, chart: chart(&data, &preset, View::Unloading), caption })
+    Ok(Sheet { name, chart: chart(&data, View::Unloading), caption })
 }
 
 /// The contact pressure of the smooth sphere in a few rings, over theory.
