@@ -13,7 +13,7 @@ use kuva::render::render::render_multiple;
 const SNAPS: &str = "snaps";
 /// Bands of colour.
 const BANDS: usize = 12;
-/// An axis whose values grow by about equal factors, over more than this factor, is logarithmic.
+/// An axis of equal factors is logarithmic where it reaches over this factor at least.
 const DECADE: f64 = 10.0;
 
 /// A quantity over two axes.
@@ -157,11 +157,15 @@ fn distinct(column: &[Option<f64>]) -> Vec<f64> {
     values
 }
 
+/// Whether the factors between neighbours are more alike than the steps.
 fn is_logarithmic(axis: &[f64]) -> bool {
     let (first, last) = (axis[0], axis[axis.len() - 1]);
-    let middle = axis[axis.len() / 2];
-    // The middle of equal factors lies far below that of equal steps.
-    first > 0.0 && last / first >= DECADE && middle < 0.5 * (first * last).sqrt() + 0.25 * (first + last)
+    let spread = |apart: fn(f64, f64) -> f64| {
+        let all = axis.windows(2).map(|pair| apart(pair[0], pair[1]));
+        let [least, most] = all.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
+        most / least
+    };
+    first > 0.0 && last / first >= DECADE && spread(|a, b| (b / a).ln()) < spread(|a, b| b - a)
 }
 
 #[cfg(test)]
@@ -173,6 +177,9 @@ mod tests {
         let factors: Vec<f64> = (0..9).map(|i| 10.0_f64.powf(0.25 * f64::from(i))).collect();
         let steps: Vec<f64> = (0..9).map(|i| 1.0 + 12.0 * f64::from(i)).collect();
         assert!(is_logarithmic(&factors) && !is_logarithmic(&steps) && !is_logarithmic(&[0.0, 1.0, 100.0]));
+        // Few values, and two, of which nothing can be said.
+        assert!(is_logarithmic(&[0.01, 0.1, 1.0]) && !is_logarithmic(&[0.01, 0.5, 1.0]));
+        assert!(!is_logarithmic(&[0.01, 1.0]));
     }
 
     #[test]
