@@ -186,22 +186,19 @@ impl Sweep {
             say(&format!("{faults} with an error: {}", reasons.join(", ")));
         }
         if summary.is_complete() && self.shard == Shard::WHOLE {
-            say(&how_to_plot(spec, &self.output));
+            if let Some(line) = how_to_plot(spec, &self.output) {
+                say(&line);
+            }
         }
     }
 }
 
-/// How to draw it: a map of two axes by this program, the first quantity over the first axis by another.
-fn how_to_plot(spec: &Spec, results: &Path) -> String {
-    let (axis, quantity) = (&spec.axes[0].key, spec.columns[0].name());
+/// How to draw it, where it is a map.
+fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
     let file = show_name(&results.to_string_lossy());
-    if spec.axes.len() == 2 {
-        return format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o map.svg");
-    }
-    format!(
-        "to plot it: gnuplot -p -e \"set datafile separator ','; set xlabel '{axis}'; set ylabel '{quantity}'; \
-         plot '{file}' using '{axis}':'{quantity}' notitle\""
-    )
+    let quantity = spec.columns[0].name();
+    (spec.axes.len() == 2)
+        .then(|| format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o map.svg"))
 }
 
 /// The progress on standard error; none where that is no terminal.
