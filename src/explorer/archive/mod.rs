@@ -348,14 +348,11 @@ impl Archive {
     }
 }
 
-/// Whether a file is the temporary one of a write, or the lock of no session.
+/// Whether a file is the lock of no session. What a killed write has left is swept by the next one.
 fn is_left_behind(folder: &Path, name: &str) -> bool {
     let lock = name.strip_prefix('.').and_then(|name| name.strip_suffix(".lock"));
     let session = lock.map(|name| folder.join(format!("{name}.{ENDING}")));
-    let is_lock = session.is_some_and(|session| !session.exists()) && !FileLock::is_held(&folder.join(name));
-    is_lock
-        || (name.starts_with(".pulloff-")
-            && Path::new(name).extension().is_some_and(|ending| ending == "tmp"))
+    session.is_some_and(|session| !session.exists()) && !FileLock::is_held(&folder.join(name))
 }
 
 /// The lock of a session.
