@@ -241,42 +241,45 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(error) => Done::Failed(format!("not saved: {error}")),
             }
         }
-        Job::SaveAs { name, preset, replace, with_data } => {
-            let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-            let saved = if with_data {
-                let saved = store.save_with_data(&name, &preset, overwrite);
-                saved.map(|(source, fingerprint, preset)| (source, fingerprint, Box::new(preset)))
-            } else {
-                store
-                    .save(&name, &preset, overwrite)
-                    .map(|(source, fingerprint)| (source, fingerprint, preset))
-            };
-            match saved {
-                Ok((source, fingerprint, preset)) => Done::Saved { source, fingerprint, preset },
-                Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name, with_data),
-                Err(error) => Done::Failed(format!("not saved: {error}")),
-            }
-        }
+        Job::SaveAs { name, preset, replace, with_data } => save_as(store, name, preset, replace, with_data),
         Job::Write { text, path, replace } => match put(&path, &text, replace) {
             Err(WriteError::Exists { .. }) => Done::TextExists(text, path),
             result => exported(path, result),
         },
-        Job::Export { content, path, replace } => {
-            let as_json =
-                Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-            let text = match &content {
-                Content::Script(start, lines) => script_text(store, start, lines),
-                numbers => text(numbers, as_json).map_err(|error| error.to_string()),
-            };
-            let text = match text {
-                Ok(text) => text,
-                Err(error) => return Done::Failed(format!("not exported: {error}")),
-            };
-            match put(&path, &text, replace) {
-                Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
-                result => exported(path, result),
-            }
-        }
+        Job::Export { content, path, replace } => export(store, &content, path, replace),
+    }
+}
+
+/// Saves under a name, the data of a profile beside it where they are to be.
+fn save_as(store: &Store, name: String, preset: Box<Preset>, replace: bool, with_data: bool) -> Done {
+    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+    let saved = if with_data {
+        let saved = store.save_with_data(&name, &preset, overwrite);
+        saved.map(|(source, fingerprint, preset)| (source, fingerprint, Box::new(preset)))
+    } else {
+        store.save(&name, &preset, overwrite).map(|(source, fingerprint)| (source, fingerprint, preset))
+    };
+    match saved {
+        Ok((source, fingerprint, preset)) => Done::Saved { source, fingerprint, preset },
+        Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name, with_data),
+        Err(error) => Done::Failed(format!("not saved: {error}")),
+    }
+}
+
+/// Writes a document.
+fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done {
+    let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let text = match content {
+        Content::Script(start, lines) => script_text(store, start, lines),
+        numbers => text(numbers, as_json).map_err(|error| error.to_string()),
+    };
+    let text = match text {
+        Ok(text) => text,
+        Err(error) => return Done::Failed(format!("not exported: {error}")),
+    };
+    match put(&path, &text, replace) {
+        Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
+        result => exported(path, result),
     }
 }
 

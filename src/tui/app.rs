@@ -1,24 +1,33 @@
 //! Keys and pastes → commands; replies → model; what lies over the screen.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `choose` | lists: what is typed filters them |
+//! | `files` | names and paths asked for: saving, exporting, copying |
+//! | `gap` | the shape, the formula and the profile of the gap |
+//! | `help` | the help, and looking for a word in it |
+//! | `line` | commands typed by name |
+//! | `mouse` | clicks and the wheel |
+//! | `session` | the offer of a session, the branches of the walk |
 
 mod choose;
+mod files;
 mod gap;
 mod help;
 mod line;
 mod mouse;
 mod session;
 
-use super::copy::{self, Content};
 use super::keymap::Keymap;
 use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::contact::Control;
 use crate::explorer::branches::are_several;
-use crate::explorer::files::{Document, Done};
+use crate::explorer::files::Done;
 use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
 use crate::figure::Subject;
-use crate::plot::{Chart, Width, svg};
 use crate::preset::schema::Kind;
 use crate::preset::text::{sanitize, show_path};
 use crate::preset::{Listed, Loaded, Source, Value};
@@ -291,100 +300,6 @@ impl App {
             Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
             id => self.run(id.into()),
         }
-    }
-
-    fn ask_name(&mut self) -> Vec<Effect> {
-        let suggestion = match &self.model.source {
-            Source::User { name, .. } => name.clone(),
-            Source::Shipped(shipped) => format!("my-{}", shipped.name),
-            Source::File(_) => String::new(),
-        };
-        let prompt = |with_data| {
-            let note = "small letters, digits, - and _";
-            Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
-        };
-        if self.has_data() {
-            let item = |text: &str, with_data| Item::new(text, Action::Prompt(Box::new(prompt(with_data))));
-            let items = vec![
-                item("the preset       the data stay where they are", false),
-                item("save with data   the data are copied beside the preset", true),
-            ];
-            self.choose("Save", items, 0);
-        } else {
-            self.overlay = Some(Over::Prompt(prompt(false)));
-        }
-        Vec::new()
-    }
-
-    fn ask_export(&mut self) -> Vec<Effect> {
-        let base = match &self.model.source {
-            Source::User { name, .. } => name.clone(),
-            Source::Shipped(shipped) => shipped.name.to_owned(),
-            Source::File(path) => {
-                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
-            }
-        };
-        let items = Document::ALL.map(|what| {
-            let file = format!("{}-{}.{}", sanitize(&base, 60), what.name(), what.endings()[0]);
-            let title = format!("Export the {} to", what.name());
-            let note = format!("a file ending in .{}", what.endings().join(" or ."));
-            let prompt = Prompt::new(title, &note, file, Purpose::File(what));
-            let text = match what {
-                Document::Curve => "curve   every point of the equilibrium curve",
-                Document::Walk => "walk    the states walked by hand",
-                Document::Events => "events  the instabilities listed",
-                Document::Script => "script  what was done, for pulloff run",
-            };
-            Item::new(text, Action::Prompt(Box::new(prompt)))
-        });
-        let text = copy::text(self, Content::Screen);
-        let file = format!("{}-screen.txt", sanitize(&base, 60));
-        let prompt = Prompt::new("Export the screen to", "a file ending in .txt", file, Purpose::Text(text));
-        let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
-        let figure = self.figure().map(|svg| {
-            let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
-            let note = "a file ending in .svg; `pulloff plot` draws the same as PNG";
-            let prompt = Prompt::new("Export the figure to", note, file, Purpose::Text(svg));
-            Item::new(
-                "figure  the first view for print: zoom, pins and theory with it",
-                Action::Prompt(Box::new(prompt)),
-            )
-        });
-        self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
-        Vec::new()
-    }
-
-    /// The first view as a figure for print; none before the first curve.
-    fn figure(&self) -> Option<String> {
-        let view = self.model.view;
-        let figure = Subject::of(&self.model)?.figure(view);
-        Some(svg::svg(&Chart::of(&figure, &self.model.window(view)), Width::ONE_COLUMN))
-    }
-
-    fn ask_copy(&mut self) -> Vec<Effect> {
-        let items = Content::ALL.map(|content| {
-            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Action::Copy(content))
-        });
-        self.choose("Copy", items.to_vec(), 0);
-        Vec::new()
-    }
-
-    /// Text for the clipboard, if it is not too long for it.
-    fn copy(&mut self, content: Content) {
-        let text = copy::text(self, content);
-        let (level, told) = if text.len() > copy::LONGEST {
-            let told = format!("{} bytes are more than terminals take: e exports to a file", text.len());
-            (Level::Error, told)
-        } else {
-            let told = format!(
-                "{} of {} bytes sent to the terminal's clipboard; if it takes none, e exports to a file",
-                content.name(),
-                text.len()
-            );
-            self.clipboard = Some(text);
-            (Level::Info, told)
-        };
-        self.model.message = Some((level, told));
     }
 
     /// The cross-hair, or where the walker stands in the window of the first view, or its middle.

@@ -1,0 +1,108 @@
+//! Names and paths asked for: saving, exporting, copying.
+
+use super::App;
+use crate::explorer::Effect;
+use crate::explorer::files::Document;
+use crate::explorer::model::Level;
+use crate::figure::Subject;
+use crate::plot::{Chart, Width, svg};
+use crate::preset::Source;
+use crate::preset::text::sanitize;
+use crate::tui::copy::{self, Content};
+use crate::tui::overlay::{Action, Item, Overlay as Over, Prompt, Purpose};
+
+impl App {
+    pub(super) fn ask_name(&mut self) -> Vec<Effect> {
+        let suggestion = match &self.model.source {
+            Source::User { name, .. } => name.clone(),
+            Source::Shipped(shipped) => format!("my-{}", shipped.name),
+            Source::File(_) => String::new(),
+        };
+        let prompt = |with_data| {
+            let note = "small letters, digits, - and _";
+            Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
+        };
+        if self.has_data() {
+            let item = |text: &str, with_data| Item::new(text, Action::Prompt(Box::new(prompt(with_data))));
+            let items = vec![
+                item("the preset       the data stay where they are", false),
+                item("save with data   the data are copied beside the preset", true),
+            ];
+            self.choose("Save", items, 0);
+        } else {
+            self.overlay = Some(Over::Prompt(prompt(false)));
+        }
+        Vec::new()
+    }
+
+    pub(super) fn ask_export(&mut self) -> Vec<Effect> {
+        let base = match &self.model.source {
+            Source::User { name, .. } => name.clone(),
+            Source::Shipped(shipped) => shipped.name.to_owned(),
+            Source::File(path) => {
+                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+            }
+        };
+        let items = Document::ALL.map(|what| {
+            let file = format!("{}-{}.{}", sanitize(&base, 60), what.name(), what.endings()[0]);
+            let title = format!("Export the {} to", what.name());
+            let note = format!("a file ending in .{}", what.endings().join(" or ."));
+            let prompt = Prompt::new(title, &note, file, Purpose::File(what));
+            let text = match what {
+                Document::Curve => "curve   every point of the equilibrium curve",
+                Document::Walk => "walk    the states walked by hand",
+                Document::Events => "events  the instabilities listed",
+                Document::Script => "script  what was done, for pulloff run",
+            };
+            Item::new(text, Action::Prompt(Box::new(prompt)))
+        });
+        let text = copy::text(self, Content::Screen);
+        let file = format!("{}-screen.txt", sanitize(&base, 60));
+        let prompt = Prompt::new("Export the screen to", "a file ending in .txt", file, Purpose::Text(text));
+        let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
+        let figure = self.figure().map(|svg| {
+            let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
+            let note = "a file ending in .svg; `pulloff plot` draws the same as PNG";
+            let prompt = Prompt::new("Export the figure to", note, file, Purpose::Text(svg));
+            Item::new(
+                "figure  the first view for print: zoom, pins and theory with it",
+                Action::Prompt(Box::new(prompt)),
+            )
+        });
+        self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
+        Vec::new()
+    }
+
+    /// The first view as a figure for print; none before the first curve.
+    fn figure(&self) -> Option<String> {
+        let view = self.model.view;
+        let figure = Subject::of(&self.model)?.figure(view);
+        Some(svg::svg(&Chart::of(&figure, &self.model.window(view)), Width::ONE_COLUMN))
+    }
+
+    pub(super) fn ask_copy(&mut self) -> Vec<Effect> {
+        let items = Content::ALL.map(|content| {
+            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Action::Copy(content))
+        });
+        self.choose("Copy", items.to_vec(), 0);
+        Vec::new()
+    }
+
+    /// Text for the clipboard, if it is not too long for it.
+    pub(super) fn copy(&mut self, content: Content) {
+        let text = copy::text(self, content);
+        let (level, told) = if text.len() > copy::LONGEST {
+            let told = format!("{} bytes are more than terminals take: e exports to a file", text.len());
+            (Level::Error, told)
+        } else {
+            let told = format!(
+                "{} of {} bytes sent to the terminal's clipboard; if it takes none, e exports to a file",
+                content.name(),
+                text.len()
+            );
+            self.clipboard = Some(text);
+            (Level::Info, told)
+        };
+        self.model.message = Some((level, told));
+    }
+}
