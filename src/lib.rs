@@ -13,8 +13,8 @@
 //! |---|---|---|
 //! | 6 | [`cli`] | the door: command line, one file per subcommand, exit codes |
 //! | 5 | `tui` | the terminal: guard, keys, layout, charts, one file per screen region (feature `tui`) |
-//! | 5 | [`plot`] | figures for print, those of the paper, maps of sweeps: SVG, PNG, CSV |
-//! | 5 | [`config`] | the person's settings: keys of commands, looks |
+//! | 4 | [`plot`] | figures for print, those of the paper, maps of sweeps: SVG, PNG, CSV |
+//! | 4 | [`config`] | the person's settings: keys of commands, looks |
 //! | 4 | [`figure`] | figures of a curve, a walk and a state for any renderer: lines, marks, areas with roles |
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers, the sessions kept on disk |
 //! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |

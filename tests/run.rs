@@ -15,7 +15,7 @@ struct Home(TempDir);
 impl Home {
     fn new() -> Self {
         let home = tempfile::tempdir().unwrap();
-        fs::create_dir(home.path().join("work")).unwrap();
+        fs::create_dir(home.path().join("here")).unwrap();
         Self(home)
     }
 
@@ -27,7 +27,7 @@ impl Home {
     fn run(&self, script: &str, arguments: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
         command.env_clear().env("HOME", self.0.path()).env("XDG_CONFIG_HOME", self.at("config"));
-        command.current_dir(self.at("work")).args(["run", "-"]).args(arguments);
+        command.current_dir(self.at("here")).args(["run", "-"]).args(arguments);
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         // A script that is refused may not be read to its end.
@@ -61,15 +61,15 @@ fn a_script_walks_and_exports_and_its_session_walks_again() {
                   set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-limit\n\
                   export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
     home.quiet(script, &[]);
-    let walk = fs::read(home.at("work/walk.csv")).unwrap();
+    let walk = fs::read(home.at("here/walk.csv")).unwrap();
     assert!(String::from_utf8_lossy(&walk).lines().count() > 5);
-    let again = fs::read_to_string(home.at("work/again.pulloff")).unwrap();
+    let again = fs::read_to_string(home.at("here/again.pulloff")).unwrap();
     assert!(again.contains("\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nnext-limit\njump\n"), "{again}");
     home.quiet(&format!("{again}export walk again.csv\nexport script third.pulloff\n"), &[]);
-    assert_eq!(fs::read(home.at("work/again.csv")).unwrap(), walk);
-    assert_eq!(fs::read_to_string(home.at("work/third.pulloff")).unwrap(), again);
+    assert_eq!(fs::read(home.at("here/again.csv")).unwrap(), walk);
+    assert_eq!(fs::read_to_string(home.at("here/third.pulloff")).unwrap(), again);
     let curve: serde_json::Value =
-        serde_json::from_slice(&fs::read(home.at("work/curve.json")).unwrap()).unwrap();
+        serde_json::from_slice(&fs::read(home.at("here/curve.json")).unwrap()).unwrap();
     assert!(curve["points"].as_array().unwrap().len() > 100);
 }
 
@@ -78,7 +78,7 @@ fn a_script_in_si_takes_units_and_bare_si_numbers() {
     let home = Home::new();
     let set = "set material.work_of_adhesion=\"20 mJ/m^2\"\nset material.work_of_adhesion=0.03\n";
     home.quiet(&format!("open fig-9-si\n{set}step\nexport script a.pulloff"), &[]);
-    let lines = fs::read_to_string(home.at("work/a.pulloff")).unwrap();
+    let lines = fs::read_to_string(home.at("here/a.pulloff")).unwrap();
     assert!(
         lines.contains("set material.work_of_adhesion=0.02\nset material.work_of_adhesion=0.03\nstep 1\n"),
         "{lines}"
@@ -90,7 +90,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     let home = Home::new();
     let preset = ["--preset", "wavy-sphere", "--set", "path.end_contact_radius=0.39"];
     home.fails("step\n\njump\nexport walk w.csv", &preset, 1, "standard input:3: jump: the state is stable");
-    assert!(!home.at("work/w.csv").exists());
+    assert!(!home.at("here/w.csv").exists());
     // The end of the path, twice, and then a line that may fail.
     home.quiet("next-limit\nnext-limit\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
     for (script, said) in [
@@ -120,34 +120,34 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
 #[test]
 fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     let home = Home::new();
-    let work = home.at("work");
-    fs::create_dir_all(work.join("sub")).unwrap();
-    fs::create_dir(home.at("work2")).unwrap();
-    symlink(home.at("work2"), work.join("link")).unwrap();
-    symlink(home.at("work2/target.csv"), work.join("file.csv")).unwrap();
-    symlink(work.join("sub"), home.at("back")).unwrap();
-    let absolute = work.join("sub/absolute.csv");
+    let here = home.at("here");
+    fs::create_dir_all(here.join("sub")).unwrap();
+    fs::create_dir(home.at("there")).unwrap();
+    symlink(home.at("there"), here.join("link")).unwrap();
+    symlink(home.at("there/target.csv"), here.join("file.csv")).unwrap();
+    symlink(here.join("sub"), home.at("back")).unwrap();
+    let absolute = here.join("sub/absolute.csv");
     for inside in
-        ["a.csv", "sub/b.csv", "sub/../c.csv", "../work/d.csv", "../back/e.csv", absolute.to_str().unwrap()]
+        ["a.csv", "sub/b.csv", "sub/../c.csv", "../here/d.csv", "../back/e.csv", absolute.to_str().unwrap()]
     {
         home.quiet(&format!("export walk {inside}"), &[]);
     }
-    let outside = home.at("work2/x.csv");
-    for path in ["../x.csv", "link/x.csv", "file.csv", "../work2/x.csv", "~/x.csv", outside.to_str().unwrap()]
+    let outside = home.at("there/x.csv");
+    for path in ["../x.csv", "link/x.csv", "file.csv", "../there/x.csv", "~/x.csv", outside.to_str().unwrap()]
     {
         home.fails(&format!("export walk {path}"), &[], 1, "is not below the current folder");
     }
-    assert_eq!(fs::read_dir(home.at("work2")).unwrap().count(), 0);
+    assert_eq!(fs::read_dir(home.at("there")).unwrap().count(), 0);
     home.fails("export walk none/x.csv", &[], 1, "No such file");
     home.quiet("export walk link/x.csv\nexport walk ../y.csv", &["--anywhere"]);
     assert!(outside.exists() && home.at("y.csv").exists());
     // Replacing.
-    fs::write(work.join("a.csv"), "mine").unwrap();
+    fs::write(here.join("a.csv"), "mine").unwrap();
     home.fails("export walk a.csv", &[], 1, "a.csv exists: not exported");
     home.fails("export walk a.csv replace", &[], 1, "only with --overwrite");
-    assert_eq!(fs::read(work.join("a.csv")).unwrap(), b"mine");
+    assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
-    assert_ne!(fs::read(work.join("a.csv")).unwrap(), b"mine");
+    assert_ne!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     // Presets: by name to their folder; a file only where it may be replaced.
     home.quiet("set gap.amplitude=0.003\nsave-as mine", &[]);
     home.fails("save-as mine", &[], 1, "a preset called mine exists");
@@ -155,8 +155,8 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     home.quiet("open mine\nset gap.amplitude=0.004\nsave", &["--overwrite"]);
     let mine = home.at("config/pulloff/presets/mine.toml");
     assert!(fs::read_to_string(&mine).unwrap().contains("amplitude = 0.004"));
-    fs::copy(&mine, home.at("work2/p.toml")).unwrap();
-    home.fails("open ../work2/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
+    fs::copy(&mine, home.at("there/p.toml")).unwrap();
+    home.fails("open ../there/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
 }
 
 /// Standard output of a run that succeeds.
