@@ -1,84 +1,15 @@
 //! The program without a terminal: what goes to which stream, in which form, with which exit status.
-//!
-//! Every run has its own empty home, so that no preset of the machine is seen.
-
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use assert_cmd::Command;
+#[path = "support/home.rs"]
+mod home;
+
+use home::Home;
 use serde_json::Value;
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Stdio;
-use tempfile::TempDir;
-
-/// A home of its own, in which the program runs.
-struct Home(TempDir);
-
-/// How a run ended.
-struct Ended {
-    status: i32,
-    out: String,
-    err: String,
-}
-
-impl Home {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self) -> std::process::Command {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_pulloff"));
-        command
-            .env_clear()
-            .env("HOME", self.0.path())
-            .env("XDG_CONFIG_HOME", self.path("config"))
-            .current_dir(self.0.path())
-            .stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, arguments: &[&str]) -> Ended {
-        let output = Command::from_std(self.command()).args(arguments).output().unwrap();
-        Ended {
-            status: output.status.code().unwrap(),
-            out: String::from_utf8(output.stdout).unwrap(),
-            err: String::from_utf8(output.stderr).unwrap(),
-        }
-    }
-
-    /// A run that succeeds and says nothing on standard error.
-    fn quiet(&self, arguments: &[&str]) -> String {
-        let ended = self.run(arguments);
-        assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{arguments:?}");
-        ended.out
-    }
-
-    fn json(&self, arguments: &[&str]) -> Value {
-        serde_json::from_str(&self.quiet(&[arguments, &["--format", "json"]].concat())).unwrap()
-    }
-
-    /// A run that is refused: status 2, nothing on standard output, one message that says all of `said`.
-    fn refused(&self, arguments: &[&str], said: &[&str]) {
-        let ended = self.run(arguments);
-        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}: {}", ended.err);
-        for text in said {
-            assert!(ended.err.contains(text), "{arguments:?}: no {text:?} in {}", ended.err);
-        }
-        assert!(!ended.err.contains('\x1b'), "{arguments:?}: {:?}", ended.err);
-    }
-
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.path(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(&path, text).unwrap();
-        path.to_str().unwrap().to_owned()
-    }
-}
 
 fn keys(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
@@ -552,160 +483,6 @@ fn any_consistent_units_give_the_same_reduced_answer() {
     }
 }
 
-// ---- --set and --control ----
-
-#[test]
-fn set_changes_a_key_and_the_last_of_one_key_holds() {
-    let home = Home::new();
-    let document =
-        home.json(&short("unload", &["--set", "gap.amplitude=0.001", "--set", "gap.amplitude=0.002"]));
-    assert!((number(&document, "/problem/preset/gap/amplitude") - 0.002).abs() < 1e-18);
-}
-
-#[test]
-fn a_bad_assignment_names_the_key_and_what_was_meant() {
-    let home = Home::new();
-    for (assignment, said) in [
-        ("gap.amplitud=3", ["gap.amplitud", "did you mean gap.amplitude?"]),
-        ("amplitude=3", ["unknown key", "gap.amplitude"]),
-        ("gap.amplitude=-3", ["gap.amplitude", "out of range"]),
-        ("gap.amplitude=wide", ["gap.amplitude", "number"]),
-        ("gap.shape=spere", ["gap.shape", "did you mean sphere?"]),
-        ("basis.rings=3", ["basis.rings", "from 4 to 2000"]),
-        ("basis.rings=20.5", ["basis.rings", "whole number"]),
-        ("path.control=load", ["path.control", "displacement"]),
-        ("path.end_contact_radius=0.6", ["path.end_contact_radius", "0.5"]),
-        ("material.work_of_adhesion=nan", ["material.work_of_adhesion", "out of range"]),
-        ("nothing", ["KEY=VALUE", "nothing"]),
-    ] {
-        for command in ["trace", "unload"] {
-            home.refused(&[command, "fig-9", "--set", assignment], &said);
-        }
-    }
-}
-
-#[test]
-fn a_bad_control_is_bad_usage() {
-    let home = Home::new();
-    for control in [
-        "",
-        "load",
-        "Force",
-        "stiffness",
-        "stiffness=",
-        "stiffness=0",
-        "stiffness=-1",
-        "stiffness=inf",
-        "stiffness=nan",
-        "stiffness=1e-40",
-    ] {
-        home.refused(&["unload", "fig-9", "--control", control], &["control"]);
-    }
-}
-
-#[test]
-fn bad_usage_is_refused() {
-    let home = Home::new();
-    home.refused(&["unload", "fig-9", "--format", "xml"], &["xml"]);
-    home.refused(&["trace", "fig-9", "--format", "table"], &["table"]);
-    home.refused(&["trace", "fig-9", "--control", "force"], &["--control"]);
-    home.refused(&["unload", "fig-9", "extra"], &["extra"]);
-    home.refused(&["presets"], &["list"]);
-}
-
-// ---- preset files ----
-
-const FILE: &str = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.01\n[gap]\nshape = \"sphere\"\n\
-                    radius_of_curvature = 1.0\n";
-
-#[test]
-fn a_preset_file_needs_only_its_required_keys() {
-    let home = Home::new();
-    let file = home.file("mine.toml", FILE);
-    let document = home.json(&["unload", &file]);
-    assert_eq!(kinds(&document), ["pull-off"]);
-    let basis = &document["problem"]["preset"]["basis"];
-    assert_eq!(*basis, serde_json::json!({"kind": "spectral", "functions": "auto"}));
-    assert!((number(&document, "/problem/end_contact_radius") - 0.002).abs() < 1e-15);
-    // Relative, without a slash: it is a file because it ends in .toml.
-    assert_eq!(home.json(&["unload", "mine.toml"])["events"], document["events"]);
-}
-
-#[test]
-fn a_mistake_in_a_file_is_named_with_file_line_and_key() {
-    let home = Home::new();
-    for (text, said) in [
-        (
-            FILE.replace("radius_of_curvature", "radius_of_curvatur"),
-            vec!["bad.toml:6", "radius_of_curvature"],
-        ),
-        (
-            FILE.replace("[gap]", "work_of_adhesion = 0.02\n[gap]"),
-            vec!["bad.toml:4", "duplicate", "work_of_adhesion"],
-        ),
-        (FILE.replace("0.01", "-0.01"), vec!["bad.toml:3", "material.work_of_adhesion"]),
-        (FILE.replace("[gap]", "[gap"), vec!["bad.toml:4"]),
-        (FILE.replace("effective_modulus = 1.0\n", ""), vec!["bad.toml", "material.effective_modulus"]),
-        (
-            format!("{FILE}[path]\nstart_force = 0.1\nstart_approach = 0.1\n"),
-            vec!["bad.toml", "start_force", "start_approach"],
-        ),
-    ] {
-        let file = home.file("bad.toml", &text);
-        home.refused(&["trace", &file], &said);
-    }
-    home.refused(&["trace", "none.toml"], &["none.toml"]);
-    home.refused(&["trace", "./"], &["regular file"]);
-}
-
-#[test]
-fn an_unknown_preset_is_bad_input() {
-    let home = Home::new();
-    for command in ["trace", "unload"] {
-        home.refused(&[command, "fig-99"], &["fig-99"]);
-    }
-    home.refused(&["presets", "show", "fig-99"], &["fig-99"]);
-}
-
-// ---- warnings ----
-
-#[test]
-fn too_few_rings_per_wave_is_a_warning_on_stderr_and_in_the_document() {
-    let home = Home::new();
-    for command in ["trace", "unload"] {
-        let ended = home.run(&[command, "fig-9", "--set", "basis.rings=99", "--format", "json"]);
-        assert_eq!(ended.status, 0);
-        let document: Value = serde_json::from_str(&ended.out).unwrap();
-        let warnings = document["warnings"].as_array().unwrap();
-        assert_eq!(warnings.len(), 1);
-        let warning = warnings[0].as_str().unwrap();
-        assert!(warning.contains("rings per wave") && warning.contains("basis.rings"), "{warning}");
-        assert_eq!(ended.err, format!("pulloff: warning: {warning}\n"));
-        // Ten are enough.
-        home.quiet(&[command, "fig-9", "--set", "basis.rings=100"]);
-    }
-}
-
-#[test]
-fn a_curve_that_ends_is_no_pull_off() {
-    let home = Home::new();
-    // A ring per wave cannot resolve the gap: beyond some radius the basis has no equilibrium.
-    let file = home.file(
-        "coarse.toml",
-        "[material]\neffective_modulus = 7e10\nwork_of_adhesion = 0.0473\n[gap]\nshape = \"wavy-sphere\"\n\
-         radius_of_curvature = 2e-8\namplitude = 5.8363e-12\nwavelength = 7.2086e-10\n[basis]\nrings = 30\n\
-         [path]\nstart_contact_radius = 1.8156e-8\n",
-    );
-    let ended = home.run(&["unload", &file, "--format", "json"]);
-    assert_eq!(ended.status, 1, "{}", ended.err);
-    let document: Value = serde_json::from_str(&ended.out).unwrap();
-    assert_eq!(kinds(&document), [""; 0]);
-    let stop = document["stop"].as_str().unwrap();
-    // The radius it ends at, in the units of the preset.
-    assert!(stop.contains("no equilibrium") && stop.contains("e-8"), "{stop}");
-    assert!(ended.err.contains("stopped early") && ended.err.contains(stop), "{}", ended.err);
-}
-
 // ---- admissibility ----
 
 #[test]
@@ -819,7 +596,7 @@ fn a_result_goes_to_a_file_whole() {
     assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv"])), "");
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
     // Nothing temporary stays behind.
-    assert_eq!(names(home.0.path()), ["curve.csv"]);
+    assert_eq!(names(home.folder()), ["curve.csv"]);
     // A failed run leaves the old file alone.
     home.refused(&short("trace", &["-o", "curve.csv", "--set", "basis.rings=1"]), &["basis.rings"]);
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
@@ -833,7 +610,7 @@ fn names(folder: &Path) -> Vec<String> {
 fn a_dash_is_standard_output() {
     let home = Home::new();
     assert_eq!(home.quiet(&short("unload", &["-o", "-"])), home.quiet(&short("unload", &[])));
-    assert_eq!(names(home.0.path()), [""; 0]);
+    assert_eq!(names(home.folder()), [""; 0]);
 }
 
 #[test]
@@ -851,84 +628,11 @@ fn a_closed_reader_is_a_quiet_end() {
     for arguments in
         [["trace", "fig-9"].as_slice(), &["trace", "fig-9", "--format", "json"], &["presets", "list"]]
     {
-        let mut command = home.command();
-        let mut child =
-            command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut command = home.command(arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let mut err = String::new();
         child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
         assert_eq!((child.wait().unwrap().code(), err.as_str()), (Some(0), ""), "{arguments:?}");
     }
-}
-
-// ---- presets ----
-
-#[test]
-fn presets_are_listed_shown_and_located() {
-    let home = Home::new();
-    let list = home.quiet(&["presets", "list"]);
-    let listed: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    let shipped: Vec<&str> = pulloff::preset::SHIPPED.iter().map(|shipped| shipped.name).collect();
-    assert_eq!(listed, shipped);
-    assert!(listed.starts_with(&["wavy-sphere", "fig-1-hertz"]) && listed.contains(&"profile"), "{list}");
-    assert!(list.lines().all(|line| line.contains("  shipped  ")), "{list}");
-
-    let folder = home.path("config/pulloff/presets");
-    assert_eq!(home.quiet(&["presets", "path"]), format!("{}\n", folder.to_str().unwrap()));
-
-    let shown = home.quiet(&["presets", "show", "fig-9"]);
-    assert!(shown.contains("shape = \"wavy-sphere\""), "{shown}");
-    // What is shown is a preset file that gives the same.
-    let copy = home.file("copy.toml", &shown);
-    assert_eq!(home.quiet(&["unload", &copy]), home.quiet(&["unload", "fig-9"]));
-
-    home.file("config/pulloff/presets/mine.toml", FILE);
-    home.file("config/pulloff/presets/broken.toml", "[material]\n");
-    let list = home.quiet(&["presets", "list"]);
-    let line = |name: &str| list.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
-    assert!(line("mine").contains("yours"), "{list}");
-    assert!(line("broken").contains("cannot be read"), "{list}");
-    assert_eq!(home.quiet(&["presets", "show", "mine"]), FILE);
-    assert_eq!(kinds(&home.json(&["unload", "mine"])), ["pull-off"]);
-}
-
-// ---- the explorer without a terminal ----
-
-#[test]
-fn the_explorer_without_a_terminal_is_one_clear_line() {
-    let home = Home::new();
-    for arguments in [[].as_slice(), &["fig-9"]] {
-        let ended = home.run(arguments);
-        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
-        assert!(ended.err.starts_with("pulloff: "), "{:?}", ended.err);
-        assert_eq!(ended.err.trim_end().lines().count(), 1, "{:?}", ended.err);
-        assert!(!ended.err.contains('\x1b'), "{:?}", ended.err);
-    }
-}
-
-#[test]
-fn help_and_version_are_no_errors() {
-    let home = Home::new();
-    assert_eq!(home.quiet(&["--version"]), format!("pulloff {}\n", env!("CARGO_PKG_VERSION")));
-    for arguments in
-        [["--help"].as_slice(), &["trace", "--help"], &["unload", "--help"], &["presets", "--help"]]
-    {
-        assert!(home.quiet(arguments).contains("Usage"), "{arguments:?}");
-    }
-}
-
-#[test]
-fn a_preset_of_ones_own_is_deleted_and_no_other() {
-    let home = Home::new();
-    let file = home.file("config/pulloff/presets/mine.toml", FILE);
-    // Without a terminal nobody can answer.
-    home.refused(&["presets", "delete", "mine"], &["--yes"]);
-    home.refused(&["presets", "delete", "fig-9", "--yes"], &["fig-9 comes with the program"]);
-    home.refused(&["presets", "delete", "mime", "--yes"], &["did you mean mine?"]);
-    home.refused(&["presets", "delete", "./mine.toml", "--yes"], &["is no preset name"]);
-    assert!(Path::new(&file).exists());
-    let ended = home.run(&["presets", "delete", "mine", "--yes"]);
-    assert_eq!((ended.status, ended.out.as_str()), (0, ""));
-    assert!(ended.err.contains("deleted") && ended.err.contains("mine.toml"), "{}", ended.err);
-    assert!(!Path::new(&file).exists());
 }

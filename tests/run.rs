@@ -2,61 +2,58 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+#[path = "support/home.rs"]
+mod home;
+
+use home::{Ended, Home};
 use std::fs;
 use std::io::Write;
 use std::os::unix::fs::symlink;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-use tempfile::TempDir;
+use std::process::{Command, Stdio};
 
-/// A home of its own, and the folder in it in which scripts run.
-struct Home(TempDir);
+/// A home, and the folder in it in which scripts run.
+struct Scripts(Home);
 
-impl Home {
+impl Scripts {
     fn new() -> Self {
-        let home = tempfile::tempdir().unwrap();
-        fs::create_dir(home.path().join("here")).unwrap();
+        let home = Home::new();
+        fs::create_dir(home.path("here")).unwrap();
         Self(home)
     }
 
     fn at(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+        self.0.path(name)
     }
 
     /// Runs `script` from standard input.
-    fn run(&self, script: &str, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
-        command.env_clear().env("HOME", self.0.path()).env("XDG_CONFIG_HOME", self.at("config"));
-        command.current_dir(self.at("here")).args(["run", "-"]).args(arguments);
+    fn run(&self, script: &str, arguments: &[&str]) -> Ended {
+        let mut command = self.0.command(&[&["run", "-"], arguments].concat());
+        command.current_dir(self.at("here"));
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         // A script that is refused may not be read to its end.
         let _ = child.stdin.take().unwrap().write_all(script.as_bytes());
-        child.wait_with_output().unwrap()
+        Ended::of(child.wait_with_output().unwrap())
     }
 
     /// A run that succeeds without a word.
     fn quiet(&self, script: &str, arguments: &[&str]) {
-        let output = self.run(script, arguments);
-        assert_eq!((output.status.code(), text(&output)), (Some(0), String::new()), "{script}");
+        let ended = self.run(script, arguments);
+        assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{script}");
     }
 
     /// A run that fails with this status and says this.
     fn fails(&self, script: &str, arguments: &[&str], status: i32, said: &str) {
-        let output = self.run(script, arguments);
-        assert_eq!(output.status.code(), Some(status), "{script}: {}", text(&output));
-        assert!(output.stdout.is_empty());
-        assert!(text(&output).contains(said), "{script}: {}", text(&output));
+        let ended = self.run(script, arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (status, ""), "{script}: {}", ended.err);
+        assert!(ended.err.contains(said), "{script}: {}", ended.err);
     }
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 #[test]
 fn a_script_walks_and_exports_and_its_session_walks_again() {
-    let home = Home::new();
+    let home = Scripts::new();
     let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun-to instability\njump\n\
                   set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-limit\n\
                   export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
@@ -75,7 +72,7 @@ fn a_script_walks_and_exports_and_its_session_walks_again() {
 
 #[test]
 fn a_script_in_si_takes_units_and_bare_si_numbers() {
-    let home = Home::new();
+    let home = Scripts::new();
     let set = "set material.work_of_adhesion=\"20 mJ/m^2\"\nset material.work_of_adhesion=0.03\n";
     home.quiet(&format!("open fig-9-si\n{set}step\nexport script a.pulloff"), &[]);
     let lines = fs::read_to_string(home.at("here/a.pulloff")).unwrap();
@@ -87,7 +84,7 @@ fn a_script_in_si_takes_units_and_bare_si_numbers() {
 
 #[test]
 fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
-    let home = Home::new();
+    let home = Scripts::new();
     let preset = ["--preset", "wavy-sphere", "--set", "path.end_contact_radius=0.39"];
     home.fails("step\n\njump\nexport walk w.csv", &preset, 1, "standard input:3: jump: the state is stable");
     assert!(!home.at("here/w.csv").exists());
@@ -113,13 +110,13 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     home.fails("step", &["--preset", "none"], 2, "no preset is called");
     home.fails(&"#\n".repeat(600_000), &[], 2, "more than the 1048576 bytes");
     let output = home.run("step 2\nnext-limit\n", &["--verbose"]);
-    assert!(text(&output).starts_with("1: step 2: Stable under"), "{}", text(&output));
-    assert_eq!(text(&output).lines().count(), 2);
+    assert!(output.err.starts_with("1: step 2: Stable under"), "{}", output.err);
+    assert_eq!(output.err.lines().count(), 2);
 }
 
 #[test]
 fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
-    let home = Home::new();
+    let home = Scripts::new();
     let here = home.at("here");
     fs::create_dir_all(here.join("sub")).unwrap();
     fs::create_dir(home.at("there")).unwrap();
@@ -159,28 +156,19 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     home.fails("open ../there/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
 }
 
-/// Standard output of a run that succeeds.
-fn output(home: &Home, arguments: &[&str]) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
-    command.env_clear().env("HOME", home.0.path()).env("XDG_CONFIG_HOME", home.at("config"));
-    let output = command.args(arguments).stdin(Stdio::null()).output().unwrap();
-    assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];
 
 #[test]
 fn the_completions_of_every_shell_know_every_subcommand() {
     let home = Home::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let text = output(&home, &["completions", shell]);
+        let text = home.quiet(&["completions", shell]);
         for name in SUBCOMMANDS.into_iter().chain(["overwrite", "anywhere", "config"]) {
             assert!(text.contains(name), "{shell}: no {name}");
         }
     }
-    let path = home.at("pulloff.bash");
-    fs::write(&path, output(&home, &["completions", "bash"])).unwrap();
+    let path = home.path("pulloff.bash");
+    fs::write(&path, home.quiet(&["completions", "bash"])).unwrap();
     // Where there is a bash, it finds no fault in it.
     if let Ok(checked) = Command::new("bash").arg("-n").arg(&path).output() {
         assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
@@ -190,7 +178,7 @@ fn the_completions_of_every_shell_know_every_subcommand() {
 #[test]
 fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
     let home = Home::new();
-    let page = output(&home, &["man"]);
+    let page = home.quiet(&["man"]);
     assert!(page.contains(".TH pulloff 1"), "{page}");
     for name in SUBCOMMANDS {
         let heading = format!(".SH \"PULLOFF {}\"", name.to_uppercase());
@@ -203,8 +191,8 @@ fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
     }
     if cfg!(feature = "tui") {
         assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
-        fs::create_dir_all(home.at("config/pulloff")).unwrap();
-        fs::write(home.at("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
-        assert!(output(&home, &["man"]).contains("[number of steps] (F4)"));
+        fs::create_dir_all(home.path("config/pulloff")).unwrap();
+        fs::write(home.path("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
+        assert!(home.quiet(&["man"]).contains("[number of steps] (F4)"));
     }
 }

@@ -1,10 +1,13 @@
 //! Sessions: what is read back is what was, bit for bit, and a walk goes on as if nothing had happened.
 
+#[path = "support/home.rs"]
+mod home;
 #[path = "support/pty.rs"]
 mod pty;
 #[path = "support/session.rs"]
 mod session;
 
+use home::Home;
 use pty::Pty;
 use pulloff::explorer::archive::Archive;
 use pulloff::explorer::branches::branches;
@@ -353,41 +356,35 @@ fn a_million_steps_stay_bounded_and_a_tree() {
     assert_eq!(back.history.len(), session.model.history.len());
 }
 
-fn program() -> &'static Path {
-    Path::new(env!("CARGO_BIN_EXE_pulloff"))
-}
-
 /// A home with its sessions.
-struct Home(tempfile::TempDir);
+struct Sessions(Home);
 
-impl Home {
+impl Sessions {
     fn new() -> Self {
-        Self(tempfile::tempdir().expect("a home"))
+        Self(Home::new())
     }
 
     fn archive(&self) -> Archive {
-        Archive::at(self.0.path().join(".local/state/pulloff/sessions"))
+        Archive::at(self.0.path(".local/state/pulloff/sessions"))
     }
 
     /// Exit status, output and errors.
     fn run(&self, arguments: &[&str]) -> (i32, String, String) {
-        let mut command = std::process::Command::new(program());
-        command.env_clear().env("HOME", self.0.path()).args(arguments).stdin(std::process::Stdio::null());
-        let ended = command.output().expect("a home");
-        let text = |bytes| String::from_utf8(bytes).expect("a home");
-        (ended.status.code().expect("a home"), text(ended.stdout), text(ended.stderr))
+        let ended = self.0.run(arguments);
+        (ended.status, ended.out, ended.err)
     }
 
     fn explore(&self, arguments: &[&str]) -> Pty {
-        Pty::spawn(program(), arguments, &[("HOME", self.0.path().to_str().expect("a home"))], 100, 30)
+        let program = Path::new(env!("CARGO_BIN_EXE_pulloff"));
+        Pty::spawn(program, arguments, &[("HOME", self.0.folder().to_str().expect("a home"))], 100, 30)
     }
 }
 
 #[test]
 fn sessions_are_listed_shown_and_deleted() {
-    let home = Home::new();
+    let home = Sessions::new();
     assert_eq!(home.run(&["sessions", "list"]), (0, String::new(), String::new()));
-    assert!(!home.0.path().join(".local").exists(), "a list writes nothing");
+    assert!(!home.0.path(".local").exists(), "a list writes nothing");
     let mut session = Session::new("wavy-sphere");
     session.does(Command::Steps(4)).set("gap.amplitude", "0.0024");
     for ended in [Ended::Quit, Ended::Running] {
@@ -444,7 +441,7 @@ const UP: &str = "stable under displacement control";
 #[test]
 fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
     for signal in [None, Some(Signal::HUP), Some(Signal::TERM), Some(Signal::KILL)] {
-        let home = Home::new();
+        let home = Sessions::new();
         let mut pty = home.explore(&[]);
         pty.wait_for(|screen| screen.contains(UP) && !screen.contains("cut off"), "the curve, and no offer");
         pty.keys("4 n");
@@ -505,7 +502,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
 
 #[test]
 fn an_offer_is_not_in_the_way_of_whoever_types_on() {
-    let home = Home::new();
+    let home = Sessions::new();
     let mut pty = home.explore(&[]);
     pty.wait_for(|screen| screen.contains(UP), "the curve");
     pty.keys("4 ");
@@ -540,12 +537,12 @@ fn an_offer_is_not_in_the_way_of_whoever_types_on() {
 
 #[test]
 fn a_program_that_changed_nothing_writes_nothing() {
-    let home = Home::new();
+    let home = Sessions::new();
     let mut pty = home.explore(&[]);
     pty.wait_for(|screen| screen.contains(UP), "the curve");
     pty.keys("t\t\t");
     pty.wait_for(|screen| screen.contains("(t: radius-approach)"), "another view");
     pty.signal(Signal::HUP);
     pty.exit_code();
-    assert!(!home.0.path().join(".local").exists());
+    assert!(!home.0.path(".local").exists());
 }

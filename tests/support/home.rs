@@ -1,0 +1,88 @@
+//! A home of its own in which the program runs, so that nothing of the machine's user is seen or touched.
+#![allow(dead_code, reason = "each test file uses a part of it")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A folder that is home, configuration and current folder of the program.
+pub struct Home(TempDir);
+
+/// How a run ended.
+pub struct Ended {
+    pub status: i32,
+    pub out: String,
+    pub err: String,
+}
+
+impl Home {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().expect("a folder"))
+    }
+
+    pub fn folder(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Writes a file below the home; its path.
+    pub fn file(&self, name: &str, text: &str) -> String {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().expect("below the home")).expect("a folder");
+        fs::write(&path, text).expect("a file");
+        path.to_str().expect("UTF-8").to_owned()
+    }
+
+    pub fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).expect("a file of text")
+    }
+
+    /// The program with nothing on standard input and no other variable than these.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+        command.env_clear().env("HOME", self.folder()).env("XDG_CONFIG_HOME", self.path("config"));
+        command.current_dir(self.folder()).args(arguments).stdin(Stdio::null());
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Ended {
+        Ended::of(self.command(arguments).output().expect("a run"))
+    }
+
+    /// A run that succeeds and says nothing on standard error.
+    pub fn quiet(&self, arguments: &[&str]) -> String {
+        let ended = self.run(arguments);
+        assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{arguments:?}");
+        ended.out
+    }
+
+    pub fn json(&self, arguments: &[&str]) -> Value {
+        serde_json::from_str(&self.quiet(&[arguments, &["--format", "json"]].concat())).expect("JSON")
+    }
+
+    /// A run that is refused: status 2, nothing on standard output, one message that says all of `said`.
+    pub fn refused(&self, arguments: &[&str], said: &[&str]) {
+        let ended = self.run(arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}: {}", ended.err);
+        for text in said {
+            assert!(ended.err.contains(text), "{arguments:?}: no {text:?} in {}", ended.err);
+        }
+        assert!(!ended.err.contains('\x1b'), "{arguments:?}: {:?}", ended.err);
+    }
+}
+
+impl Ended {
+    /// Of a program that ended by itself.
+    pub fn of(output: Output) -> Self {
+        Self {
+            status: output.status.code().expect("no signal"),
+            out: String::from_utf8(output.stdout).expect("UTF-8"),
+            err: String::from_utf8(output.stderr).expect("UTF-8"),
+        }
+    }
+}
