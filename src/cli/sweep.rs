@@ -185,10 +185,11 @@ impl Sweep {
                 summary.faults.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
             say(&format!("{faults} with an error: {}", reasons.join(", ")));
         }
-        if summary.is_complete() && self.shard == Shard::WHOLE {
-            if let Some(line) = how_to_plot(spec, &self.output) {
-                say(&line);
-            }
+        if summary.is_complete()
+            && self.shard == Shard::WHOLE
+            && let Some(line) = how_to_plot(spec, &self.output)
+        {
+            say(&line);
         }
     }
 }
