@@ -243,9 +243,38 @@ pub fn unload_while(
     if unstable_start {
         run_outward(curve, control, asked_radius)?;
     }
+    let Descent { path, events, pieces, stop } = descend(curve, control, losses, end_radius, &mut go_on)?;
+    let start = curve.equilibrium.state(&path[0]);
+    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
+    let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
+    let asked = asked_state.filter(|_| unstable_start).map(|state| {
+        let value = control.value(state.approach, state.force);
+        let falls = landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
+        Asked { state, falls }
+    });
+    Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
+}
+
+/// The way down a curve.
+struct Descent {
+    /// Its states, the first one and the landings among them.
+    path: Vec<Point>,
+    events: Vec<Event>,
+    pieces: Vec<[f64; 2]>,
+    stop: PathStop,
+}
+
+/// From the first point of `curve`, stable, down to `end_radius`: along the curve to the next minimum of the control,
+/// from there to where the edge lands, and on.
+fn descend(
+    curve: &mut Curve,
+    control: Control,
+    losses: Losses,
+    end_radius: f64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Descent, UnloadError> {
     let mut nodes = Nodes::new(curve, control, &curve.limit_points(control));
     let mut here = Landing { point: nodes.points()[0].clone(), node: 0 };
-    let start = curve.equilibrium.state(&here.point);
 
     let mut path = Vec::new();
     let mut events = Vec::new();
@@ -300,14 +329,7 @@ pub fn unload_while(
             Some(landing) => here = landing,
         }
     };
-    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
-    let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
-    let asked = asked_state.filter(|_| unstable_start).map(|state| {
-        let value = control.value(state.approach, state.force);
-        let falls = landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
-        Asked { state, falls }
-    });
-    Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
+    Ok(Descent { path, events, pieces, stop })
 }
 
 /// Where the edge lands when it runs inward from the limit point at node `limit`; the curve is extended, and the

@@ -33,7 +33,20 @@ fn aligned(rows: &[Vec<String>], left: usize) -> String {
 
 /// The unloading as lines of text.
 pub fn unload(report: &UnloadReport) -> String {
-    let critical = report.problem.critical_force;
+    let mut text = opening(report);
+    text.push('\n');
+    if report.events.is_empty() {
+        text.push_str("no instabilities\n");
+    } else {
+        text.push_str(&events(report));
+    }
+    text.push('\n');
+    text.push_str(&outcome(report));
+    text
+}
+
+/// The case, its control, its start, and what is to be known of them.
+fn opening(report: &UnloadReport) -> String {
     let title = report.problem.preset.get("title").and_then(|t| t.as_str()).unwrap_or("");
     let units = &report.problem.units.shown;
     let control = match report.control {
@@ -42,27 +55,23 @@ pub fn unload(report: &UnloadReport) -> String {
         }
         other => other.to_string(),
     };
-    let length = |x| ascii_unit(units, Quantity::Length, x, |x| significant(x, 6));
-    let force = |x| ascii_unit(units, Quantity::Force, x, |x| significant(x, 6));
-    let mut text = format!("{title}\ncontrol: {control}\n");
+    let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 6));
     let start = &report.start;
-    let _ = writeln!(
-        text,
-        "start: delta {}  P {}  s {}",
-        length(start.approach),
-        force(start.force),
-        length(start.contact_radius)
+    let mut text = format!(
+        "{title}\ncontrol: {control}\nstart: delta {}  P {}  s {}\n",
+        shown(Quantity::Length, start.approach),
+        shown(Quantity::Force, start.force),
+        shown(Quantity::Length, start.contact_radius)
     );
-    if let Some(note) = &start.note {
+    for note in start.note.iter().chain(&report.notes) {
         let _ = writeln!(text, "note: {note}");
     }
-    for note in &report.notes {
-        let _ = writeln!(text, "note: {note}");
-    }
-    text.push('\n');
-    if report.events.is_empty() {
-        text.push_str("no instabilities\n");
-    }
+    text
+}
+
+/// The events as a table, and what is wrong with those that cannot be.
+fn events(report: &UnloadReport) -> String {
+    let units = &report.problem.units.shown;
     let head = |name: &str, quantity| match units.unit(quantity) {
         Some(unit) => format!("{name} [{}]", unit.ascii()),
         None => name.to_owned(),
@@ -81,9 +90,7 @@ pub fn unload(report: &UnloadReport) -> String {
         "by area".to_owned(),
     ]];
     rows.extend(report.events.iter().enumerate().map(|(i, event)| row(units, i + 1, event)));
-    if rows.len() > 1 {
-        text.push_str(&aligned(&rows, 2));
-    }
+    let mut text = aligned(&rows, 2);
     if report.events.iter().any(|event| event.admissible == Some(false)) {
         let found = report.inadmissible.as_deref().unwrap_or_default();
         let crest = found.iter().any(|part| part.crest_radius.is_some());
@@ -92,17 +99,22 @@ pub fn unload(report: &UnloadReport) -> String {
         let faults: Vec<&str> = faults.iter().filter(|(is, _)| *is).map(|(_, fault)| *fault).collect();
         let _ = writeln!(text, "! limit point or landing inadmissible: {}", faults.join(", or "));
     }
-    let _ = writeln!(
-        text,
-        "\nsmallest force on the path: {}{}",
-        ascii_unit(units, Quantity::Force, report.min_force, |x| significant(x, 7)),
-        ratio(report.min_force, critical)
+    text
+}
+
+/// What the path comes to: extreme values, losses, its end.
+fn outcome(report: &UnloadReport) -> String {
+    let units = &report.problem.units.shown;
+    let least = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
+    let mut text = format!(
+        "smallest force on the path: {}{}\nsmallest approach on the path: {}\n",
+        least(Quantity::Force, report.min_force),
+        ratio(report.min_force, report.problem.critical_force),
+        least(Quantity::Length, report.min_approach)
     );
-    let smallest = ascii_unit(units, Quantity::Length, report.min_approach, |x| significant(x, 7));
-    let _ = writeln!(text, "smallest approach on the path: {smallest}");
     let unbounded = report.events.iter().any(|event| event.dissipated.is_none());
-    let lost = ascii_unit(units, Quantity::Energy, report.total_dissipated, loss);
     let bounded = report.events.iter().any(|event| event.dissipated.is_some());
+    let lost = ascii_unit(units, Quantity::Energy, report.total_dissipated, loss);
     let _ = match (unbounded, bounded) {
         (false, _) => writeln!(text, "energy lost: {lost}"),
         (true, true) => {

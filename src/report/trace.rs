@@ -8,8 +8,8 @@ use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::contact::Control;
 use crate::preset::Preset;
-use crate::quasistatic::Curve;
 use crate::quasistatic::overlap::overlaps;
+use crate::quasistatic::{Curve, Overlap};
 use crate::theory::{Equilibrium, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -87,6 +87,37 @@ pub struct ExactReport {
     pub relative_difference: f64,
 }
 
+impl PointReport {
+    /// The state at `step` of a curve of `case`, which is not admissible where it lies in one of `overlapping`.
+    fn new(case: &Case, curve: &Curve, step: usize, overlapping: &[Overlap]) -> Self {
+        let (equilibrium, units) = (&curve.equilibrium, case.units());
+        let point = &curve.branch.points[step];
+        let state = equilibrium.state(point).in_units(units);
+        let stability = equilibrium.stability(point);
+        let stiffness = equilibrium.stiffness(point).in_units(units);
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let s = equilibrium.contact_radius(point);
+        Self {
+            step,
+            contact_radius: state.contact_radius,
+            approach: state.approach,
+            force: state.force,
+            energy: state.energy,
+            newton_iterations: point.rounds,
+            stable: StableReport {
+                displacement: stability.under(Control::Displacement),
+                force: stability.under(Control::Force),
+                chosen: stability.under(case.control),
+            },
+            contact_stiffness: stiffness.contact,
+            tangent_stiffness: finite(stiffness.tangent),
+            area_slope: finite(stiffness.area_slope),
+            admissible: !overlapping.iter().any(|overlap| overlap.contains(s)),
+            exact: None,
+        }
+    }
+}
+
 impl ExactReport {
     /// `force` of a point beside the exact equilibrium at its radius.
     fn new(force: f64, exact: &Equilibrium) -> Self {
@@ -146,6 +177,18 @@ pub const COLUMNS: &[&str] = &[
 pub const EXACT_COLUMNS: &[&str] =
     &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
 
+/// Why an unloading does not begin where the curve does.
+fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<String> {
+    let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
+    (!start.stable.chosen).then(|| {
+        format!(
+            "the start (contact radius {}) is unstable under {} control: an unloading does not begin there",
+            length(start.contact_radius),
+            control_name(case.control)
+        )
+    })
+}
+
 impl TraceReport {
     /// Traces `preset` by arc length and reports it.
     ///
@@ -182,38 +225,8 @@ impl TraceReport {
         let equilibrium = &curve.equilibrium;
         let overlapping = overlaps(curve);
         let inadmissible = OverlapReport::all(&overlapping, units);
-        let points: Vec<PointReport> = curve
-            .branch
-            .points
-            .iter()
-            .enumerate()
-            .map(|(step, point)| {
-                let state = equilibrium.state(point).in_units(units);
-                let stability = equilibrium.stability(point);
-                let stiffness = equilibrium.stiffness(point).in_units(units);
-                let finite = |x: f64| Some(x).filter(|x| x.is_finite());
-                PointReport {
-                    step,
-                    contact_radius: state.contact_radius,
-                    approach: state.approach,
-                    force: state.force,
-                    energy: state.energy,
-                    newton_iterations: point.rounds,
-                    stable: StableReport {
-                        displacement: stability.under(Control::Displacement),
-                        force: stability.under(Control::Force),
-                        chosen: stability.under(case.control),
-                    },
-                    contact_stiffness: stiffness.contact,
-                    tangent_stiffness: finite(stiffness.tangent),
-                    area_slope: finite(stiffness.area_slope),
-                    admissible: {
-                        let s = equilibrium.contact_radius(point);
-                        !overlapping.iter().any(|overlap| overlap.contains(s))
-                    },
-                    exact: None,
-                }
-            })
+        let points: Vec<PointReport> = (0..curve.branch.points.len())
+            .map(|step| PointReport::new(case, curve, step, &overlapping))
             .collect();
         let limit_points: Vec<LimitReport> = case
             .controls()
@@ -245,14 +258,7 @@ impl TraceReport {
                 .chain(overlap::warning("the curve", &inadmissible, &preset.units))
                 .collect(),
             notes: case.notes(curve.outermost()),
-            start_note: points.first().filter(|start| !start.stable.chosen).map(|start| {
-                let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
-                format!(
-                    "the start (contact radius {}) is unstable under {} control: an unloading does not begin there",
-                    length(start.contact_radius),
-                    control_name(case.control)
-                )
-            }),
+            start_note: points.first().and_then(|start| start_note(preset, case, start)),
             stop: curve.stop.in_units(units).words(&preset.units),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
