@@ -1,8 +1,11 @@
-//! The explorer without a terminal: groups as knobs, whole commands undone, what is said of long work and in units.
+//! The explorer without a terminal: groups as knobs, whole commands undone, commands that wait for a curve, what is said of
+//! long work and in units.
 
 #[path = "support/session.rs"]
 mod session;
 
+use pulloff::contact::Control;
+use pulloff::explorer::journal::Journal;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Progress, Reply, answer, update};
 use pulloff::preset::Value;
@@ -140,4 +143,63 @@ fn a_walk_counts_its_states_and_a_pause_is_no_error() {
     let (level, text) = session.model.status();
     assert_eq!(level, Level::Info);
     assert!(text.starts_with("paused"), "{text}");
+}
+
+#[test]
+fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextLimit, Id::Jump]);
+    let steps = session.model.history.len();
+    // All in one burst, before any of it is done.
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.0023".to_owned() };
+    let effects = update(&mut session.model, set);
+    for id in [Id::NextLimit, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextLimit] {
+        assert!(update(&mut session.model, id.into()).is_empty());
+    }
+    assert_eq!((session.model.history.len(), session.model.queue.len()), (steps, 6));
+    session.driver.settle(&mut session.model, effects);
+    let node = session.model.history.current().unwrap();
+    assert!(node.is_limit(Control::Displacement) && session.model.is_on_curve(node) && session.model.inward);
+    let mut one_by_one = Session::new("wavy-sphere");
+    one_by_one.all(&[Id::NextLimit, Id::Jump]).set("gap.amplitude", "0.0023");
+    one_by_one.all(&[Id::NextLimit, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextLimit]);
+    assert_eq!(session.model.journal.lines(), one_by_one.model.journal.lines());
+    assert_eq!(node.state, one_by_one.model.history.current().unwrap().state);
+}
+
+#[test]
+fn nothing_is_walked_on_a_curve_of_other_values() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextLimit);
+    let steps = session.model.history.len();
+    let set = |text: &str| Command::Set { key: "gap.amplitude".into(), text: text.to_owned() };
+    // Given up, with a step that waited for it.
+    drop(update(&mut session.model, set("0.0023")));
+    drop(update(&mut session.model, Id::Step.into()));
+    drop(update(&mut session.model, Id::Cancel.into()));
+    assert!(session.model.queue.is_empty());
+    assert_eq!(
+        Journal::so_far(&session.model).unwrap(),
+        ["next-limit"],
+        "nothing was done with these values"
+    );
+    for id in [Id::Step, Id::NextLimit, Id::PreviousLimit, Id::Run] {
+        session.does(id);
+        assert_eq!(session.model.history.len(), steps, "{id:?}");
+        assert!(session.status().contains("the curve shown is of the values before"), "{}", session.status());
+    }
+    session.does(Id::Undo).does(Id::Step);
+    assert_eq!(session.model.history.len(), steps + 1);
+    // Computed after all.
+    drop(update(&mut session.model, set("0.0023")));
+    drop(update(&mut session.model, Id::Cancel.into()));
+    session.does(Id::Restart);
+    assert!(session.model.shows_its_curve());
+    // A second change leaves what waited for the first.
+    let effects = update(&mut session.model, set("0.0024"));
+    drop(update(&mut session.model, Id::Step.into()));
+    let again = update(&mut session.model, set("0.0025"));
+    assert!(session.status().contains("is left: the values changed"), "{}", session.status());
+    session.driver.settle(&mut session.model, effects.into_iter().chain(again).collect());
+    assert!(session.model.shows_its_curve() && session.model.queue.is_empty());
 }

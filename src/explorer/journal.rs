@@ -113,7 +113,13 @@ impl Journal {
     pub fn so_far(model: &Model) -> Result<Vec<String>, String> {
         let mut journal = model.journal.clone();
         journal.abandoned();
-        journal.sync(&model.preset, Some((model.inward, model.length)), model.curve_error.is_some());
+        // Values whose curve was given up have no state: nothing was done with them.
+        let preset = match &model.curve {
+            Some(curve) if model.is_given_up => &curve.setting.preset,
+            _ => &model.preset,
+        };
+        let failed = model.curve_error.is_some() && !model.is_given_up;
+        journal.sync(preset, Some((model.inward, model.length)), failed);
         journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
     }
 

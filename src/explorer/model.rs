@@ -1,5 +1,6 @@
 //! The state of a session, without terminals, keys or colours.
 
+use super::command::Command;
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
 use super::history::{History, Mark, Node, NodeKind};
@@ -8,7 +9,6 @@ use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::view::{Overlays, View, Window};
-use super::walk::Action;
 use crate::contact::Control;
 use crate::preset::groups::GROUPS;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
@@ -108,6 +108,8 @@ pub struct Model {
     pub curve: Option<Arc<CurveData>>,
     /// That the preset as it is now has no curve, and why, in words.
     pub curve_error: Option<String>,
+    /// That it has none because it was given up.
+    pub is_given_up: bool,
     /// The number of the newest curve asked for.
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
@@ -132,8 +134,8 @@ pub struct Model {
     pub is_tried: bool,
     /// The walk request that is running.
     pub walking: Option<Walking>,
-    /// What is to be walked after it.
-    pub queue: VecDeque<Action>,
+    /// What was asked of the walk meanwhile, in order.
+    pub queue: VecDeque<Command>,
     /// The panel selected.
     pub panel: Panel,
     /// The parameter selected.
@@ -215,6 +217,7 @@ impl Model {
             fingerprint: loaded.fingerprint,
             curve: None,
             curve_error: None,
+            is_given_up: false,
             curve_wanted: 0,
             curve_shown: 0,
             progress: None,
@@ -269,16 +272,25 @@ impl Model {
 
     /// Whether the walker has been tried on the problem as it is: no curve and no walk is under way.
     pub fn is_settled(&self) -> bool {
-        self.walking.is_none()
-            && self.curve.as_ref().is_some_and(|curve| {
-                let control = curve.setting.preset.path.control;
-                curve.sweep.is_of(&self.preset) && control == self.preset.path.control
-            })
+        self.walking.is_none() && self.shows_its_curve()
+    }
+
+    /// Whether the curve on the screen is that of the values as they are, under their control.
+    pub fn shows_its_curve(&self) -> bool {
+        self.curve.as_ref().is_some_and(|curve| {
+            let control = curve.setting.preset.path.control;
+            curve.sweep.is_of(&self.preset) && control == self.preset.path.control
+        })
     }
 
     /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
     pub fn shows_device(&self) -> bool {
         self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
+    }
+
+    /// Whether a walk is under way, or the curve that the next one walks on.
+    pub fn is_busy(&self) -> bool {
+        self.walking.is_some() || self.is_computing()
     }
 
     /// Whether a newer curve is being computed.

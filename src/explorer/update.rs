@@ -33,6 +33,9 @@ use values::{
 use walk::{go_to, go_to_state, restart, scale_length, stop, travel, travel_to, walk, walked};
 use words::unavailable;
 
+/// Commands waiting for a walk or a curve; more key presses than these are a held key.
+const QUEUE: usize = 1000;
+
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
     let mut model = Model::new(loaded);
@@ -41,19 +44,55 @@ pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
 }
 
 /// What a command does to the model, and what it wants done.
+///
+/// A command of the walk waits for the walk that runs and for the curve of values changed before it: keys come late and
+/// together over a slow line, and mean what they mean one by one.
 pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
-    let row = row_of(command.id());
-    // A jump may be asked for on the way to its limit point: keys come late and together over a slow line.
-    let later = row.id == Id::Jump && model.walking.is_some();
-    if !later && !(row.enabled)(model) {
-        tell(model, Level::Error, unavailable(model, command.id()));
+    model.message = None;
+    if waits(model, &command) {
+        if model.queue.len() < QUEUE {
+            model.queue.push_back(command);
+        }
         return Vec::new();
     }
-    model.message = None;
-    let mut effects = obey(model, command);
+    let mut effects = allowed(model, command);
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
     effects
+}
+
+fn waits(model: &Model, command: &Command) -> bool {
+    match command {
+        // Pressed again it ends a run.
+        Command::Plain(Id::Run) => model.is_computing() && model.walking.is_none(),
+        Command::Plain(
+            Id::Step
+            | Id::NextLimit
+            | Id::PreviousLimit
+            | Id::Jump
+            | Id::Restart
+            | Id::MoveTo
+            | Id::SelectEvent,
+        )
+        | Command::Steps(_)
+        | Command::RunOf(_)
+        | Command::MoveTo(_)
+        | Command::SelectEvent(_) => model.is_busy(),
+        Command::Plain(Id::Reverse | Id::Halve | Id::Double) | Command::StepLength(_) => {
+            !model.queue.is_empty()
+        }
+        _ => false,
+    }
+}
+
+/// Does what is allowed now; what is not is refused with the reason, and what waits behind it with it.
+fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
+    if (row_of(command.id()).enabled)(model) {
+        return obey(model, command);
+    }
+    model.queue.clear();
+    tell(model, Level::Error, unavailable(model, command.id()));
+    Vec::new()
 }
 
 fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
@@ -310,6 +349,10 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
     }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
+    if model.is_busy() {
+        // Chosen in the list of a curve that will have gone, or in the middle of a walk.
+        return update(model, Command::SelectEvent(model.event + 1));
+    }
     let Some(event) = unloading.events.get(model.event) else {
         if !model.shown_inadmissible().is_empty() {
             tell(model, Level::Info, "no state to go to: the next crest would touch before");

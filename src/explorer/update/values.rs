@@ -1,7 +1,7 @@
 //! Values changed, and the curve that follows from them.
 
 use super::files::{file, read};
-use super::walk::{begin_walk, stop, walk};
+use super::walk::{begin_walk, go_on, stop, walk};
 use super::{number, tell};
 use crate::contact::shapes::Rows;
 use crate::contact::{Control, Gap, Shape, Start};
@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub(in crate::explorer) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
-    model.progress = None;
+    (model.progress, model.curve_error, model.is_given_up) = (None, None, false);
     // The curve does not know what is controlled: under another control it need not be swept again.
     let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
     let sweep = known.map(Arc::clone);
@@ -37,6 +37,7 @@ pub(in crate::explorer) fn want_curve(model: &mut Model) -> Effect {
 
 /// The curve on the screen stays; the one being computed is no longer wanted.
 pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
+    model.queue.clear();
     model.curve_shown = model.curve_wanted;
     let control = model.curve.as_ref().filter(|curve| curve.sweep.is_of(&model.preset)).map(|curve| {
         // Only the control was changed, which undo does not take back.
@@ -47,11 +48,14 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
             model.preset.path.control = control;
             "cancelled: the control is as before"
         }
-        (Some(_), None) => "cancelled: the curve shown is of the values before; u takes them back",
+        (Some(_), None) => {
+            "cancelled: the curve shown is of the values before; u takes them back, 0 computes it again"
+        }
         (None, _) => "cancelled: there is no curve; 0 computes it again, or change a value",
     };
     if control.is_none() {
         model.curve_error = Some(text.to_owned());
+        model.is_given_up = true;
     }
     tell(model, Level::Info, text);
     vec![Effect::StopCurve(model.curve_wanted)]
@@ -64,6 +68,7 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
     model.curve_shown = id;
     match result {
         Err(reason) => {
+            model.queue.clear();
             let text = format!("no curve for these values: {reason}");
             tell(model, Level::Error, text.clone());
             model.curve_error = Some(text);
@@ -77,13 +82,17 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
             model.event = model.event.min(lines.saturating_sub(1));
             if first {
                 begin_walk(model, &curve);
-                return Vec::new();
+                return go_on(model);
             }
             let is_tried = std::mem::take(&mut model.is_tried);
+            if model.walking.is_some() {
+                // Solved again once that is over.
+                return Vec::new();
+            }
             let Some(node) = model.history.current() else { return Vec::new() };
             let is_stale = matches!(node.kind, NodeKind::Stale(_));
-            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() || model.walking.is_some() {
-                return Vec::new();
+            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() {
+                return go_on(model);
             }
             let state = node.state.in_units(node.setting.units());
             walk(model, Action::Solve { state })
@@ -155,14 +164,14 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     model.is_tried = false;
     let knobs = model.knobs().len();
     model.parameter = model.parameter.min(knobs.saturating_sub(1));
+    if !model.queue.is_empty() {
+        tell(model, Level::Info, "what was asked of the walk and not begun is left: the values changed");
+    }
     let mut effects = stop(model);
-    let shown = model.curve.as_ref().is_some_and(|curve| {
-        curve.sweep.is_of(&model.preset) && curve.setting.preset.path.control == model.preset.path.control
-    });
-    if shown {
+    if model.shows_its_curve() {
         // Back at the values of the curve on the screen: the one being computed is no longer wanted.
         model.curve_shown = model.curve_wanted;
-        model.curve_error = None;
+        (model.curve_error, model.is_given_up) = (None, false);
         effects.push(Effect::StopCurve(model.curve_wanted));
     } else {
         effects.push(want_curve(model));

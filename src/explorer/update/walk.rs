@@ -1,8 +1,7 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
 use super::values::{adopt_parameters, want_curve};
-use super::words::unavailable;
-use super::{number, tell};
+use super::{allowed, number, tell};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::Effect;
@@ -12,21 +11,25 @@ use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use crate::quasistatic::State;
 use std::sync::Arc;
 
-/// Walks waiting behind the one that runs; more key presses than these are a held key.
-const QUEUE: usize = 1000;
+/// Why nothing is walked on a curve that stayed when another was given up.
+pub(super) const OF_BEFORE: &str =
+    "the curve shown is of the values before: u takes them back, 0 computes it again";
 
 pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
-    if model.walking.is_some() {
-        if model.queue.len() < QUEUE {
-            model.queue.push_back(action);
-        }
+    if model.is_computing() {
+        tell(model, Level::Info, "the curve is being computed");
         return Vec::new();
     }
     let Some(curve) = model.curve.clone() else {
-        tell(model, Level::Info, "the curve is being computed");
         // Given up before: asked for again.
-        return if model.is_computing() { Vec::new() } else { vec![want_curve(model)] };
+        tell(model, Level::Info, "the curve is being computed");
+        return vec![want_curve(model)];
     };
+    if !model.shows_its_curve() {
+        let reason = model.curve_error.clone();
+        tell(model, Level::Error, reason.unwrap_or_else(|| OF_BEFORE.to_owned()));
+        return Vec::new();
+    }
     let control = curve.case.control;
     let moves = matches!(action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Solve { .. });
     let node = model.history.current();
@@ -35,20 +38,14 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
             tell(model, Level::Error, "the bodies are apart: u goes back, 0 restarts");
             return Vec::new();
         }
-        if let Some(node) = node.filter(|node| !model.is_on_curve(node)) {
-            if model.is_computing() {
-                tell(model, Level::Info, "the curve is being computed");
-                return Vec::new();
-            }
-            let stale = matches!(node.kind, NodeKind::Stale(_));
-            if stale {
-                tell(
-                    model,
-                    Level::Error,
-                    "this state is not solved for the values as they are: u goes back, 0 restarts",
-                );
-                return Vec::new();
-            }
+        let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
+        if node.is_some_and(is_stale) {
+            tell(
+                model,
+                Level::Error,
+                "this state is not solved for the values as they are: u goes back, 0 restarts",
+            );
+            return Vec::new();
         }
     }
     let on_limit = node.is_some_and(|node| node.is_limit(control));
@@ -67,6 +64,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
 pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
     let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else { return Vec::new() };
     walking.made += made.len();
+    let stepped = walking.wanted.is_some();
     model.journal.made(made.len());
     let numbering = model.history.numbering();
     for state in made {
@@ -82,11 +80,12 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         Outcome::Done => {}
         Outcome::AtLimit => {
             // A held key stops at the limit point; pressing it again goes on.
-            model.queue.retain(|action| !matches!(action, Action::Steps(_)));
+            while stepped && model.queue.front().is_some_and(|command| command.id() == Id::Step) {
+                model.queue.pop_front();
+            }
         }
-        // The end of a run is no error, but nothing follows from it either.
+        // What waits was asked for after the pause: a pause empties the queue.
         Outcome::Paused => {
-            model.queue.clear();
             // Otherwise another value ended it, whose curve is to be told of.
             if !model.is_computing() {
                 tell(model, Level::Info, "paused; Space steps, r runs on");
@@ -114,18 +113,19 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         })
         .map(|node| node.state.in_units(node.setting.units()));
     if let (Some(state), false) = (outdated, model.is_computing()) {
-        model.queue.clear();
         return walk(model, Action::Solve { state });
     }
-    match model.queue.pop_front() {
-        // It could be asked for on the way, and cannot be done from where the way ended.
-        Some(Action::Jump) if !model.can_jump() => {
-            tell(model, Level::Error, unavailable(model, Id::Jump));
-            Vec::new()
-        }
-        Some(next) => walk(model, next),
-        None => Vec::new(),
+    go_on(model)
+}
+
+/// What waits for the walk and for the curve, in order, as far as neither has to be waited for.
+pub(super) fn go_on(model: &mut Model) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    while effects.is_empty() && !model.is_busy() {
+        let Some(command) = model.queue.pop_front() else { break };
+        effects = allowed(model, command);
     }
+    effects
 }
 
 fn append(model: &mut Model, request: u64, state: Made) {
@@ -171,14 +171,16 @@ pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
 }
 
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
-    model.queue.clear();
     model.inward = true;
-    match model.curve.as_ref().map(|curve| curve.case.start) {
-        Some(s) => walk(model, Action::MoveTo(s)),
+    if !model.is_computing() && !model.shows_its_curve() {
         // Given up or failed before: asked for again.
-        None if model.is_computing() => Vec::new(),
-        None => vec![want_curve(model)],
+        return vec![want_curve(model)];
     }
+    model
+        .curve
+        .as_ref()
+        .map(|curve| curve.case.start)
+        .map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
 }
 
 pub(super) fn scale_length(model: &mut Model, by: f64) {
