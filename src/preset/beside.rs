@@ -7,7 +7,8 @@ use super::model::Preset;
 use super::profile::LARGEST;
 use super::text::show_path;
 use crate::contact::Shape;
-use crate::contact::shapes::Measured;
+use crate::contact::shapes::{Measured, Rows};
+use crate::units::UnitSystem;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,12 +24,16 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
     if rows.name.starts_with(SHIPPED_DATA) {
         return Ok(copy);
     }
-    let from = rows.folder.as_deref().unwrap_or(Path::new("")).join(&rows.name);
+    let from = rows.path();
     let shown = show_path(&from);
     let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
         return Err(format!("{shown}: is no name of a file"));
     };
-    let now = measured::load(rows.folder.as_deref(), &rows.name)?;
+    // As the preset holds them, which is in metres in SI.
+    let held = |rows: Rows| {
+        if preset.units == UnitSystem::Reduced { Arc::new(rows) } else { Arc::new(rows).in_metres() }
+    };
+    let now = held(measured::load(rows.folder.as_deref(), &rows.name)?);
     if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
         return Err(format!("{shown}: holds other rows than were read; choose the file again first"));
     }
@@ -40,7 +45,7 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
         }
         Err(error) => return Err(error.to_string()),
     }
-    let copied = Arc::new(measured::load(Some(folder), name)?);
+    let copied = held(measured::load(Some(folder), name)?);
     let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
     copy.gap = Shape::Profile(Arc::new(measured));
     Ok(copy)
@@ -89,5 +94,27 @@ mod tests {
         // Data of the program need no copy.
         let (_, _, saved) = store.save_with_data("fourth", &shipped, Overwrite::Never).unwrap();
         assert_eq!(saved, shipped);
+    }
+
+    #[test]
+    fn data_in_micrometres_are_the_same_beside_a_preset_in_si() {
+        let home = tempfile::tempdir().unwrap();
+        let at = |name: &str| home.path().join(name);
+        let rows: String = (0..100).map(f64::from).map(|r| format!("{r} {}\n", r * r / 2000.0)).collect();
+        fs::write(at("scan.dat"), format!("r [um] h [um]\n{rows}")).unwrap();
+        fs::write(
+            at("si.toml"),
+            "units = \"SI\"\n[material]\neffective_modulus = \"1 MPa\"\nwork_of_adhesion = 0.03\n[gap]\n\
+             shape = \"profile\"\nfile = \"scan.dat\"\n[path]\nstart_contact_radius = \"50 um\"\n",
+        )
+        .unwrap();
+        let store = Store::at(at("presets"), &[]);
+        let source = store.resolve(at("si.toml").as_os_str()).unwrap();
+        let preset = store.load(&source, &[] as &[&str]).unwrap().preset;
+        let (source, _, saved) = store.save_with_data("mine", &preset, Overwrite::Never).unwrap();
+        let radius = |preset: &Preset| preset.gap.radius_of_curvature().unwrap();
+        assert!((radius(&preset) / 1e-3 - 1.0).abs() < 1e-2, "{}", radius(&preset));
+        assert_eq!(radius(&saved).to_bits(), radius(&preset).to_bits());
+        assert_eq!(store.load(&source, &[] as &[&str]).unwrap().preset, saved);
     }
 }

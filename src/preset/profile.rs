@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! # any remark                     lines beginning with #, % or // are remarks, empty lines nothing
-//! r [um], h (nm)                   one header before the first row, with the units in brackets or parentheses
+//! r [um], h (nm)                   one header before the first row, with the units in brackets, parentheses, or
+//!                                  of length behind a slash or a space: r / um, h nm
 //! 0.0, 0.00                        cells parted by semicolons, tabs, commas or spaces: what the first row shows,
 //! 0.5, 0.13                        in this order; numbers with a decimal point
 //! ```
@@ -16,6 +17,7 @@
 
 use super::file::{FileError, read_bytes};
 use super::text::{is_unsafe, quote, show_path};
+use crate::units::{Quantity, Unit};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -79,7 +81,9 @@ pub enum Fault {
         text: String,
     },
     /// A negative radius.
-    #[error("the radius {0:?} is negative: radii count from the axis")]
+    #[error(
+        "the radius {0:?} is negative: radii count from the axis, so fold a scan over the whole diameter there first"
+    )]
     Negative(f64),
     /// A radius that an earlier line gives another gap.
     #[error("the radius {radius:?} has another gap in line {line}")]
@@ -137,6 +141,11 @@ pub enum TextError {
     /// Lines with faults.
     #[error("{0}")]
     Faults(Faults),
+    /// The columns the other way round.
+    #[error(
+        "the header names the gap \"{0}\" first and the radius \"{1}\" behind it: a profile has the radius first"
+    )]
+    Swapped(String, String),
     /// Too few or too many rows.
     #[error("has {0} rows, and a profile has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
     Rows(usize),
@@ -152,6 +161,11 @@ pub enum TextError {
 
 /// The two columns, as messages call them.
 const COLUMNS: [&str; 2] = ["radius", "gap"];
+
+/// Names by which a header tells the columns apart.
+const RADIUS_NAMES: &[&str] = &["r", "radius", "rho", "x", "distance", "position"];
+/// The same of the gap.
+const GAP_NAMES: &[&str] = &["h", "gap", "height", "z", "depth"];
 
 /// Reads the profile in the file `path`.
 ///
@@ -207,11 +221,14 @@ fn bare(cell: &str) -> &str {
     cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
 }
 
-/// The units of a header in two cells, or `None` when it has another number of cells.
+/// A column as a header has it: its name, and its unit as written.
+type Head = (String, Option<String>);
+
+/// The two columns of a header, or `None` when it has another number of cells.
 ///
 /// What stands in brackets is not parted, and belongs to the cell before it.
-fn header_units(line: &str, separator: Separator) -> Option<[Option<String>; 2]> {
-    let mut cells: Vec<(String, Option<String>)> = vec![Default::default()];
+fn heads(line: &str, separator: Separator) -> Option<[Head; 2]> {
+    let mut cells: Vec<Head> = vec![Default::default()];
     let mut open: Option<(char, String)> = None;
     for c in line.chars() {
         match (&mut open, separator) {
@@ -241,8 +258,26 @@ fn header_units(line: &str, separator: Separator) -> Option<[Option<String>; 2]>
     if separator == Separator::Spaces {
         cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
     }
-    let [(_, first), (_, second)] = <[_; 2]>::try_from(cells).ok()?;
-    Some([first, second])
+    let cells = <[Head; 2]>::try_from(cells).ok()?;
+    Some(cells.map(|(name, unit)| match unit {
+        Some(unit) => (name.trim().to_owned(), Some(unit)),
+        None => unbracketed(bare(&name)),
+    }))
+}
+
+/// A name with its unit behind a slash or a space, where that is one of length: `r / um`, `height nm`.
+///
+/// Another word there may be anything: `r/R` is a ratio.
+fn unbracketed(text: &str) -> Head {
+    let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
+    match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
+        Some((name, unit)) if !name.is_empty() && is_length(unit) => (name.to_owned(), Some(unit.to_owned())),
+        _ => (text.to_owned(), None),
+    }
+}
+
+fn is_length(unit: &str) -> bool {
+    Unit::parse(unit, 0).is_ok_and(|unit| unit.dimension() == Quantity::Length.dimension())
 }
 
 /// The text of a remark.
@@ -303,7 +338,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
     }
     let mut columns = Columns::default();
     if let Some(separator) = separator {
-        columns.units = units(header, candidate, separator);
+        columns.units = units(header, candidate, separator)?;
     }
     gather(rows, &mut columns, &mut faults);
     if faults.total > 0 {
@@ -333,16 +368,28 @@ fn is_header(line: &str) -> bool {
 }
 
 /// The units of the header; of a remark only if it names both.
-fn units(header: Option<&str>, remark: Option<&str>, separator: Separator) -> [Option<String>; 2] {
+///
+/// # Errors
+/// [`TextError::Swapped`].
+fn units(
+    header: Option<&str>,
+    remark: Option<&str>,
+    separator: Separator,
+) -> Result<[Option<String>; 2], TextError> {
     // A header may be parted otherwise than the rows below it.
-    let read = |line: &str| header_units(line, separator).or_else(|| header_units(line, Separator::of(line)));
-    if let Some(header) = header {
-        return read(header).unwrap_or_default();
+    let read = |line: &str| heads(line, separator).or_else(|| heads(line, Separator::of(line)));
+    let found = match header {
+        Some(header) => read(header),
+        None => remark
+            .and_then(|line| read(line.trim()))
+            .filter(|heads| heads.iter().all(|(_, unit)| unit.is_some())),
+    };
+    let Some([(first, radii), (second, gaps)]) = found else { return Ok([None, None]) };
+    let is = |name: &str, names: &[&str]| names.contains(&name.to_lowercase().as_str());
+    if is(&first, GAP_NAMES) && is(&second, RADIUS_NAMES) {
+        return Err(TextError::Swapped(quote(&first), quote(&second)));
     }
-    remark
-        .and_then(|line| read(line.trim()))
-        .filter(|units| units.iter().all(Option::is_some))
-        .unwrap_or_default()
+    Ok([radii, gaps])
 }
 
 /// The radius and the gap of a row.

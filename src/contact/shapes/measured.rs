@@ -23,21 +23,35 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// The rows in metres; those without a unit are taken to be.
+    /// Where the file lies.
+    pub fn path(&self) -> PathBuf {
+        self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
+    }
+
+    /// The rows in metres; those without a unit are taken to be, with a note.
     #[must_use]
     pub fn in_metres(self: Arc<Self>) -> Arc<Self> {
-        let Some(unit) = self.unit.as_ref().filter(|unit| unit.dimension() == Quantity::Length.dimension())
-        else {
+        let metre = Unit::parse("m", 0).ok();
+        if self.unit.is_some() && self.unit == metre {
             return self;
-        };
-        let scaled = |column: &[f64]| column.iter().map(|x| unit.to_si(*x)).collect();
+        }
+        let length = |unit: &&Unit| unit.dimension() == Quantity::Length.dimension();
+        let unit = self.unit.as_ref().filter(length);
+        let scaled = |column: &[f64]| column.iter().map(|x| unit.map_or(*x, |unit| unit.to_si(*x))).collect();
+        let mut notes = self.notes.clone();
+        if unit.is_none() {
+            notes.push(format!(
+                "{}: names no unit of length, so its columns are taken in m; a header such as r [um], h [nm] names them",
+                self.name
+            ));
+        }
         Arc::new(Self {
             radii: scaled(&self.radii),
             gaps: scaled(&self.gaps),
-            unit: None,
+            unit: metre,
             name: self.name.clone(),
             folder: self.folder.clone(),
-            notes: self.notes.clone(),
+            notes,
         })
     }
 }

@@ -70,6 +70,31 @@ fn units_come_from_the_header_or_from_a_remark_that_names_both() {
 }
 
 #[test]
+fn units_of_length_stand_behind_a_slash_or_a_space_too() {
+    for (header, units) in [
+        ("radius / um, height / nm", [Some("um"), Some("nm")]),
+        ("r/um,h/nm", [Some("um"), Some("nm")]),
+        ("radius µm, \"height nm\"", [Some("µm"), Some("nm")]),
+        // Ratios, and words that are no unit.
+        ("r/R,h/R", [None, None]),
+        ("the radius, the gap", [None, None]),
+        ("um, nm", [None, None]),
+    ] {
+        assert_eq!(names(&good(&format!("{header}\n{}", rows(",")))), units, "{header:?}");
+    }
+}
+
+#[test]
+fn columns_that_their_header_names_the_other_way_round_are_refused() {
+    for header in ["h [nm],r [um]", "Height / nm, Radius / um", "z,x"] {
+        let said = refused(&format!("{header}\n{}", rows(",")));
+        assert!(said.contains("a profile has the radius first"), "{header}: {said}");
+    }
+    // Names nobody knows say nothing.
+    good(&format!("depth of the scan,length\n{}", rows(",")));
+}
+
+#[test]
 fn units_become_factors() {
     let columns = good(&format!("r [um], h [nm]\n{}", rows(",")));
     let factor = |unit: &str| match unit {
@@ -111,7 +136,10 @@ fn every_fault_has_its_line() {
         "line 11: the radius \"nan\" is out of range: it must be a number from -1e30 to 1e30"
     );
     assert!(with("9,-inf").contains("out of range") && with("9,1e31").contains("out of range"));
-    assert_eq!(with("-1,1"), "line 11: the radius -1.0 is negative: radii count from the axis");
+    assert_eq!(
+        with("-1,1"),
+        "line 11: the radius -1.0 is negative: radii count from the axis, so fold a scan over the whole diameter there first"
+    );
     assert_eq!(with("1,7"), "line 11: the radius 1.0 has another gap in line 3");
     assert_eq!(with("1\u{1b}[2J,7"), "line 11: holds control or invisible characters");
     assert_eq!(with(&"1".repeat(2000)), "line 11: has 2000 bytes, more than the 1024 of a row");
