@@ -602,6 +602,21 @@ fn a_result_goes_to_a_file_whole() {
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
 }
 
+#[test]
+fn what_is_read_is_not_written_over() {
+    let home = Home::new();
+    let preset = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.01\n[gap]\nshape = \"profile\"\n\
+                  file = \"scan.csv\"\n[path]\nstart_contact_radius = 0.5\n";
+    home.file("mine.toml", preset);
+    let rows: String =
+        (0..100).map(f64::from).map(|i| format!("{},{}\n", i / 50.0, i * i / 5000.0)).collect();
+    home.file("scan.csv", &rows);
+    for (command, file) in [("trace", "./mine.toml"), ("unload", "mine.toml"), ("trace", "scan.csv")] {
+        home.refused(&[command, "mine.toml", "-o", file], &["that is read"]);
+    }
+    assert_eq!((home.text("mine.toml"), home.text("scan.csv")), (preset.to_owned(), rows));
+}
+
 fn names(folder: &Path) -> Vec<String> {
     fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }

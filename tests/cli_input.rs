@@ -282,3 +282,33 @@ fn a_preset_of_ones_own_is_deleted_and_no_other() {
     assert!(ended.err.contains("deleted") && ended.err.contains("mine.toml"), "{}", ended.err);
     assert!(!Path::new(&file).exists());
 }
+
+#[test]
+fn a_profile_without_units_in_si_is_taken_in_metres_with_a_warning() {
+    let home = Home::new();
+    let rows = |unit: f64| -> String {
+        (0..200)
+            .map(f64::from)
+            .map(|i| format!("{},{}\n", i * 5.0 * unit, (i * 0.005).powi(2) * 500.0 * unit))
+            .collect()
+    };
+    let preset = home.file(
+        "scan.toml",
+        "units = \"SI\"\n[material]\neffective_modulus = \"1 MPa\"\nwork_of_adhesion = \"50 mJ/m^2\"\n[gap]\n\
+         shape = \"profile\"\nfile = \"scan.csv\"\n[path]\nstart_contact_radius = \"100 um\"\n",
+    );
+    home.file("scan.csv", &format!("r / um, h / um\n{}", rows(1.0)));
+    let named = home.json(&["unload", &preset]);
+    home.file("scan.csv", &format!("r, h\n{}", rows(1e-6)));
+    let bare = home.run(&["unload", &preset, "--format", "json"]);
+    assert!(
+        bare.err.contains("scan.csv: names no unit of length, so its columns are taken in m"),
+        "{}",
+        bare.err
+    );
+    let bare: Value = serde_json::from_str(&bare.out).unwrap();
+    let force = |document: &Value| document["min_force"].as_f64().unwrap();
+    assert!((force(&bare) / force(&named) - 1.0).abs() < 1e-9, "{bare} {named}");
+    home.file("scan.csv", &format!("h [um],r [um]\n{}", rows(1.0)));
+    home.refused(&["unload", &preset], &["the header names the gap \"h\" first", "scan.csv"]);
+}

@@ -1,8 +1,10 @@
 //! Where a result goes: a file, whole or not at all, or standard output.
 
 use super::Failure;
+use crate::contact::Shape;
 use crate::preset::text::sanitize;
-use crate::preset::{Overwrite, write_atomically};
+use crate::preset::{Loaded, Overwrite, Source, write_atomically};
+use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
@@ -17,6 +19,28 @@ pub fn write(text: &str, file: Option<&Path>) -> Result<(), Failure> {
         ErrorKind::BrokenPipe => Failure::Closed,
         _ => Failure::Output(error),
     })
+}
+
+/// Refuses a file that the result is computed from: a preset must not become its own result.
+pub fn spares(file: Option<&Path>, loaded: &Loaded) -> Result<(), Failure> {
+    let Some(Ok(file)) = file.map(fs::canonicalize) else { return Ok(()) };
+    let preset = match &loaded.source {
+        Source::User { path, .. } | Source::File(path) => Some(path.clone()),
+        Source::Shipped(_) => None,
+    };
+    let data = match &loaded.preset.gap {
+        Shape::Profile(measured) => Some(measured.rows().path()),
+        _ => None,
+    };
+    for (read, what) in [(preset, "the preset"), (data, "the profile")] {
+        if read.and_then(|path| fs::canonicalize(path).ok()).is_some_and(|path| path == file) {
+            return Err(Failure::Usage(format!(
+                "-o {}: is the file of {what} that is read; write to another",
+                shown(&file)
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// A path as it can be shown.

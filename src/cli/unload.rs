@@ -34,7 +34,9 @@ enum Format {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let mut preset = arguments.problem.load()?.preset;
+    let loaded = arguments.problem.load()?;
+    output::spares(arguments.output.as_deref(), &loaded)?;
+    let mut preset = loaded.preset;
     if let Some(control) = &arguments.control {
         preset
             .assign("path.control", control)
