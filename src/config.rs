@@ -101,6 +101,9 @@ impl fmt::Display for Listed<'_> {
     }
 }
 
+/// As many names as a message lists.
+const FEW: usize = 8;
+
 /// Reads a table into the settings.
 type Reader = fn(&mut Config, &DeTable<'_>, &mut Sheet<'_>);
 
@@ -191,7 +194,11 @@ impl Sheet<'_> {
 
     fn unknown(&mut self, at: usize, what: &str, word: &str, known: &[&str]) {
         let meant = closest(word, known.iter().copied());
-        let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+        let hint = match meant {
+            Some(meant) => format!("; did you mean {meant}?"),
+            None if known.len() <= FEW => format!("; there is {}", known.join(", ")),
+            None => String::new(),
+        };
         self.wrong(at, format!("no {what} is called \"{}\"{hint}", quote(word)));
     }
 }
@@ -280,6 +287,7 @@ mod tests {
                 "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",
             ),
             ("[kys]", "config.toml:1: no table is called \"kys\"; did you mean keys?"),
+            ("theme = \"light\"", "config.toml:1: no table is called \"theme\"; there is keys, look"),
             ("\nkeys = 3", "config.toml:2: keys is a table: [keys]"),
             ("[keys]\nstep = 3", "config.toml:2: step takes a key in quotes"),
             ("[keys]\nstep = [\"a\", 3]", "config.toml:2: step takes a key in quotes"),

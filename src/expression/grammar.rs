@@ -117,6 +117,7 @@ fn after_operand(rest: &str, expected: &'static str) -> Problem {
     match rest.chars().next() {
         Some(c) if c.is_ascii_alphanumeric() || c == '(' => Problem::Juxtaposed { found },
         Some(c) if !c.is_ascii() => Problem::not_ascii(c),
+        Some(',') => Problem::Operator { expected, found: format!("{found} (decimals have a point)") },
         _ => Problem::Operator { expected, found },
     }
 }
@@ -344,7 +345,7 @@ mod tests {
             ("2*(r", "column 5: the '(' at column 3 is never closed"),
             ("(r]", "column 3: expected an operator or ')', found ']'"),
             ("r)", "column 2: expected an operator or the end, found ')'"),
-            ("1,5", "column 2: expected an operator or the end, found ','"),
+            ("1,5", "column 2: expected an operator or the end, found ',' (decimals have a point)"),
             ("1.2.3", "column 4: expected an operator or the end, found '.'"),
             ("cos r", "column 1: cos is a function: write cos(...)"),
             ("sin()", "column 5: expected a number, a name or '(', found ')'"),

@@ -206,7 +206,13 @@ impl Store {
             Ok(path) if path.symlink_metadata().is_ok() => Ok(Source::User { name: name.into_owned(), path }),
             _ => {
                 let known = self.known();
-                let meant = closest(&name, known.iter().map(String::as_str)).map(str::to_owned);
+                // A file of that name in the current folder is nearer than any other name.
+                let file = format!("./{name}.toml");
+                let meant = if Path::new(&file).is_file() {
+                    Some(file)
+                } else {
+                    closest(&name, known.iter().map(String::as_str)).map(str::to_owned)
+                };
                 Err(StoreError::NotFound { name: quote(&name), meant })
             }
         }

@@ -2,6 +2,8 @@
 
 /// How alike two words must be to be offered, from 0 to 1.
 const ALIKE: f64 = 0.6;
+/// How alike the beginning of a word is to it, at least.
+const BEGUN: f64 = 0.75;
 /// The longest word worth comparing, in bytes: the comparison takes time in proportion to it.
 const LONGEST: usize = 80;
 
@@ -35,8 +37,9 @@ fn last(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
-fn likeness(a: &str, b: &str) -> f64 {
-    strsim::normalized_damerau_levenshtein(a, b)
+fn likeness(word: &str, known: &str) -> f64 {
+    let begun = if !word.is_empty() && known.starts_with(word) { BEGUN } else { 0.0 };
+    strsim::normalized_damerau_levenshtein(word, known).max(begun)
 }
 
 fn best<'a>(scored: impl Iterator<Item = (f64, &'a str)>) -> Option<&'a str> {
@@ -56,6 +59,7 @@ mod tests {
         assert_eq!(key("material.amplitude"), Some("gap.amplitude"));
         assert_eq!(key("material.gamma"), Some("material.work_of_adhesion"));
         assert_eq!(key("gap.Amplitude"), Some("gap.amplitude"));
+        assert_eq!(key("gap.amp"), Some("gap.amplitude"));
         assert_eq!(key("colour"), None);
         assert_eq!(key(&"x".repeat(1000)), None);
         assert_eq!(closest("wavy_sphere", ["sphere", "wavy-sphere"]), Some("wavy-sphere"));

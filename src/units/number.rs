@@ -34,9 +34,9 @@ pub fn exact(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// A loss: three decimals and an exponent, so that losses of very different size align.
+/// A loss: four digits, small and large ones with an exponent each, so that losses of very different size align.
 pub fn loss(x: f64) -> String {
-    format!("{x:.3e}")
+    if (0.1..1e5).contains(&x.abs()) { significant(x, 4) } else { format!("{x:.3e}") }
 }
 
 /// `x` with so many decimals.

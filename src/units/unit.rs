@@ -233,8 +233,10 @@ fn word<'a>(input: &mut Input<'a>) -> Option<&'a str> {
 /// The power at this place: 1 if none is written, none if it is no integer.
 fn power(input: &mut Input) -> Option<i32> {
     let caret = ('^', opt(one_of(['-', '+'])), digit1).take().map(|text: &str| text[1..].parse().ok());
+    // m2 and m-2, as many write them.
+    let bare = (opt('-'), digit1).take().map(|text: &str| text.parse().ok());
     let raised = take_while(1.., SUPERSCRIPTS).map(|text: &str| plain(text).parse().ok());
-    taken(input, alt((caret, raised, '^'.value(None)))).unwrap_or(Some(1))
+    taken(input, alt((caret, bare, raised, '^'.value(None)))).unwrap_or(Some(1))
 }
 
 /// Superscripts as digits.
@@ -272,6 +274,8 @@ mod tests {
             ("m^2", 1.0, "an area", "m²", "m^2"),
             ("mJ/m^2", 1e-3, "an energy per area", "mJ/m²", "mJ/m^2"),
             ("mJ/m²", 1e-3, "an energy per area", "mJ/m²", "mJ/m^2"),
+            ("mJ/m2", 1e-3, "an energy per area", "mJ/m²", "mJ/m^2"),
+            ("J m-2", 1.0, "an energy per area", "J/m²", "J/m^2"),
             ("J m⁻²", 1.0, "an energy per area", "J/m²", "J/m^2"),
             ("erg/cm^2", 1e-3, "an energy per area", "erg/cm²", "erg/cm^2"),
             ("N/m", 1.0, "a force per length", "N/m", "N/m"),
