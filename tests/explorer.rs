@@ -493,9 +493,9 @@ fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
         session.does(Command::Try { key: "gap.formula".into(), text: text.to_owned() });
     };
     let value = |session: &Session, name: &str| session.model.preset.get(&format!("gap.parameters.{name}"));
-    // Halfway through a name: the new one is 1, the old one gone, the others as they were.
+    // Halfway through a name: the new one has the value of the one it begins, which is gone; the others are as they were.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lam))");
-    assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(1.0.into()), None));
+    assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(0.06.into()), None));
     assert_eq!(value(&session, "A"), before.get("gap.parameters.A"));
     assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
     // A name misspelt is said, and begins with the value of the one it resembles.

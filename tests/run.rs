@@ -94,8 +94,6 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
         ("set gap.amplitude=-1", "1: set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
         ("select-event 9", "there is no event 9: the list has"),
         ("open wavy", "no preset is called \"wavy\""),
-        ("export walk w.txt", "must end in .csv or .json"),
-        ("export script w.csv", "must end in .pulloff or .txt"),
         ("set gap.shape=profile gap.file=none.csv", "none.csv"),
     ] {
         home.fails(script, &[], 1, said);
@@ -103,6 +101,9 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     for (script, said) in [
         ("step\nstepp", "standard input:2:1: no command is called \"stepp\"; did you mean step?"),
         ("zoom-in", "zoom-in only changes what a screen shows"),
+        // Before anything is walked.
+        ("step 500\nexport walk w.txt", "standard input:2:13: the file must end in .csv or .json"),
+        ("export script w.csv", "1:15: the file must end in .pulloff or .txt"),
     ] {
         home.fails(script, &[], 2, said);
     }

@@ -24,10 +24,11 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Delete a session
+    /// Delete sessions
     Delete {
-        /// Its name
-        name: String,
+        /// Their names
+        #[arg(required = true, value_name = "NAME")]
+        names: Vec<String>,
         /// Do not ask
         #[arg(long)]
         yes: bool,
@@ -51,11 +52,13 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             output::write(&String::from_utf8_lossy(&bytes), None)?;
         }
         Command::Show { name, json: false } => output::write(&shown(&archive, name)?, None)?,
-        Command::Delete { name, yes } => {
-            if !yes && !agreed(name)? {
-                return Ok(ExitCode::FAILURE);
+        Command::Delete { names, yes } => {
+            for name in names {
+                if !yes && !agreed(name)? {
+                    return Ok(ExitCode::FAILURE);
+                }
+                archive.delete(name)?;
             }
-            archive.delete(name)?;
         }
         Command::Path => match archive.folder() {
             Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,

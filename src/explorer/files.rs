@@ -57,6 +57,12 @@ impl Document {
     }
 }
 
+/// Whether the name of a file has one of these endings.
+pub fn ends_in(path: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(path).extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+}
+
 /// What is written into a document.
 #[derive(Debug, Clone)]
 pub enum Content {

@@ -267,7 +267,7 @@ impl Archive {
             let (Ok(path), Ok(folder)) = (self.path(&name), self.folder_or()) else { return String::new() };
             let aside = folder.join(format!("{name}.{ASIDE}"));
             match fs::rename(&path, &aside) {
-                Ok(()) => format!("{cause}; it is kept as {}", show_path(&aside)),
+                Ok(()) => format!("{name} is kept as {}: {cause}", show_path(&aside)),
                 Err(_) => format!("{}: {cause}", show_path(&path)),
             }
         };

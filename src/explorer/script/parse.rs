@@ -4,7 +4,7 @@ use super::Fault;
 use super::print::overlay_name;
 use super::words::{Word, split};
 use crate::explorer::command::{Assignment, Command, Id, MOST_STEPS, ROWS, row_of};
-use crate::explorer::files::Document;
+use crate::explorer::files::{Document, ends_in};
 use crate::explorer::model::LENGTHS;
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
@@ -202,8 +202,12 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
             let names = Document::ALL.map(Document::name);
             let what = Document::ALL.into_iter().find(|what| what.name() == word.text);
             let what = what.ok_or_else(|| unknown(word, "document", &names))?;
-            let path = rest.need("a file")?.text.clone();
-            Command::Export { what, path, replace: rest.takes("replace") }
+            let file = rest.need("a file")?;
+            if !ends_in(&file.text, what.endings()) {
+                let endings = what.endings().join(" or .");
+                return Err(Fault::new(file.column, format!("the file must end in .{endings}")));
+            }
+            Command::Export { what, path: file.text.clone(), replace: rest.takes("replace") }
         }
         id => id.into(),
     };

@@ -46,7 +46,10 @@ fn any_command() -> impl Strategy<Value = Command> {
             replace,
             with_data
         }),
-        (what, text(), flag()).prop_map(|(what, path, replace)| Command::Export { what, path, replace }),
+        (what, text(), flag()).prop_map(|(what, name, replace)| {
+            let path = format!("{name}.{}", what.endings()[0]);
+            Command::Export { what, path, replace }
+        }),
     ]
 }
 

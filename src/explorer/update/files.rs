@@ -4,7 +4,7 @@ use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
 use crate::contact::Shape;
 use crate::explorer::driver::Effect;
-use crate::explorer::files::{Content, Document, Done, Job};
+use crate::explorer::files::{Content, Document, Done, Job, ends_in};
 use crate::explorer::journal::Journal;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
@@ -30,10 +30,8 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
         tell(model, Level::Error, "there is no curve to export yet");
         return Vec::new();
     };
-    let ending = std::path::Path::new(&path).extension().and_then(|ending| ending.to_str());
-    let endings = what.endings();
-    if !ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending))) {
-        tell(model, Level::Error, format!("the file must end in .{}", endings.join(" or .")));
+    if !ends_in(&path, what.endings()) {
+        tell(model, Level::Error, format!("the file must end in .{}", what.endings().join(" or .")));
         return Vec::new();
     }
     let content = match what {
@@ -61,11 +59,6 @@ pub(super) fn export_text(model: &mut Model, text: String, path: String, replace
     }
     tell(model, Level::Error, format!("the file must end in .{ending}"));
     Vec::new()
-}
-
-fn ends_in(path: &str, endings: &[&str]) -> bool {
-    let ending = std::path::Path::new(path).extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
 }
 
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
