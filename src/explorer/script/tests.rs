@@ -47,7 +47,7 @@ fn any_command() -> impl Strategy<Value = Command> {
             with_data
         }),
         (what, text(), flag()).prop_map(|(what, name, replace)| {
-            let path = format!("{name}.{}", what.endings()[0]);
+            let path = format!("{name}a.{}", what.endings()[0]);
             Command::Export { what, path, replace }
         }),
     ]
