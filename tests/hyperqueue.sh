@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Shards of a sweep on a local HyperQueue cluster with two workers, with kills half-way: the result must be that of a
+# Shards of a sweep on a local HyperQueue cluster with two workers, tasks and workers lost half-way: the result must be that of a
 # single run, to the byte. Takes the program to test; needs python3 with venv, and pip must find hyperqueue.
 set -euo pipefail
 pulloff=$(realpath "$1")
-cluster=$(realpath "$(dirname "$0")/../examples/cluster")
+tests=$(realpath "$(dirname "$0")")
+cluster=$tests/../examples/cluster
 work=$(mktemp -d)
 started=
 cleanup() {
@@ -57,6 +58,14 @@ done
 wait "$started"
 started=
 same one.csv 'a task killed half-way: equal to the single run'
+
+# One of the two workers is lost half-way: what it runs ends with it, or goes on while the shard is started again.
+for outcome in killed running; do
+    "$work/venv/bin/python" "$tests/lose_worker.py" "$outcome" "$cluster/sweep.toml" "lost-$outcome.csv" --shards 8 \
+        >"lost-$outcome.log" 2>&1 || { cat "lost-$outcome.log" "lost-$outcome.csv".parts/*.log >&2; exit 1; }
+    tail -n 1 "lost-$outcome.log"
+    same "lost-$outcome.csv" "a worker lost half-way, what it ran $outcome: equal to the single run"
+done
 
 # The server, both workers and all they run are killed half-way, and everything is run again.
 start all.csv

@@ -53,6 +53,8 @@ def main():
         job = Job(max_fails=None, name="pulloff-sweep")
         for shard, part in parts.items():
             command = [pulloff, "sweep", given.spec.resolve(), "-o", part, "--shard", shard, "--jobs", "1"]
+            # What a lost worker ran may still be running.
+            command.append("--wait")
             job.program([str(word) for word in command], stdout=None, stderr=f"{part}.log", cwd=str(folder))
         return job
 

@@ -14,4 +14,4 @@ spec=$1 results=$2
 
 mkdir -p "$results.parts"
 exec "${PULLOFF:-pulloff}" sweep "$spec" -o "$results.parts/$SLURM_ARRAY_TASK_ID.csv" \
-    --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --jobs "${SLURM_CPUS_PER_TASK:-1}"
+    --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --jobs "${SLURM_CPUS_PER_TASK:-1}" --wait

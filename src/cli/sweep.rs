@@ -3,7 +3,7 @@
 use super::{Failure, output};
 use crate::preset::text::{show_name, show_path};
 use crate::report::number::{short, significant};
-use crate::sweep::{Existing, Output, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
+use crate::sweep::{Existing, Output, OutputError, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread::available_parallelism;
+use std::thread::{available_parallelism, sleep};
 use std::time::{Duration, Instant};
 
 /// The arguments of `pulloff sweep`.
@@ -65,7 +65,13 @@ struct Sweep {
     /// Replace results that are there
     #[arg(long)]
     overwrite: bool,
+    /// Wait while another pulloff writes the results, instead of giving up
+    #[arg(long)]
+    wait: bool,
 }
+
+/// How often a sweep that waits for another looks whether it has ended.
+const PAUSE: Duration = Duration::from_millis(200);
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match (&arguments.command, &arguments.sweep) {
@@ -136,7 +142,7 @@ impl Stop {
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
         let spec = Spec::load(&super::store(), &self.spec)?;
-        let results = Output::open(&self.output, &spec, self.shard, existing(self.overwrite))?;
+        let results = self.open(&spec)?;
         let stop = Stop::catch().map_err(|error| Failure::Usage(format!("cannot catch signals: {error}")))?;
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let jobs = self.jobs.map_or_else(cores, usize::from);
@@ -161,6 +167,23 @@ impl Sweep {
                     summary.of
                 );
                 Err(Failure::Interrupted { signal, text })
+            }
+        }
+    }
+
+    /// The results, once nobody else writes them.
+    fn open(&self, spec: &Spec) -> Result<Output, Failure> {
+        let mut has_told = false;
+        loop {
+            match Output::open(&self.output, spec, self.shard, existing(self.overwrite)) {
+                Err(OutputError::Busy { path }) if self.wait => {
+                    if !has_told {
+                        say(&format!("{path}: another pulloff is writing it; waiting for its end"));
+                        has_told = true;
+                    }
+                    sleep(PAUSE);
+                }
+                opened => return Ok(opened?),
             }
         }
     }
