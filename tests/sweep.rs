@@ -2,10 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+use pulloff::contact::Shape;
 use pulloff::preset::Store;
 use pulloff::sweep::{QUANTITIES, Results, Shard, Spec};
+use pulloff::theory::guduru::Guduru;
+use pulloff::theory::kesari_lew::KesariLew;
 use rustix::process::{Pid, Signal, kill_process};
 use std::fs;
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -326,8 +330,24 @@ fn two_at_once_do_not_write_one_file() {
     let mut child = home.command(&["sweep", "s.toml", "-o", "r.csv"]).stderr(Stdio::null()).spawn().unwrap();
     wait_for_rows(&mut child, &home.path("r.csv"), 2);
     home.refused(&["sweep", "s.toml", "-o", "r.csv"], "pulloff: r.csv: another pulloff is writing it");
+    // Who waits goes on from where the other one was ended.
+    let mut waiting = home.command(&["sweep", "s.toml", "-o", "r.csv", "--wait"]);
+    let mut waiting = waiting.stderr(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(waiting.stderr.take().unwrap());
+    let mut line = String::new();
+    said.read_line(&mut line).unwrap();
+    assert_eq!(line, "pulloff: r.csv: another pulloff is writing it; waiting for its end\n");
     child.kill().unwrap();
     child.wait().unwrap();
+    line.clear();
+    said.read_line(&mut line).unwrap();
+    assert!(
+        line.starts_with("pulloff: 3000 of 3000 rows in r.csv (") && line.contains(" from before)"),
+        "{line}"
+    );
+    // To its end, so that it can say all.
+    io::copy(&mut said, &mut io::sink()).unwrap();
+    assert!(waiting.wait().unwrap().success());
 }
 
 #[test]
@@ -434,11 +454,11 @@ fn the_quantities_are_listed_and_in_the_manual() {
     }
 }
 
-#[test]
-fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
-    let home = Home::new();
+/// Rows of many small waves; `start` says where their curves begin.
+fn small_waves(home: &Home, start: &str) -> Spec {
     let store = Store::at(home.path("presets"), &[]);
-    let text = r#"
+    let text = format!(
+        r#"
 preset = "wavy-sphere"
 quantities = ["enhancement", "kesari_lew", "waves"]
 set = ["path.start_contact_radius=0.9", "path.end_contact_radius=0.1"]
@@ -447,26 +467,80 @@ draws = 60
 seed = 3
 [[axis]]
 key = "gap.wavelength"
-distribution = { log-uniform = [0.01, 0.06] }
+distribution = {{ log-uniform = [0.01, 0.06] }}
 [[axis]]
 key = "groups.amplitude_over_wavelength"
-distribution = { uniform = [0.005, 0.05] }
+distribution = {{ uniform = [0.005, 0.05] }}
 [[axis]]
 key = "groups.adhesion"
-distribution = { log-uniform = [0.01, 0.05] }
-"#;
-    let spec = Spec::read(&store, home.0.path(), "s", text).unwrap();
-    let mut many = 0;
+distribution = {{ log-uniform = [0.01, 0.05] }}
+{start}"#
+    );
+    Spec::read(&store, home.0.path(), "s", &text).unwrap()
+}
+
+/// The rows of `spec` with an enhancement: its number, its distance from the estimate, the waves; and those without.
+fn enhanced(spec: &Spec) -> (Vec<(u64, f64, f64)>, Vec<u64>) {
+    let (mut had, mut cut_off) = (Vec::new(), Vec::new());
     for index in 0..Shard::WHOLE.len(spec.rows) {
         let measured = spec.measure(index, &|| true).unwrap();
-        assert_eq!(measured.fault, None, "{:?}", spec.values(index));
-        let numbers: Vec<f64> =
-            measured.cells.iter().map(|cell| cell.unwrap().to_string().parse().unwrap()).collect();
-        if numbers[2] > 8.0 {
-            many += 1;
-            let off = numbers[0] / numbers[1] - 1.0;
-            assert!(off.abs() < 0.01, "{:?}: {numbers:?}, {off}", spec.values(index));
+        let number =
+            |column: usize| measured.cells[column].map(|cell| cell.to_string().parse::<f64>().unwrap());
+        match (number(0), number(1), number(2)) {
+            (Some(enhancement), Some(estimate), Some(waves)) => {
+                assert_eq!(measured.fault, None);
+                had.push((index, enhancement / estimate - 1.0, waves));
+            }
+            (None, Some(_), None) => {
+                assert_eq!(measured.fault.unwrap().reason, "small start");
+                cut_off.push(index);
+            }
+            other => panic!("{index}: {other:?}"),
         }
     }
-    assert!(many > 20, "{many}");
+    (had, cut_off)
+}
+
+#[test]
+fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
+    let home = Home::new();
+    let spec = small_waves(&home, "");
+    let (had, cut_off) = enhanced(&spec);
+    assert!(cut_off.is_empty(), "{cut_off:?}");
+    let many: Vec<_> = had.iter().filter(|(_, _, waves)| *waves > 8.0).collect();
+    assert!(many.len() > 20, "{}", many.len());
+    for (row, off, waves) in many {
+        assert!(off.abs() < 0.01, "{:?}: {off} with {waves} waves", spec.values(*row));
+    }
+}
+
+#[test]
+fn a_start_that_cuts_the_smallest_force_off_is_said() {
+    let home = Home::new();
+    // The same problems and one more draw, from starts on both sides of the smallest force.
+    let start = "[[axis]]\nkey = \"path.start_contact_radius\"\ndistribution = { uniform = [0.12, 0.45] }\n";
+    let spec = small_waves(&home, start);
+    let (had, cut_off) = enhanced(&spec);
+    assert!(had.len() > 10 && cut_off.len() > 10, "{} {}", had.len(), cut_off.len());
+    for (row, off, waves) in had.iter().filter(|(_, _, waves)| *waves > 8.0) {
+        assert!(off.abs() < 0.01, "{:?}: {off} with {waves} waves", spec.values(*row));
+    }
+    // The peak of the estimate says the same of all starts that are not within two waves of it.
+    for row in 0..spec.rows {
+        let preset = spec.problem(row).unwrap();
+        let Shape::WavySphere { radius_of_curvature, amplitude, wavelength } = preset.gap else {
+            panic!("{row}")
+        };
+        let sphere = Guduru {
+            effective_modulus: preset.material.effective_modulus,
+            work_of_adhesion: preset.material.work_of_adhesion,
+            radius_of_curvature,
+            amplitude,
+            wavelength,
+        };
+        let beyond = preset.path.start.value() - KesariLew { sphere }.effective().pull_off_radius();
+        if beyond.abs() > 2.0 * wavelength {
+            assert_eq!(cut_off.contains(&row), beyond < 0.0, "{row}: {beyond}, {wavelength}");
+        }
+    }
 }

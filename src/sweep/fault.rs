@@ -50,10 +50,13 @@ impl Fault {
         Self::new(REASONS[4], why)
     }
 
-    /// A curve on which something is smallest at its start.
+    /// A curve whose start cuts off the state at which something is smallest.
     #[must_use]
     pub fn small_start() -> Self {
-        Self::new(REASONS[5], "what is smallest at the start may be smaller in a larger contact")
+        Self::new(
+            REASONS[5],
+            "a contact larger than the start's has, or may have, a smaller one: start further out",
+        )
     }
 
     /// A panic, a fault of the program itself.

@@ -11,7 +11,9 @@ use crate::quasistatic::{Curve, EventKind, Losses, PathStop, State, Unloading};
 use crate::report::number::exact;
 use crate::theory::guduru::Guduru;
 use crate::theory::kesari_lew::KesariLew;
+use crate::theory::{self, Exact};
 use crate::units::Quantity as Unit;
+use std::cell::OnceCell;
 use std::fmt;
 
 /// A value of a quantity.
@@ -55,10 +57,26 @@ pub(super) struct Start {
 /// The curve, reduced.
 pub(super) struct Line {
     curve: Curve,
-    /// δ, P, s of the state of smallest force and of that of smallest approach.
-    least: [State; 2],
+    problem: Problem,
+    /// The state of smallest force and that of smallest approach.
+    least: [Least; 2],
     critical_force: Option<f64>,
 }
+
+/// A state of the curve at which what a control holds is smallest; none where it is smaller in a contact larger than
+/// that of the start.
+struct Least {
+    state: State,
+    is_cut_off: OnceCell<bool>,
+    control: Control,
+}
+
+/// What is smallest in contacts up to so many times the start's, and in so many more waves, is sought: from wave to wave
+/// the minima fall on the way out until they rise.
+const REACH: f64 = 1.5;
+const WAVES: f64 = 2.0;
+/// Smaller by this share is smaller.
+const SMALLER: f64 = 1e-3;
 
 /// The unloading under one control, reduced.
 pub(super) struct Path {
@@ -102,34 +120,51 @@ impl Line {
         let mut curve = case.sweep(go_on)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
-            least(&curve, control)
+            Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
         });
         let critical_force = case.critical_force().map(|force| force / case.units().force);
-        Ok(Self { curve, least, critical_force })
+        Ok(Self { curve, problem: case.problem.clone(), least, critical_force })
     }
 
     /// Of the state of smallest force.
     pub(super) fn least(&self, of: fn(&State) -> f64) -> Result<Option<Cell>, Fault> {
-        Ok(Some(Cell::Number(of(self.inside(&self.least[0])?))))
+        Ok(Some(Cell::Number(of(self.smallest(0)?))))
     }
 
     pub(super) fn least_approach(&self) -> Result<Option<Cell>, Fault> {
-        Ok(Some(Cell::Number(self.inside(&self.least[1])?.approach)))
+        Ok(Some(Cell::Number(self.smallest(1)?.approach)))
     }
 
     pub(super) fn enhancement(&self) -> Result<Option<Cell>, Fault> {
         let Some(critical_force) = self.critical_force else { return Ok(None) };
-        Ok(Some(Cell::Number(-self.inside(&self.least[0])?.force / critical_force)))
+        Ok(Some(Cell::Number(-self.smallest(0)?.force / critical_force)))
     }
 
     pub(super) fn waves(&self) -> Result<Option<Cell>, Fault> {
         let Some(wave) = self.curve.equilibrium.problem.gap.feature_length() else { return Ok(None) };
-        Ok(Some(Cell::Number(self.inside(&self.least[0])?.contact_radius / wave)))
+        Ok(Some(Cell::Number(self.smallest(0)?.contact_radius / wave)))
     }
 
-    /// The state, unless it is the start: what is smallest there may be smaller in a larger contact.
-    fn inside<'a>(&self, state: &'a State) -> Result<&'a State, Fault> {
-        if state.contact_radius < self.curve.outermost() { Ok(state) } else { Err(Fault::small_start()) }
+    /// The state of smallest force, or of smallest approach, of all contacts and not only of those up to the start's.
+    fn smallest(&self, which: usize) -> Result<&State, Fault> {
+        let Least { state, is_cut_off, control } = &self.least[which];
+        let is_cut_off = is_cut_off.get_or_init(|| {
+            state.contact_radius >= self.curve.outermost() || self.is_smaller_beyond(state, *control)
+        });
+        if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
+    }
+
+    /// Whether what `control` holds is smaller in a larger contact than the curve has, by the exact solution: the basis
+    /// need not resolve the waves out there.
+    fn is_smaller_beyond(&self, state: &State, control: Control) -> bool {
+        let problem = &self.curve.equilibrium.problem;
+        let (unit, exact) = (problem.units.length, Exact::of(&self.problem));
+        let start = self.curve.outermost() * unit;
+        let waves = problem.gap.feature_length().map_or(0.0, |wave| WAVES * wave * unit);
+        let far = (REACH * start + waves).min(problem.largest_contact() * unit);
+        let s = state.contact_radius * unit;
+        let here = control.value(exact.approach(s), exact.force(s));
+        start < far && theory::unloading::least(&*exact, control, far, start) < here - SMALLER * here.abs()
     }
 }
 

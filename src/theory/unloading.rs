@@ -121,6 +121,11 @@ pub fn limit_points(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Ve
     disc.curve(&radii).into_iter().zip(found).map(|(state, (_, minimum))| Limit { minimum, state }).collect()
 }
 
+/// The smallest value of what `control` holds between the radii `from` and `to < from`.
+pub fn least(disc: &dyn Disc, control: Control, from: f64, to: f64) -> f64 {
+    nodes(disc, control, from, to).into_iter().map(|node| node.value).fold(f64::INFINITY, f64::min)
+}
+
 /// The radius asked for, or the next stable one outward where it is not stable under `control`.
 fn stable_start(disc: &dyn Disc, control: Control, from: f64) -> Option<f64> {
     if slope(disc, control, from) > 0.0 {
