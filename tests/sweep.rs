@@ -377,8 +377,12 @@ fn shards_join_to_the_single_run() {
     home.file("t.toml", &GRID.replace("0.001,", "0.0011,"));
     home.sweep("t.toml", "other.csv", &["--shard", "2/3"]);
     home.refused(&merge(&["1.csv", "other.csv", "3.csv"]), "other.csv: is of another sweep than 1.csv");
-    // A part that was stopped.
+    // A part with a row that lost a field, and one that was stopped.
     let text = home.text("2.csv");
+    let row = text.lines().nth(2).unwrap();
+    home.file("2.csv", &text.replace(row, row.split_once(',').unwrap().0));
+    let (status, _, said) = home.run(&merge(&["1.csv", "2.csv", "3.csv"]));
+    assert!(status == 1 && said.contains("2.csv:3: "), "{said}");
     home.file("2.csv", &text[..text.len() - 3]);
     let (status, _, said) = home.run(&merge(&["1.csv", "2.csv", "3.csv"]));
     assert_eq!(status, 1);
@@ -410,6 +414,13 @@ fn results_of_something_else_are_not_touched() {
     home.sweep("s.toml", "r.csv", &["--overwrite"]);
     home.file("r.csv", &whole.replace("\n3,0.001,", "\n3,0.002,"));
     home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:5: is not the row that belongs there");
+    // A row that lost a field, or one that is no number.
+    let row = whole.lines().nth(4).unwrap();
+    let (kept, last) = row.trim_end_matches(',').rsplit_once(',').unwrap();
+    for damaged in [format!("{kept},"), format!("{kept},x{last},"), format!("{row}lost")] {
+        home.file("r.csv", &whole.replace(row, &damaged));
+        home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:5: is not the row that belongs there");
+    }
     home.file("r.csv", &format!("{whole}10,1,1,1,1,1,1,\n"));
     home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:12: is not the row that belongs there");
     home.file("mine.csv", "a,b\n");

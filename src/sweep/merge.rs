@@ -1,6 +1,7 @@
 //! Parts of a sweep joined: to the byte the results of a single run.
 
 use super::output::{Existing, OutputError};
+use super::record;
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
 use crate::preset::atomic::{Overwrite, WriteError, write_atomically, write_filled};
@@ -192,6 +193,7 @@ fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Resul
             return Err(MergeError::Changed { path: show_path(&part.path), line: 1 });
         }
     }
+    let columns = record::fields(&header).map_or(0, |fields| fields.len());
     let mut row = 0;
     while row < rows {
         for part in parts.iter_mut() {
@@ -204,7 +206,8 @@ fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Resul
                 let (path, of) = (show_path(&part.path), shard.len(rows));
                 return Err(MergeError::Incomplete { path, rows: had, of, shard });
             };
-            if !line.starts_with(format!("{row},").as_bytes()) {
+            let is_whole = record::fields(line).is_some_and(|fields| fields.len() == columns);
+            if !(is_whole && line.starts_with(format!("{row},").as_bytes())) {
                 return Err(MergeError::Changed { path: show_path(&part.path), line: part.lines });
             }
             out.write_all(line).map_err(failed)?;

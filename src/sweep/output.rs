@@ -4,7 +4,7 @@
 //! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
 //! of ours and are not touched.
 
-use super::record;
+use super::record::{self, Found};
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
 use super::spec::Spec;
@@ -166,20 +166,20 @@ impl Output {
                 break;
             }
             number += 1;
-            let fits = if number == 1 {
-                line == record::header(spec).as_bytes()
+            let found = if number == 1 {
+                if line == record::header(spec).as_bytes() { Found::Row(None) } else { Found::Other }
             } else {
                 let row = shard.row(self.rows);
                 self.rows += 1;
-                row < spec.rows && line.starts_with(record::beginning(spec, row).as_bytes())
+                if row < spec.rows { record::found(spec, row, &line) } else { Found::Other }
             };
-            if !fits {
-                return Err(OutputError::Changed { path: self.path.clone(), line: number });
-            }
-            if let Some(reason) =
-                (number > 1).then(|| record::reason(&String::from_utf8_lossy(&line))).flatten()
-            {
-                *self.faults.entry(reason).or_default() += 1;
+            match found {
+                Found::Other => return Err(OutputError::Changed { path: self.path.clone(), line: number }),
+                Found::Row(reason) => {
+                    if let Some(reason) = reason {
+                        *self.faults.entry(reason).or_default() += 1;
+                    }
+                }
             }
             whole += length as u64;
         }

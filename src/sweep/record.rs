@@ -54,14 +54,36 @@ pub fn record(spec: &Spec, row: u64, measured: &Measured) -> String {
     format!("{}{}", beginning(spec, row), line(fields.iter().map(String::as_str)))
 }
 
-/// The reason of the fault at the end of a line, if there is one.
+/// The fields of a line; none where it is no CSV.
 #[must_use]
-pub fn reason(line: &str) -> Option<&'static str> {
-    let line = line.trim_end_matches('\n');
-    if line.ends_with(',') {
-        return None;
+pub fn fields(line: &[u8]) -> Option<csv::StringRecord> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line);
+    reader.records().next()?.ok()
+}
+
+/// What a line says of its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// It is not the line of that row: another row, too few fields, no numbers.
+    Other,
+    /// It is, with the reason of its fault, if there is one.
+    Row(Option<&'static str>),
+}
+
+/// What a whole line says of this row of the spec.
+#[must_use]
+pub fn found(spec: &Spec, row: u64, line: &[u8]) -> Found {
+    let Some(fields) = line.starts_with(beginning(spec, row).as_bytes()).then(|| fields(line)).flatten()
+    else {
+        return Found::Other;
+    };
+    let cells = 1 + spec.axes.len()..1 + spec.axes.len() + spec.columns.len();
+    let is_cell =
+        |at: usize| fields.get(at).is_some_and(|cell| cell.is_empty() || cell.parse::<f64>().is_ok());
+    let fault = fields.get(cells.end).filter(|_| fields.len() == cells.end + 1 && cells.clone().all(is_cell));
+    match (fault, fault.and_then(Fault::reason_of)) {
+        (Some(""), _) => Found::Row(None),
+        (Some(_), Some(reason)) => Found::Row(Some(reason)),
+        _ => Found::Other,
     }
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
-    let record = reader.records().next()?.ok()?;
-    Fault::reason_of(record.get(record.len().checked_sub(1)?)?)
 }
