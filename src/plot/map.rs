@@ -1,16 +1,20 @@
 //! A quantity of a sweep over its two axes: filled contours, and the line from which the edge snaps.
 
 use super::Width;
-use super::svg::{finish, frame};
+use super::svg::{cropped, entry, finish, frame, hatched, hatches, outline, plain};
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
-use kuva::plot::scatter::MarkerShape;
-use kuva::plot::{ContourPlot, ScatterPlot};
-use kuva::prelude::Plot;
-use kuva::render::render::render_multiple;
+use crate::sweep::side::ColumnInfo;
+use kuva::plot::ContourPlot;
+use kuva::plot::legend::{LegendEntry, LegendShape};
+use kuva::render::layout::ComputedLayout;
+use kuva::render::render::{Primitive, render_multiple};
+use std::collections::VecDeque;
 
 /// The column that tells where snaps begin.
 const SNAPS: &str = "snaps";
+/// Between no snap and one.
+const ONE_SNAP: f64 = 0.5;
 /// Bands of colour.
 const BANDS: usize = 12;
 /// An axis of equal factors is logarithmic where it reaches over this factor at least.
@@ -19,9 +23,9 @@ const DECADE: f64 = 10.0;
 /// A quantity over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
-    /// The axes: x, then y, by their columns.
-    pub axes: [String; 2],
-    /// The quantity.
+    /// What stands beside the axes, x and y.
+    pub titles: [String; 2],
+    /// What stands beside the colours.
     pub quantity: String,
     /// The values of the axes, ascending.
     pub values: [Vec<f64>; 2],
@@ -82,71 +86,111 @@ impl Map {
         if cells.iter().flatten().all(|cell| !cell.is_finite()) {
             return Err(MapError::Grid(format!("no row has a {quantity}")));
         }
-        Ok(Self { axes: [x.clone(), y.clone()], quantity: quantity.to_owned(), values, cells, snaps })
+        let title = |name: &str| {
+            let column = results.columns.iter().find(|column| column.name == name);
+            column.map_or_else(|| name.to_owned(), ColumnInfo::title)
+        };
+        Ok(Self { titles: [title(x), title(y)], quantity: title(quantity), values, cells, snaps })
     }
 
     /// The map as an SVG document of this width.
     pub fn svg(&self, width: Width) -> String {
         let [x, y] = &self.values;
         let range = |axis: &[f64]| [axis[0], axis[axis.len() - 1]];
-        let layout = frame(
-            width,
-            [&self.axes[0], &self.axes[1]],
-            [range(x), range(y)],
-            [is_logarithmic(x), is_logarithmic(y)],
-        );
+        let (legend, holes) = (self.legend(), self.holes());
+        let logarithmic = [is_logarithmic(x), is_logarithmic(y)];
+        let known = || self.cells.iter().flatten().copied().filter(|cell| cell.is_finite());
+        let values = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
+        let ranges = [range(x), range(y)];
+        let layout = frame(width, self.titles.clone(), ranges, logarithmic, values, &legend);
         let filled = ContourPlot::new()
             .with_grid(self.filled(), x.clone(), y.clone())
             .with_n_levels(BANDS)
             .with_filled()
             .with_line_color("none")
-            .with_legend(self.quantity.as_str());
+            .with_legend(plain(&self.quantity));
         let mut plots = vec![filled.into()];
         if let Some(snaps) = &self.snaps {
-            // Where nothing is known nothing snaps.
-            let known =
-                snaps.iter().map(|row| row.iter().map(|n| if n.is_finite() { *n } else { 0.0 }).collect());
             let line = ContourPlot::new()
-                .with_grid(known.collect(), x.clone(), y.clone())
-                .with_levels(&[0.5])
+                .with_grid(counts(snaps), x.clone(), y.clone())
+                .with_levels(&[ONE_SNAP])
                 .with_line_color("black")
                 .with_line_width(1.2);
             plots.push(line.into());
         }
-        plots.extend(self.holes());
-        finish(&render_multiple(plots, layout), 0.0)
+        let field = ComputedLayout::from_layout(&layout);
+        let mut scene = render_multiple(plots, layout);
+        if !holes.is_empty() {
+            // One area, without seams.
+            let area: String = holes.iter().map(|hole| outline(hole, &field)).collect();
+            let paths = hatches(std::iter::once(area), "#ffffff", &mut scene);
+            let end = scene.elements.iter().position(|element| matches!(element, Primitive::ClipEnd));
+            let end = end.unwrap_or(scene.elements.len());
+            scene.elements.splice(end..end, paths);
+        }
+        finish(&scene, cropped(&legend))
+    }
+
+    /// What is drawn besides the colours.
+    fn legend(&self) -> Vec<LegendEntry> {
+        let snaps =
+            self.snaps.as_ref().map(|snaps| counts(snaps).into_iter().flatten().collect::<Vec<f64>>());
+        let begins =
+            |snaps: &Vec<f64>| snaps.iter().any(|n| *n < ONE_SNAP) && snaps.iter().any(|n| *n > ONE_SNAP);
+        let line = snaps.filter(begins).map(|_| entry("snaps begin", "black", LegendShape::Line, ""));
+        let has_holes = self.cells.iter().flatten().any(|cell| !cell.is_finite());
+        line.into_iter().chain(has_holes.then(|| hatched("no value"))).collect()
+    }
+
+    /// The cells, with the value of one nearby where there is none: the contours run straight into the hatched places.
+    fn filled(&self) -> Vec<Vec<f64>> {
+        let mut cells = self.cells.clone();
+        let [width, height] = [self.values[0].len(), self.values[1].len()];
+        let places = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+        let mut edge: VecDeque<(usize, usize)> = places.filter(|(i, j)| cells[*j][*i].is_finite()).collect();
+        while let Some((i, j)) = edge.pop_front() {
+            let value = cells[j][i];
+            for (i, j) in [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)] {
+                if i < width && j < height && !cells[j][i].is_finite() {
+                    cells[j][i] = value;
+                    edge.push_back((i, j));
+                }
+            }
+        }
+        cells
+    }
+
+    /// The outlines of the places where the sweep has no value: neighbours in a row are one.
+    fn holes(&self) -> Vec<[(f64, f64); 4]> {
+        let [along, up] = [&self.values[0], &self.values[1]].map(|axis| borders(axis));
+        let mut holes = Vec::new();
+        for (row, y) in self.cells.iter().zip(up.windows(2)) {
+            let mut at = 0;
+            for run in row.chunk_by(|a, b| a.is_finite() == b.is_finite()) {
+                let (from, to) = (along[at], along[at + run.len()]);
+                at += run.len();
+                if run.iter().all(|cell| !cell.is_finite()) {
+                    holes.push([(from, y[0]), (to, y[0]), (to, y[1]), (from, y[1])]);
+                }
+            }
+        }
+        holes
     }
 }
 
-impl Map {
-    /// The cells with the least value where there is none: the places are crossed out.
-    fn filled(&self) -> Vec<Vec<f64>> {
-        let least = self
-            .cells
-            .iter()
-            .flatten()
-            .copied()
-            .filter(|cell| cell.is_finite())
-            .fold(f64::INFINITY, f64::min);
-        let fill = |cell: &f64| if cell.is_finite() { *cell } else { least };
-        self.cells.iter().map(|row| row.iter().map(fill).collect()).collect()
-    }
+/// Counts of snaps, none where nothing is known.
+fn counts(snaps: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    snaps.iter().map(|row| row.iter().map(|n| if n.is_finite() { *n } else { 0.0 }).collect()).collect()
+}
 
-    /// A cross where the sweep has no value.
-    fn holes(&self) -> Option<Plot> {
-        let [x, y] = &self.values;
-        let missing: Vec<(f64, f64)> = self
-            .cells
-            .iter()
-            .zip(y)
-            .flat_map(|(row, y)| {
-                row.iter().zip(x).filter(|(cell, _)| !cell.is_finite()).map(|(_, x)| (*x, *y))
-            })
-            .collect();
-        let crosses =
-            ScatterPlot::new().with_data(missing.iter().copied()).with_color("black").with_size(2.5);
-        (!missing.is_empty()).then(|| crosses.with_marker(MarkerShape::Cross).into())
-    }
+/// The borders of the cells of an axis: its ends, and half-way between neighbours.
+fn borders(axis: &[f64]) -> Vec<f64> {
+    let is_logarithmic = is_logarithmic(axis);
+    let half = |pair: &[f64]| {
+        if is_logarithmic { (pair[0] * pair[1]).sqrt() } else { 0.5 * (pair[0] + pair[1]) }
+    };
+    let [first, last] = [axis[0], axis[axis.len() - 1]];
+    std::iter::once(first).chain(axis.windows(2).map(half)).chain([last]).collect()
 }
 
 /// The values of an axis, each once, ascending.
@@ -185,7 +229,7 @@ mod tests {
     #[test]
     fn a_map_with_holes_is_a_valid_document() {
         let map = Map {
-            axes: ["a".to_owned(), "b".to_owned()],
+            titles: ["a".to_owned(), "b".to_owned()],
             quantity: "enhancement".to_owned(),
             values: [vec![0.0, 1.0, 2.0], vec![1.0, 10.0, 100.0]],
             cells: vec![vec![1.0, 2.0, 3.0], vec![2.0, f64::NAN, 4.0], vec![3.0, 4.0, 5.0]],
@@ -195,5 +239,11 @@ mod tests {
         let document = roxmltree::Document::parse(&text).unwrap();
         assert!(document.descendants().any(|node| node.has_tag_name("path")), "{text}");
         assert!(!text.contains("NaN"));
+        // The place without a value is told from the least one, and both it and the line are named.
+        assert!(text.contains("url(#") && text.contains("no value") && text.contains("snaps begin"));
+        assert_eq!(map.holes().len(), 1);
+        assert_eq!(map.filled()[1], [2.0, 2.0, 4.0]);
+        let full = Map { cells: vec![vec![1.0, 2.0, 3.0]; 3], snaps: None, ..map };
+        assert!(full.holes().is_empty() && full.legend().is_empty());
     }
 }

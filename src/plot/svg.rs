@@ -4,7 +4,7 @@ use super::Width;
 use super::chart::{Axis, Chart, Run};
 use super::ink::{self, Stroke};
 use crate::figure::{Bounds, Line, Mark, Role};
-use crate::report::number::short;
+use crate::report::number::{printed, short};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -23,6 +23,8 @@ const NEARER: f64 = 8.0;
 const CROPPED: f64 = 18.0;
 /// The height of the field of the axes over its width.
 const ASPECT: f64 = 0.72;
+/// The same of a map, whose colours take of the width.
+const MAP_ASPECT: f64 = 0.9;
 /// Letters of 8 and 7 points in the library's units.
 const LETTERS: u32 = 11;
 const SMALL_LETTERS: u32 = 9;
@@ -45,24 +47,37 @@ pub fn svg(chart: &Chart, width: Width) -> String {
     let field = ComputedLayout::from_layout(&layout);
     let mut scene = render_multiple(plots(chart), layout);
     hatch(chart, &field, &mut scene);
-    finish(&scene, if legend.is_empty() { 0.0 } else { CROPPED })
+    finish(&scene, cropped(&legend))
 }
 
-/// The frame of a map over two ranges, which its colours stand beside.
+/// What is taken off below the legend.
+pub(super) fn cropped(legend: &[LegendEntry]) -> f64 {
+    if legend.is_empty() { 0.0 } else { CROPPED }
+}
+
+/// The frame of a map of `values` over two ranges, which its colours stand beside.
 pub(super) fn frame(
     width: Width,
-    titles: [&str; 2],
+    titles: [String; 2],
     ranges: [[f64; 2]; 2],
     logarithmic: [bool; 2],
+    values: [f64; 2],
+    legend: &[LegendEntry],
 ) -> Layout {
     let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
-    let axis = |k: usize| Axis { title: titles[k].to_owned(), run: run(logarithmic[k]) };
+    let [x, y] = titles;
+    let axis = |title: String, k: usize| Axis { title, run: run(logarithmic[k]) };
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
-    let chart = Chart { bounds, ..Chart::new(axis(0), axis(1), Vec::new()) };
+    let chart = Chart { bounds, ..Chart::new(axis(x, 0), axis(y, 1), Vec::new()) };
     let wide = width.get() * UNITS_PER_MM;
-    let mut layout = layout(&chart, &[], wide, (ASPECT * wide).round());
-    layout.show_colorbar = true;
-    layout
+    let beside_colors = |high: f64| {
+        let mut layout = layout(&chart, legend, wide, high);
+        layout.show_colorbar = true;
+        layout.colorbar_tick_format = ticks(values);
+        layout
+    };
+    let trial = ComputedLayout::from_layout(&beside_colors(wide));
+    beside_colors((wide - trial.plot_height() + MAP_ASPECT * trial.plot_width()).round())
 }
 
 /// A scene as a document in millimetres, `cropped` units off its lower end.
@@ -123,11 +138,11 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
         .with_y_axis_max(bounds.y[1]);
     layout = match x.run {
         Run::Linear => layout.with_x_tick_format(ticks(bounds.x)),
-        Run::Logarithmic => layout.with_log_x(),
+        Run::Logarithmic => layout.with_log_x().with_x_tick_format(factors(bounds.x)),
     };
     layout = match y.run {
         Run::Linear => layout.with_y_tick_format(ticks(bounds.y)),
-        Run::Logarithmic => layout.with_log_y(),
+        Run::Logarithmic => layout.with_log_y().with_y_tick_format(factors(bounds.y)),
     };
     if !legend.is_empty() {
         layout = layout
@@ -149,21 +164,33 @@ fn ticks([lo, hi]: [f64; 2]) -> TickFormat {
     // What is left of a zero by rounding is one.
     let clean = move |x: f64| if x.abs() < 1e-9 * largest { 0.0 } else { x };
     if largest == 0.0 || (PLAIN.0..PLAIN.1).contains(&largest) {
-        return TickFormat::Custom(Arc::new(move |x| short(clean(x), 6)));
+        return TickFormat::Custom(Arc::new(move |x| printed(&short(clean(x), 6))));
     }
     let power = largest.log10().floor();
     TickFormat::Custom(Arc::new(move |x| match short(clean(x) / 10.0_f64.powf(power), 6) {
         zero if zero == "0" => zero,
-        mantissa => format!("{mantissa}e{power}"),
+        mantissa => printed(&format!("{mantissa}e{power}")),
+    }))
+}
+
+/// The same for an axis of equal factors.
+fn factors([lo, hi]: [f64; 2]) -> TickFormat {
+    if PLAIN.0 <= lo && hi < PLAIN.1 {
+        return TickFormat::Custom(Arc::new(|x| short(x, 3)));
+    }
+    TickFormat::Custom(Arc::new(|x| {
+        let power = x.log10().floor();
+        let text = printed(&format!("{}e{power}", short(x / 10.0_f64.powf(power), 3)));
+        text.strip_prefix("1×").map_or(text.clone(), str::to_owned)
     }))
 }
 
 /// A text as it stands: to the library a dollar sign begins a formula, and no document holds control characters.
-fn plain(text: &str) -> String {
+pub(super) fn plain(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).collect::<String>().replace('$', "\\$")
 }
 
-fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -> LegendEntry {
+pub(super) fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -> LegendEntry {
     let dasharray = (!dashes.is_empty()).then(|| dashes.to_owned());
     LegendEntry { label: plain(name), color: color.to_owned(), shape, dasharray }
 }
@@ -191,13 +218,20 @@ fn legend(chart: &Chart) -> Vec<LegendEntry> {
         add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
     }
     if !chart.areas.is_empty() {
-        add(entry("energy lost", HATCH, LegendShape::Rect, ""));
+        add(hatched("energy lost"));
     }
     entries
 }
 
-/// The tint under a hatched area.
-const HATCH: &str = "#f3d9e6";
+/// The hatches of an area.
+const PATTERN: FillPattern = FillPattern::DiagonalForward;
+/// The tint under the hatches of an energy.
+const LOST: &str = "#f3d9e6";
+
+/// The entry of a hatched area.
+pub(super) fn hatched(name: &str) -> LegendEntry {
+    entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
+}
 
 fn plots(chart: &Chart) -> Vec<Plot> {
     // The dots of the exact solution stand on the line that they agree with.
@@ -238,24 +272,26 @@ fn mark(mark: &Mark) -> Drawn {
         .into()
 }
 
-/// Puts the hatched areas below the lines, inside the field.
-fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
-    let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
-    let (Some(begin), false) = (begin, chart.areas.is_empty()) else { return };
-    let pattern = FillPattern::DiagonalForward;
-    scene.defs.push(pattern.svg_def().to_owned());
-    let fills = [Color::from(HATCH), Color::from(format!("url(#{})", pattern.id()))];
-    let paths = chart.areas.iter().flat_map(|area| {
-        let mut outline = String::new();
-        for (i, (x, y)) in area.outline.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).enumerate() {
-            let letter = if i == 0 { 'M' } else { 'L' };
-            // Writing to a String cannot fail.
-            let _ = write!(outline, "{letter}{:.2},{:.2} ", field.map_x(*x), field.map_y(*y));
-        }
-        outline.push('Z');
+/// An outline as path data.
+pub(super) fn outline(points: &[(f64, f64)], field: &ComputedLayout) -> String {
+    let mut data = String::new();
+    for (i, (x, y)) in points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).enumerate() {
+        let letter = if i == 0 { 'M' } else { 'L' };
+        // Writing to a String cannot fail.
+        let _ = write!(data, "{letter}{:.2},{:.2} ", field.map_x(*x), field.map_y(*y));
+    }
+    data.push('Z');
+    data
+}
+
+/// Areas of this path data, hatched on a tint.
+pub(super) fn hatches(areas: impl Iterator<Item = String>, tint: &str, scene: &mut Scene) -> Vec<Primitive> {
+    scene.defs.push(PATTERN.svg_def().to_owned());
+    let fills = [Color::from(tint), Color::from(format!("url(#{})", PATTERN.id()))];
+    let paths = areas.flat_map(|area| {
         fills.clone().map(|fill| {
             Primitive::Path(Box::new(PathData {
-                d: outline.clone(),
+                d: area.clone(),
                 fill: Some(fill),
                 stroke: Color::None,
                 stroke_width: 0.0,
@@ -264,7 +300,15 @@ fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
             }))
         })
     });
-    let paths: Vec<Primitive> = paths.collect();
+    paths.collect()
+}
+
+/// Puts the hatched areas below the lines.
+fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
+    let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
+    let (Some(begin), false) = (begin, chart.areas.is_empty()) else { return };
+    let areas = chart.areas.iter().map(|area| outline(&area.outline, field));
+    let paths = hatches(areas, LOST, scene);
     scene.elements.splice(begin + 1..=begin, paths);
 }
 
@@ -284,8 +328,14 @@ mod tests {
             ticks.iter().map(|tick| format.format(*tick)).collect()
         };
         assert_eq!(all([-0.004, 0.02], &[-1e-19, 0.005, 0.01, 0.015]), ["0", "0.005", "0.01", "0.015"]);
-        assert_eq!(all([0.0, 2e-5], &[0.0, 5e-6, 1e-5]), ["0", "0.5e-5", "1e-5"]);
-        assert_eq!(all([-3e7, 1e6], &[-2e7, -5e6]), ["-2e7", "-0.5e7"]);
+        assert_eq!(all([0.0, 2e-5], &[0.0, 5e-6, 1e-5]), ["0", "0.5×10⁻⁵", "1×10⁻⁵"]);
+        assert_eq!(all([-3e7, 1e6], &[-2e7, -5e6]), ["−2×10⁷", "−0.5×10⁷"]);
+        let all = |bounds, ticks: &[f64]| -> Vec<String> {
+            let format = super::factors(bounds);
+            ticks.iter().map(|tick| format.format(*tick)).collect()
+        };
+        assert_eq!(all([0.002, 50.0], &[0.002, 0.01, 0.1, 1.0, 20.0]), ["0.002", "0.01", "0.1", "1", "20"]);
+        assert_eq!(all([1e-7, 0.1], &[1e-7, 2e-5, 0.1]), ["10⁻⁷", "2×10⁻⁵", "10⁻¹"]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::record;
 use super::shard::Shard;
 use super::spec::Spec;
 use crate::preset::file::{self, FileError, read_text};
-use crate::preset::text::{sanitize, show_path};
+use crate::preset::text::{greek, sanitize, show_path};
 use crate::units::{Quantity, UnitSystem};
 use serde::Deserialize;
 use std::fmt::Write;
@@ -38,6 +38,8 @@ pub enum SideError {
 pub struct ColumnInfo {
     /// Its name.
     pub name: String,
+    /// What it is called in formulas; `None` where it has no such name.
+    pub symbol: Option<String>,
     /// The unit of its numbers; `None` for pure numbers, texts, and in reduced units.
     pub unit: Option<String>,
     /// What it is, in one line.
@@ -88,11 +90,19 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
         spec.rows,
         spec.canonical()
     );
-    for ColumnInfo { name, unit, meaning } in columns(spec) {
+    for ColumnInfo { name, symbol, unit, meaning } in columns(spec) {
         let quoted = |text: String| toml::Value::String(text).to_string();
-        let unit = unit.map_or_else(String::new, |unit| format!("unit = {}\n", quoted(unit)));
+        let line = |key: &str, value: Option<String>| {
+            value.map_or_else(String::new, |value| format!("{key} = {}\n", quoted(value)))
+        };
+        let (symbol, unit) = (line("symbol", symbol), line("unit", unit));
         // Writing to a String cannot fail.
-        let _ = write!(text, "\n[[column]]\nname = {}\n{unit}meaning = {}\n", quoted(name), quoted(meaning));
+        let _ = write!(
+            text,
+            "\n[[column]]\nname = {}\n{symbol}{unit}meaning = {}\n",
+            quoted(name),
+            quoted(meaning)
+        );
     }
     text
 }
@@ -109,9 +119,10 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
     let unit = |quantity: Quantity| is_si.then(|| quantity.si()).flatten().map(str::to_owned);
     let meanings = spec.axes.iter().map(|axis| {
         let row = spec.preset.row(&axis.key);
-        (row.as_ref().and_then(|row| unit(row.quantity)), row.map(|row| row.meaning.to_string()))
+        let symbol = row.as_ref().map(|row| greek(&row.label));
+        (symbol, row.as_ref().and_then(|row| unit(row.quantity)), row.map(|row| row.meaning.to_string()))
     });
-    let meanings = std::iter::once((None, Some("number of the row, from 0".to_owned())))
+    let meanings = std::iter::once((None, None, Some("number of the row, from 0".to_owned())))
         .chain(meanings)
         .chain(spec.columns.iter().map(|column| {
             let under = match column.name().strip_prefix(column.quantity.name) {
@@ -120,15 +131,26 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
                 Some("_force") => ", the force held",
                 _ => "",
             };
-            (unit(column.quantity.unit), Some(format!("{}{under}", column.quantity.meaning)))
+            (None, unit(column.quantity.unit), Some(format!("{}{under}", column.quantity.meaning)))
         }))
-        .chain([(None, Some("why a quantity could not be had; empty where all is well".to_owned()))]);
-    let column = |(name, (unit, meaning)): (String, (_, Option<String>))| ColumnInfo {
+        .chain([(None, None, Some("why a quantity could not be had; empty where all is well".to_owned()))]);
+    let column = |(name, (symbol, unit, meaning)): (String, (_, _, Option<String>))| ColumnInfo {
         name,
+        symbol,
         unit,
         meaning: meaning.unwrap_or_default(),
     };
     record::names(spec).into_iter().zip(meanings).map(column).collect()
+}
+
+impl ColumnInfo {
+    /// What stands beside an axis: its symbol or name, and its unit.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let name = self.symbol.as_ref().unwrap_or(&self.name);
+        let unit = self.unit.as_ref().map(|unit| unit.replace("^2", "²"));
+        unit.map_or_else(|| name.clone(), |unit| format!("{name} ({unit})"))
+    }
 }
 
 impl Side {

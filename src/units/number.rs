@@ -1,5 +1,6 @@
 //! How numbers are written for people.
 
+use super::unit::superscript;
 use super::{Quantity, UnitSystem};
 
 /// `x` with `digits` significant digits: plain where that is short, with an exponent otherwise.
@@ -42,6 +43,16 @@ pub fn loss(x: f64) -> String {
 /// `x` with so many decimals.
 pub fn fixed(x: f64, decimals: usize) -> String {
     format!("{x:.decimals$}")
+}
+
+/// A formatted number as it stands in print: −0.5, 1.5×10⁻⁴.
+pub fn printed(text: &str) -> String {
+    let minus = |text: &str| text.replace('-', "−");
+    let parts = text.split_once('e').and_then(|(mantissa, power)| Some((mantissa, power.parse().ok()?)));
+    parts.map_or_else(
+        || minus(text),
+        |(mantissa, power)| format!("{}×10{}", minus(mantissa), superscript(power)),
+    )
 }
 
 /// A relative difference: its sign, two digits and the decade.
@@ -92,5 +103,11 @@ mod tests {
         }
         assert_eq!(short(0.0025, 6), "0.0025");
         assert_eq!(short(200.0, 4), "200");
+    }
+
+    #[test]
+    fn a_number_in_print_has_a_minus_sign_and_a_raised_power() {
+        let texts = ["-0.5", "1.5e-4", "-1e12", "0", "NaN", "1e"];
+        assert_eq!(texts.map(printed), ["−0.5", "1.5×10⁻⁴", "−1×10¹²", "0", "NaN", "1e"]);
     }
 }

@@ -217,7 +217,8 @@ fn scaled(x: f64, exponent: i32) -> f64 {
     if exponent < 0 { x / power } else { x * power }
 }
 
-fn superscript(power: i32) -> String {
+/// A power as it stands behind its base: ⁻⁴.
+pub(super) fn superscript(power: i32) -> String {
     let digit = |c: char| SUPERSCRIPTS[c.to_digit(10).map_or(0, |digit| digit as usize + 1)];
     power.to_string().chars().map(digit).collect()
 }
