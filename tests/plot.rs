@@ -25,7 +25,7 @@ fn structure(svg: &str) -> Vec<String> {
         let dash =
             element.attribute("stroke-dasharray").map_or(String::new(), |dash| format!(" dash {dash}"));
         let text = element.text().filter(|text| !text.trim().is_empty()).unwrap_or_default();
-        let is_number = text.parse::<f64>().is_ok();
+        let is_number = text.chars().all(|c| c.is_ascii_digit() || "−.×⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c));
         let text = if text.is_empty() || is_number { String::new() } else { format!(" {text:?}") };
         let line = format!("{}{dash}{text}", element.tag_name().name());
         if lines.last() != Some(&line) {
@@ -90,7 +90,9 @@ fn data_beside_a_figure_are_the_points_drawn() {
 fn what_cannot_be_drawn_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
-        (&["-o", "a.gif"][..], "ends in .svg or .png"),
+        (&["-o", "a.gif"][..], "ends in .svg, .png or .pdf"),
+        #[cfg(not(feature = "pdf"))]
+        (&["-o", "a.pdf"][..], "this build writes no PDF (feature `pdf` is off); use .svg"),
         (&["--width", "3"], "from 50 to 500 mm"),
         (&["--contact-radius", "0.2"], "shows the whole curve"),
         (&["--view", "gap", "--contact-radius", "7"], "outside the curve"),
@@ -147,6 +149,56 @@ fn a_png_has_the_size_of_the_figure_and_letters() {
     assert!((0..100).any(dark));
 }
 
+/// The streams of a PDF as text, where they are texts.
+#[cfg(feature = "pdf")]
+fn streams(pdf: &[u8]) -> Vec<String> {
+    let find = |from: usize, what: &[u8]| {
+        pdf[from..].windows(what.len()).position(|window| window == what).map(|at| from + at)
+    };
+    let (mut from, mut all) = (0, Vec::new());
+    while let Some(begin) = find(from, b"stream\n") {
+        let begin = begin + b"stream\n".len();
+        let end = find(begin, b"endstream").unwrap();
+        let mut text = Vec::new();
+        let mut packed = flate2::read::ZlibDecoder::new(&pdf[begin..end]);
+        if std::io::Read::read_to_end(&mut packed, &mut text).is_ok() {
+            all.push(String::from_utf8_lossy(&text).into_owned());
+        }
+        from = end + b"endstream".len();
+    }
+    all
+}
+
+#[test]
+#[cfg(feature = "pdf")]
+fn a_pdf_is_a_page_of_the_figure_with_letters_dashes_and_hatches() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |arguments: &[&str]| {
+        let output = pulloff(folder.path(), &[&["plot", "-o", "a.pdf"], arguments].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(folder.path().join("a.pdf")).unwrap()
+    };
+    for (width, mm) in [("one-column", 86.0), ("two-columns", 178.0)] {
+        let pdf = drawn(&["fig-9", "--view", "unloading", "--width", width]);
+        let text = String::from_utf8_lossy(&pdf);
+        assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
+        let page = text.split("/MediaBox").nth(1).and_then(|rest| rest.split(['[', ']']).nth(1)).unwrap();
+        let sides: Vec<f64> = page.split_whitespace().map(|side| side.parse().unwrap()).collect();
+        assert!((sides[2] - mm / 25.4 * 72.0).abs() < 0.05, "{width}: {page}");
+        assert!(text.contains("DejaVuSans") && text.contains("/FontFile"), "no font");
+        assert!(!text.contains("/Subtype/Image") && !text.contains("/Subtype /Image"), "pixels");
+        let streams = streams(&pdf);
+        let has = |words: &str| streams.iter().any(|stream| stream.contains(words));
+        // The letter δ of the axis by its number, letters, dashes, and the pattern of the hatches.
+        assert!(has("beginbfchar") && has("<03B4>") || has("<03b4>"), "no δ");
+        assert!(has("TJ") || has("Tj"), "no letters");
+        assert!(has("[3") || has("[2.25"), "no dashes");
+        assert!(has("/Pattern cs"), "no hatches");
+        // The same figure is the same file.
+        assert!(drawn(&["fig-9", "--view", "unloading", "--width", width]) == pdf);
+    }
+}
+
 #[test]
 fn the_figures_of_the_paper_agree_with_theory() {
     let folder = tempfile::tempdir().unwrap();
@@ -186,7 +238,7 @@ fn a_sweep_over_two_axes_is_a_map() {
     assert!(output.status.success() && said.contains("pulloff plot --sweep"), "{said}");
     let svg = svg(folder.path(), &["--sweep", "map.csv"]);
     let texts = structure(&svg).join("\n");
-    for word in ["groups.amplitude_over_wavelength", "groups.adhesion", "enhancement"] {
+    for word in ["A/λ", "γ'", "enhancement"] {
         assert!(texts.contains(word), "{word}: {texts}");
     }
     let refused = pulloff(folder.path(), &["plot", "--sweep", "map.csv", "--quantity", "snps"]);

@@ -3,6 +3,7 @@
 use crate::case::CaseError;
 use crate::explorer::archive::ArchiveError;
 use crate::preset::{StoreError, WriteError};
+use crate::print::{DrawError, FormatError};
 use crate::quasistatic::StartError;
 use crate::report::rows::RowsError;
 use crate::sweep::OutputError;
@@ -38,10 +39,12 @@ pub enum Failure {
     /// A figure of the paper could not be computed.
     #[error(transparent)]
     Paper(#[from] crate::plot::paper::PaperError),
-    /// A figure could not be drawn as pixels.
-    #[cfg(feature = "png")]
+    /// A figure has no file of this name.
     #[error(transparent)]
-    Png(#[from] crate::plot::png::PngError),
+    Format(#[from] FormatError),
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Draw(#[from] DrawError),
     /// The result could not be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
@@ -112,6 +115,7 @@ impl Failure {
                 | ArchiveError::NoFolder,
             )
             | Self::Usage(_)
+            | Self::Format(_)
             | Self::Spec(_)
             | Self::Case(
                 CaseError::EndOutsideStart { .. }

@@ -3,6 +3,8 @@
 use super::{Failure, output};
 use crate::plot::{Width, paper, svg, table};
 use crate::preset::{Overwrite, write_atomically};
+#[cfg(feature = "png")]
+use crate::print::Format;
 use clap::Args;
 use std::fmt::Write as _;
 use std::io::Write;
@@ -19,6 +21,10 @@ pub struct Arguments {
     #[cfg(feature = "png")]
     #[arg(long)]
     png: bool,
+    /// Write the pictures as PDF too
+    #[cfg(feature = "pdf")]
+    #[arg(long)]
+    pdf: bool,
 }
 
 /// The captions, in this file.
@@ -39,7 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         save(&file("svg"), picture.as_bytes())?;
         #[cfg(feature = "png")]
         if arguments.png {
-            save(&file("png"), &crate::plot::png::png(&picture)?)?;
+            save(&file("png"), &Format::Png.bytes(&picture)?)?;
+        }
+        #[cfg(feature = "pdf")]
+        if arguments.pdf {
+            save(&file("pdf"), &Format::Pdf.bytes(&picture)?)?;
         }
         // Writing to a String cannot fail.
         let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);

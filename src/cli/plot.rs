@@ -7,6 +7,7 @@ use crate::figure::Subject;
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Chart, Width, svg, table};
 use crate::preset::{Overwrite, Preset, write_atomically};
+use crate::print::Format;
 use crate::quasistatic::jump::Run;
 use crate::sweep::Results;
 use crate::units::Quantity;
@@ -45,7 +46,7 @@ pub struct Arguments {
     /// Write the data beside the figure too, to FILE.csv
     #[arg(long, requires = "output")]
     data: bool,
-    /// Write to this file, as SVG or PNG by its ending, instead of SVG to standard output
+    /// Write to this file, as SVG, PNG or PDF by its ending, instead of SVG to standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -84,7 +85,7 @@ fn width(text: &str) -> Result<Width, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let format = Format::of(arguments.output.as_deref())?;
+    let format = format(arguments.output.as_deref())?;
     if let Some(path) = &arguments.sweep {
         let results = Results::open(path).map_err(MapError::from)?;
         let map = Map::of(&results, &results.axes, &arguments.quantity)?;
@@ -157,35 +158,15 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
     preset.number(&row, text).map_err(words)
 }
 
-/// The format of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
-    Svg,
-    Png,
-}
-
-impl Format {
-    fn of(path: Option<&Path>) -> Result<Self, Failure> {
-        let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(Self::Svg) };
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("svg") => Ok(Self::Svg),
-            Some("png") if cfg!(feature = "png") => Ok(Self::Png),
-            Some("png") => {
-                Err(Failure::Usage("this build writes no PNG (feature `png` is off); use .svg".to_owned()))
-            }
-            _ => {
-                Err(Failure::Usage(format!("{}: a figure's file ends in .svg or .png", output::shown(path))))
-            }
-        }
-    }
+/// The format that is asked for: standard output has no ending.
+fn format(path: Option<&Path>) -> Result<Format, Failure> {
+    Ok(path.filter(|path| *path != Path::new("-")).map_or(Ok(Format::Svg), Format::of)?)
 }
 
 fn write(text: &str, format: Format, path: Option<&Path>) -> Result<(), Failure> {
     match (format, path) {
-        #[cfg(feature = "png")]
-        (Format::Png, Some(path)) => {
-            write_atomically(path, &crate::plot::png::png(text)?, Overwrite::Always)?;
+        (Format::Png | Format::Pdf, Some(path)) => {
+            write_atomically(path, &format.bytes(text)?, Overwrite::Always)?;
             Ok(())
         }
         (_, path) => output::write(text, path),

@@ -230,10 +230,10 @@ pub enum Command {
     },
     /// Save although the file was changed by somebody else meanwhile.
     SaveAnyway,
-    /// Write a text, such as the screen, to a file ending in `.txt`.
-    ExportText {
-        /// The text.
-        text: String,
+    /// Write the screen to a file ending in `.txt`, or a figure to one whose ending chooses its format.
+    ExportPage {
+        /// What is written.
+        page: super::files::Page,
         /// The path.
         path: String,
         /// Whether a file of that name is to be replaced.
@@ -278,7 +278,7 @@ impl Command {
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } | Self::ExportText { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportPage { .. } => Id::Export,
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::preset::text::{quote, show_path};
 use crate::preset::{
     Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
 };
+use crate::print::Format;
 use crate::report::trace::StableReport;
 use crate::report::unload::{EventReport, StateReport};
 use crate::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
@@ -88,6 +89,28 @@ impl Content {
     }
 }
 
+/// What is seen, for a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Page {
+    /// The screen as text.
+    Screen(String),
+    /// A figure as SVG, drawn as its file's ending says.
+    Figure(String),
+}
+
+impl Page {
+    /// The bytes of its file `path`.
+    fn bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Screen(text) => Ok(text.as_bytes().to_vec()),
+            Self::Figure(svg) => {
+                let format = Format::of(Path::new(path)).map_err(|error| error.to_string())?;
+                format.bytes(svg).map_err(|error| error.to_string())
+            }
+        }
+    }
+}
+
 /// Work on files.
 #[derive(Debug, Clone)]
 pub enum Job {
@@ -145,10 +168,10 @@ pub enum Job {
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
     },
-    /// Write a text.
+    /// Write a page.
     Write {
-        /// The text.
-        text: String,
+        /// The page.
+        page: Page,
         /// The path as typed.
         path: String,
         /// Whether a file there may be replaced.
@@ -199,8 +222,8 @@ pub enum Done {
     Exported(String),
     /// A file of this name exists: not written.
     FileExists(Document, String),
-    /// The same of this text, at this path.
-    TextExists(String, String),
+    /// The same of this page, at this path.
+    PageExists(Page, String),
     /// It failed, in words; nothing was changed.
     Failed(String),
 }
@@ -248,9 +271,12 @@ pub fn run(store: &Store, job: Job) -> Done {
             }
         }
         Job::SaveAs { name, preset, replace, with_data } => save_as(store, name, preset, replace, with_data),
-        Job::Write { text, path, replace } => match put(&path, &text, replace) {
-            Err(WriteError::Exists { .. }) => Done::TextExists(text, path),
-            result => exported(path, result),
+        Job::Write { page, path, replace } => match page.bytes(&path) {
+            Ok(bytes) => match put(&path, &bytes, replace) {
+                Err(WriteError::Exists { .. }) => Done::PageExists(page, path),
+                result => exported(path, result),
+            },
+            Err(reason) => Done::Failed(format!("not exported: {reason}")),
         },
         Job::Export { content, path, replace } => export(store, &content, path, replace),
     }
@@ -283,15 +309,15 @@ fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done
         Ok(text) => text,
         Err(error) => return Done::Failed(format!("not exported: {error}")),
     };
-    match put(&path, &text, replace) {
+    match put(&path, text.as_bytes(), replace) {
         Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
         result => exported(path, result),
     }
 }
 
-fn put(path: &str, text: &str, replace: bool) -> Result<Fingerprint, WriteError> {
+fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteError> {
     let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-    write_atomically(&target(path), text.as_bytes(), overwrite)
+    write_atomically(&target(path), bytes, overwrite)
 }
 
 fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {

@@ -65,8 +65,8 @@ pub enum Question {
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::files::Document, String),
-    /// Replace the file by this text; its path.
-    ReplaceText(String, String),
+    /// Replace the file by this page; its path.
+    ReplacePage(super::files::Page, String),
 }
 
 /// A walk request that is running.

@@ -25,7 +25,7 @@ use super::view::View;
 use super::walk::Action;
 use crate::preset::text::{greek, show_name};
 use crate::preset::{Loaded, Overwrite, Value, groups};
-use files::{browse, export, export_text, file, file_done, save, save_back};
+use files::{browse, export, export_page, file, file_done, save, save_back};
 pub(in crate::explorer) use values::want_curve;
 use values::{
     assign, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry, want_check,
@@ -138,7 +138,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         }
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
-        Command::ExportText { text, path, replace } => export_text(model, text, path, replace),
+        Command::ExportPage { page, path, replace } => export_page(model, page, path, replace),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Figures for print: a figure, or any chart of lines and marks, as SVG and PNG.
+//! Figures for print: a figure, or any chart of lines and marks, as SVG.
 //!
 //! | file | what lives there |
 //! |---|---|
@@ -7,7 +7,6 @@
 //! | [`map`] | a quantity of a sweep over its two axes |
 //! | [`paper`] | the figures of the paper, computed again |
 //! | [`svg`] | the one place that knows the drawing library |
-//! | [`png`] | the SVG as pixels (feature `png`) |
 //! | [`table`] | the data of a chart as CSV |
 //!
 //! A chart is drawn in its size on paper: 86 mm for one column of a journal, 178 mm for two, letters of 8 points.
@@ -16,8 +15,6 @@ pub mod chart;
 pub mod ink;
 pub mod map;
 pub mod paper;
-#[cfg(feature = "png")]
-pub mod png;
 pub mod svg;
 pub mod table;
 

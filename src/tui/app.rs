@@ -235,9 +235,9 @@ impl App {
                 let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
                 self.ask(question, Command::Export { what, path, replace: true });
             }
-            Some(Question::ReplaceText(text, path)) => {
+            Some(Question::ReplacePage(page, path)) => {
                 let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
-                self.ask(question, Command::ExportText { text, path, replace: true });
+                self.ask(question, Command::ExportPage { page, path, replace: true });
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::contact::formula::FormulaError;
 use crate::explorer::Command;
-use crate::explorer::files::Document;
+use crate::explorer::files::{Document, Page};
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use crate::preset::Key;
@@ -66,8 +66,8 @@ pub enum Purpose {
     },
     /// The file to export to.
     File(Document),
-    /// The file for this text.
-    Text(String),
+    /// The file for this page.
+    Page(Page),
     /// The path of a preset to open.
     Path,
     /// A command of the script grammar.
@@ -116,7 +116,7 @@ impl Purpose {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
             Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
-            Self::Text(content) => Command::ExportText { text: content, path: text, replace: false },
+            Self::Page(page) => Command::ExportPage { page, path: text, replace: false },
             Self::Path => Command::Open(text),
             Self::Line => return None,
         })

@@ -34,7 +34,7 @@ pub fn line(command: &Command) -> Option<String> {
         | Command::Pick { .. }
         | Command::GoTo { .. }
         | Command::Delete(_)
-        | Command::ExportText { .. }
+        | Command::ExportPage { .. }
         | Command::Zoom { .. } => return None,
     };
     Some(format!("{name}{rest}"))

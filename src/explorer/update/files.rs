@@ -4,12 +4,13 @@ use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
 use crate::contact::Shape;
 use crate::explorer::driver::Effect;
-use crate::explorer::files::{Content, Document, Done, Job, ends_in};
+use crate::explorer::files::{Content, Document, Done, Job, Page, ends_in};
 use crate::explorer::journal::Journal;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::preset::{Overwrite, Preset, Source};
-use std::path::PathBuf;
+use crate::print::Format;
+use std::path::{Path, PathBuf};
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     if let Source::Shipped(_) = model.source {
@@ -51,14 +52,16 @@ pub(super) fn export(model: &mut Model, what: Document, path: String, replace: b
     vec![file(Job::Export { content, path, replace })]
 }
 
-pub(super) fn export_text(model: &mut Model, text: String, path: String, replace: bool) -> Vec<Effect> {
-    // A figure is a text too; under another ending no program would know it.
-    let ending = if text.starts_with("<svg") { "svg" } else { "txt" };
-    if ends_in(&path, &[ending]) {
-        return vec![file(Job::Write { text, path, replace })];
+pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: bool) -> Vec<Effect> {
+    let refused = match page {
+        Page::Screen(_) => (!ends_in(&path, &["txt"])).then(|| "the file must end in .txt".to_owned()),
+        Page::Figure(_) => Format::of(Path::new(&path)).err().map(|error| error.to_string()),
+    };
+    if let Some(reason) = refused {
+        tell(model, Level::Error, reason);
+        return Vec::new();
     }
-    tell(model, Level::Error, format!("the file must end in .{ending}"));
-    Vec::new()
+    vec![file(Job::Write { page, path, replace })]
 }
 
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
@@ -103,9 +106,9 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             tell(model, Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
         }
-        Done::TextExists(text, path) => {
+        Done::PageExists(page, path) => {
             tell(model, Level::Error, format!("{path} exists: not exported"));
-            model.question = Some(Question::ReplaceText(text, path));
+            model.question = Some(Question::ReplacePage(page, path));
         }
         Done::Failed(reason) => tell(model, Level::Error, reason),
     }

@@ -2,12 +2,13 @@
 
 use super::App;
 use crate::explorer::Effect;
-use crate::explorer::files::Document;
+use crate::explorer::files::{Document, Page};
 use crate::explorer::model::Level;
 use crate::figure::Subject;
 use crate::plot::{Chart, Width, svg};
 use crate::preset::Source;
 use crate::preset::text::sanitize;
+use crate::print::Format;
 use crate::tui::copy::{self, Content};
 use crate::tui::overlay::{Action, Item, Overlay as Over, Prompt, Purpose};
 
@@ -58,12 +59,17 @@ impl App {
         });
         let text = copy::text(self, Content::Screen);
         let file = format!("{}-screen.txt", sanitize(&base, 60));
-        let prompt = Prompt::new("Export the screen to", "a file ending in .txt", file, Purpose::Text(text));
+        let prompt = Prompt::new(
+            "Export the screen to",
+            "a file ending in .txt",
+            file,
+            Purpose::Page(Page::Screen(text)),
+        );
         let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
         let figure = self.figure().map(|svg| {
             let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
-            let note = "a file ending in .svg; `pulloff plot` draws the same as PNG";
-            let prompt = Prompt::new("Export the figure to", note, file, Purpose::Text(svg));
+            let note = format!("a file ending in .{}", Format::ENDINGS.join(" or ."));
+            let prompt = Prompt::new("Export the figure to", &note, file, Purpose::Page(Page::Figure(svg)));
             Item::new(
                 "figure  the first view for print: zoom, pins and theory with it",
                 Action::Prompt(Box::new(prompt)),

@@ -1,0 +1,149 @@
+//! A figure as the bytes of a file: the SVG itself, its pixels, or a page of a PDF.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `tree` | the SVG read back, its letters in the bundled font (features `png`, `pdf`) |
+//! | `png` | its pixels (feature `png`) |
+//! | `pdf` | a page as large as the figure (feature `pdf`) |
+//!
+//! What a build lacks is refused by name: a figure is always there as SVG.
+
+#[cfg(feature = "pdf")]
+mod pdf;
+#[cfg(feature = "png")]
+mod png;
+#[cfg(feature = "png")]
+mod tree;
+
+use crate::preset::text::show_path;
+use std::path::Path;
+
+/// The format of a figure's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Lines and letters as text.
+    Svg,
+    /// Pixels, 384 an inch.
+    Png,
+    /// A page, its letters in a font of its own.
+    Pdf,
+}
+
+/// Why a figure has no file of this name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    /// The ending says nothing.
+    #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
+    Ending(String),
+    /// This build was made without it.
+    #[error("this build writes no {name} (feature `{feature}` is off); use .svg")]
+    Missing {
+        /// The format.
+        name: &'static str,
+        /// What it is part of.
+        feature: &'static str,
+    },
+}
+
+/// Why a figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// The document could not be read back.
+    #[error("the figure cannot be read back: {0}")]
+    Document(String),
+    /// It has no area, or too large a one.
+    #[error("a figure of {0} x {1} cannot be drawn")]
+    Size(f32, f32),
+    /// The file format refused it.
+    #[error("the figure cannot be written as {format}: {cause}")]
+    Refused {
+        /// The format.
+        format: &'static str,
+        /// What it says.
+        cause: String,
+    },
+}
+
+impl Format {
+    /// The endings of the files that this build writes.
+    pub const ENDINGS: &'static [&'static str] = if cfg!(feature = "pdf") {
+        &["svg", "png", "pdf"]
+    } else if cfg!(feature = "png") {
+        &["svg", "png"]
+    } else {
+        &["svg"]
+    };
+
+    /// The format that the ending of `path` names.
+    ///
+    /// # Errors
+    /// It names none, or one that this build lacks.
+    pub fn of(path: &Path) -> Result<Self, FormatError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        let missing = |name, feature| Err(FormatError::Missing { name, feature });
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") if cfg!(feature = "png") => Ok(Self::Png),
+            Some("png") => missing("PNG", "png"),
+            Some("pdf") if cfg!(feature = "pdf") => Ok(Self::Pdf),
+            Some("pdf") => missing("PDF", "pdf"),
+            _ => Err(FormatError::Ending(show_path(path))),
+        }
+    }
+
+    /// The file of `svg`, a figure of this program.
+    ///
+    /// # Errors
+    /// [`DrawError`] when the document is no figure of this program, or this build lacks the format.
+    pub fn bytes(self, svg: &str) -> Result<Vec<u8>, DrawError> {
+        match self {
+            Self::Svg => Ok(svg.as_bytes().to_vec()),
+            #[cfg(feature = "png")]
+            Self::Png => png::png(&tree::tree(svg)?),
+            #[cfg(feature = "pdf")]
+            Self::Pdf => pdf::pdf(&tree::tree(svg)?),
+            #[cfg(not(all(feature = "png", feature = "pdf")))]
+            lacking => {
+                let refused = |format| DrawError::Refused { format, cause: "this build lacks it".to_owned() };
+                Err(refused(if lacking == Self::Png { "PNG" } else { "PDF" }))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_format_is_named_by_the_ending() {
+        assert_eq!(Format::of(Path::new("a/b.SVG")), Ok(Format::Svg));
+        for (name, feature, has) in
+            [("png", "png", cfg!(feature = "png")), ("pdf", "pdf", cfg!(feature = "pdf"))]
+        {
+            let format = Format::of(Path::new("figure").with_extension(name).as_path());
+            match format {
+                Ok(_) => assert!(has),
+                Err(error) => {
+                    let words =
+                        format!("this build writes no {} (feature `{feature}` is off)", name.to_uppercase());
+                    assert!(!has && error.to_string().starts_with(&words), "{error}");
+                }
+            }
+        }
+        for path in ["a.gif", "svg", "a\u{1b}"] {
+            let said = Format::of(Path::new(path)).unwrap_err().to_string();
+            assert!(said.ends_with("ends in .svg, .png or .pdf") && !said.contains('\u{1b}'), "{said}");
+        }
+    }
+
+    #[test]
+    #[cfg(feature = "png")]
+    fn what_is_no_figure_is_refused() {
+        for text in ["", "<svg", "<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>"] {
+            assert!(Format::Png.bytes(text).is_err(), "{text}");
+        }
+        let wide = "<svg xmlns='http://www.w3.org/2000/svg' width='9000mm' height='5mm'/>";
+        assert!(Format::Png.bytes(wide).unwrap_err().to_string().contains("cannot be drawn"));
+    }
+}

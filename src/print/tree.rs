@@ -1,0 +1,19 @@
+//! The document read back, its letters in the bundled font.
+
+use super::DrawError;
+use resvg::usvg;
+use std::sync::Arc;
+
+/// `svg` as what is drawn of it.
+pub(super) fn tree(svg: &str) -> Result<usvg::Tree, DrawError> {
+    let mut fonts = usvg::fontdb::Database::new();
+    // The machine may have no font at all, and letters without one vanish without a word.
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.load_font_data(dejavu::sans::bold().to_vec());
+    let options = usvg::Options {
+        fontdb: Arc::new(fonts),
+        font_family: "DejaVu Sans".to_owned(),
+        ..usvg::Options::default()
+    };
+    usvg::Tree::from_str(svg, &options).map_err(|error| DrawError::Document(error.to_string()))
+}
