@@ -51,7 +51,7 @@ fn screen() -> String {
     let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
     terminal
         .draw(|frame| {
-            view::draw(frame, &app);
+            view::draw(frame, &app, &mut view::Pictures::default());
         })
         .unwrap();
     let buffer = terminal.backend().buffer();

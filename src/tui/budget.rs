@@ -4,6 +4,7 @@ use super::app::App;
 use super::converse;
 use super::terminal::{Display, Inbox, Incoming, Sink};
 use super::theme::{Charts, Palette, Theme};
+use super::view::Pictures;
 use crate::explorer::{Effect, Inline, Reply};
 use crate::preset::Store;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -57,6 +58,7 @@ impl Sink for Counter {
 struct Session {
     app: App,
     driver: Inline,
+    pictures: Pictures,
     _folder: tempfile::TempDir,
 }
 
@@ -66,7 +68,7 @@ impl Session {
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
         let (app, effects) = App::new(loaded, Theme::new(Palette::Dark, Charts::Braille, false));
-        let mut session = Self { app, driver: Inline::new(store), _folder: folder };
+        let mut session = Self { app, driver: Inline::new(store), pictures: Pictures::default(), _folder: folder };
         session.settle(effects);
         session
     }
@@ -82,7 +84,7 @@ impl Session {
         let (mut views, mut screen) = (0, self.app.screen);
         display.draw(|frame| {
             screen = frame.area();
-            views = super::view::draw(frame, &self.app);
+            views = super::view::draw(frame, &self.app, &mut self.pictures);
         });
         let effects = self.app.make_room(screen, views);
         self.settle(effects);

@@ -120,7 +120,7 @@ fn drawn(app: &App, content: Content) -> String {
     let size = app.screen;
     let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
     let Ok(_) = terminal.draw(|frame| {
-        view::draw(frame, app);
+        view::draw(frame, app, &mut view::Pictures::default());
     });
     let buffer = terminal.backend().buffer();
     let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));

@@ -48,6 +48,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 use terminal::{Display, Inbox, Incoming, Sink};
 use theme::{Palette, Theme};
+use view::Pictures;
 
 /// What a person has set, ready to be used.
 #[derive(Debug, Clone, Default)]
@@ -173,6 +174,7 @@ fn converse<S: Sink>(
     submit: &dyn Fn(Vec<Effect>),
     keep: &mut dyn FnMut(&App),
 ) {
+    let mut pictures = Pictures::default();
     let mut dirty = true;
     while !app.model.quit {
         // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
@@ -207,7 +209,7 @@ fn converse<S: Sink>(
             let (mut views, mut screen) = (0, app.screen);
             display.draw(|frame| {
                 screen = frame.area();
-                views = view::draw(frame, app);
+                views = view::draw(frame, app, &mut pictures);
             });
             dirty = false;
             submit(app.make_room(screen, views));

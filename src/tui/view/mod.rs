@@ -6,6 +6,7 @@ pub mod header;
 pub mod help;
 pub mod legend;
 pub mod overlays;
+pub mod pictures;
 pub mod problem;
 pub mod status;
 pub mod walker;
@@ -21,11 +22,14 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders};
 
+pub use pictures::Pictures;
+use pictures::What;
+
 /// Lines of inadmissible parts that get room of their own: they come late, and more would move the charts far.
 const PARTS: usize = 3;
 
-/// Draws the whole screen, and says for how many views it has room.
-pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
+/// Draws the whole screen, as far as it can from the pictures of the last one, and says for how many views it has room.
+pub fn draw(frame: &mut Frame<'_>, app: &App, pictures: &mut Pictures) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
     let Some(regions) = places(app, area) else {
@@ -38,15 +42,9 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     if let Some(area) = regions.problem {
         problem::draw(frame, area, app);
     }
-    if let Some(area) = regions.walker {
-        walker::draw(frame, area, app);
-    }
-    for (i, (view, area)) in regions.charts.iter().enumerate() {
-        charts::draw(frame, *area, app, *view, i == 0);
-    }
-    if let Some(area) = regions.events {
-        events::draw(frame, area, app);
-    }
+    pictures.begin(app);
+    draw_kept(frame, app, &regions, pictures);
+    pictures.end();
     status::draw(frame, regions.status, regions.footer, app);
     match &app.overlay {
         None => {}
@@ -54,6 +52,29 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
     regions.charts.len()
+}
+
+/// Draws the panels that most keys do not change.
+fn draw_kept(frame: &mut Frame<'_>, app: &App, regions: &Regions, pictures: &mut Pictures) {
+    let model = &app.model;
+    if let Some(area) = regions.walker {
+        let selected = is_selected(app, Panel::Walker);
+        pictures.show(frame, area, What::Walker, selected, |frame| walker::draw(frame, area, app));
+    }
+    for (i, (view, area)) in regions.charts.iter().enumerate() {
+        let is_first = i == 0;
+        let (window, cross) = (model.window(*view), model.cross.filter(|_| is_first));
+        let selected = is_first && is_selected(app, Panel::Charts);
+        let what = What::Chart { view: *view, window, cross, is_first };
+        pictures.show(frame, *area, what, selected, |frame| {
+            charts::draw(frame, *area, app, *view, is_first);
+        });
+    }
+    if let Some(area) = regions.events {
+        let selected = is_selected(app, Panel::Events);
+        let what = What::Events(model.event);
+        pictures.show(frame, area, what, selected, |frame| events::draw(frame, area, app));
+    }
 }
 
 /// Where the regions of a screen of this size are.

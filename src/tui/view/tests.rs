@@ -1,9 +1,7 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
+use super::Pictures;
 use crate::explorer::{Command, Id, Inline, Panel, View, update};
-mod looks;
-mod reach;
-
 use crate::preset::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
@@ -12,8 +10,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
+use std::cell::RefCell;
 
 mod line;
+mod looks;
+mod reach;
 
 /// Dark, and in ASCII.
 const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, ascii: true };
@@ -22,6 +23,8 @@ const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, asci
 struct Screen {
     app: App,
     driver: Inline,
+    /// Of the last frame, whatever its size.
+    pictures: RefCell<Pictures>,
     folder: tempfile::TempDir,
 }
 
@@ -31,7 +34,7 @@ impl Screen {
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
         let (app, effects) = App::new(loaded, Theme::default());
-        (Self { app, driver: Inline::new(store), folder }, effects)
+        (Self { app, driver: Inline::new(store), pictures: RefCell::default(), folder }, effects)
     }
 
     fn new(preset: &str) -> Self {
@@ -65,14 +68,20 @@ impl Screen {
         self
     }
 
+    /// The screen; from the pictures of the last one it is the same as drawn from nothing.
     fn draw(&self, width: u16, height: u16) -> Buffer {
-        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-        terminal
-            .draw(|frame| {
-                super::draw(frame, &self.app);
-            })
-            .unwrap();
-        terminal.backend().buffer().clone()
+        let draw = |pictures: &mut Pictures| {
+            let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+            terminal
+                .draw(|frame| {
+                    super::draw(frame, &self.app, pictures);
+                })
+                .unwrap();
+            terminal.backend().buffer().clone()
+        };
+        let anew = draw(&mut Pictures::default());
+        assert!(draw(&mut self.pictures.borrow_mut()) == anew, "a kept picture is of another state: {anew:?}");
+        anew
     }
 
     fn text(&self, width: u16, height: u16) -> String {
