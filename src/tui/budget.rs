@@ -13,8 +13,9 @@ use std::io;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// A terminal of 120x40 that counts, and tells of each frame; with a gate it takes each only when let.
+/// A terminal that counts, and tells of each frame; with a gate it takes each only when let.
 struct Counter {
+    size: (u16, u16),
     frames: Mutex<Vec<usize>>,
     told: Option<Sender<()>>,
     gate: Option<Mutex<Receiver<()>>>,
@@ -22,8 +23,8 @@ struct Counter {
 
 impl Counter {
     /// It lives as long as the test program, as a terminal does.
-    fn leak(told: Option<Sender<()>>, gate: Option<Receiver<()>>) -> &'static Self {
-        Box::leak(Box::new(Self { frames: Mutex::default(), told, gate: gate.map(Mutex::new) }))
+    fn leak(size: (u16, u16), told: Option<Sender<()>>, gate: Option<Receiver<()>>) -> &'static Self {
+        Box::leak(Box::new(Self { size, frames: Mutex::default(), told, gate: gate.map(Mutex::new) }))
     }
 
     /// The bytes of each frame since the last look.
@@ -50,7 +51,7 @@ impl Sink for Counter {
     }
 
     fn size(&self) -> io::Result<(u16, u16)> {
-        Ok((120, 40))
+        Ok(self.size)
     }
 }
 
@@ -63,12 +64,13 @@ struct Session {
 }
 
 impl Session {
-    fn new() -> Self {
+    fn new(preset: &str, theme: Theme) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::at(folder.path(), &[]);
-        let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
-        let (app, effects) = App::new(loaded, Theme::new(Palette::Dark, Charts::Braille, false));
-        let mut session = Self { app, driver: Inline::new(store), pictures: Pictures::default(), _folder: folder };
+        let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
+        let (app, effects) = App::new(loaded, theme);
+        let mut session =
+            Self { app, driver: Inline::new(store), pictures: Pictures::default(), _folder: folder };
         session.settle(effects);
         session
     }
@@ -90,45 +92,104 @@ impl Session {
         self.settle(effects);
     }
 
+    /// Drawn until the views have what they need.
+    fn draw_all(&mut self, display: &mut Display<Counter>) {
+        for _ in 0..3 {
+            self.draw(display);
+        }
+    }
+
     /// The bytes that the terminal gets for a key.
-    fn cost(&mut self, display: &mut Display<Counter>, counter: &Counter, key: KeyCode) -> usize {
+    fn cost(&mut self, display: &mut Display<Counter>, counter: &Counter, key: char) -> usize {
         counter.take();
-        let effects = self.app.key(key.into());
+        let effects = self.app.key(KeyCode::Char(key).into());
         self.settle(effects);
         self.draw(display);
         counter.take().iter().sum()
     }
 }
 
-#[test]
-fn idle_costs_nothing_a_move_little_and_a_step_one_and_a_half_kilobytes() {
-    let counter = Counter::leak(None, None);
+const THEMES: [Theme; 2] = [
+    Theme { palette: Palette::Dark, charts: Charts::Braille, ascii: false },
+    Theme { palette: Palette::Dark, charts: Charts::Ascii, ascii: true },
+];
+
+/// A walk over limit points and jumps: many steps, and each key that moves the walker.
+const WALK: &str = "      n x          n x       n x     b        b  u u 0    ca        n x      ";
+
+/// The costliest step of a walk, shown first in the view that so many keys lead to.
+fn costliest_step(preset: &str, size: (u16, u16), theme: Theme, views: usize) -> usize {
+    let counter = Counter::leak(size, None, None);
     let mut display = Display::new(counter).unwrap();
-    let mut session = Session::new();
-    // Drawn until the views have what they need.
-    for _ in 0..3 {
+    let mut session = Session::new(preset, theme);
+    session.draw_all(&mut display);
+    for _ in 0..views {
+        session.cost(&mut display, counter, 't');
+        session.draw_all(&mut display);
+    }
+    let costs: Vec<_> = WALK.chars().map(|key| (key, session.cost(&mut display, counter, key))).collect();
+    let steps = costs.iter().filter(|(key, _)| *key == ' ').map(|(_, bytes)| *bytes);
+    steps.max().unwrap()
+}
+
+#[test]
+fn idle_costs_nothing_and_a_move_little() {
+    // On small screens most parameters make room for the groups when one of those is selected.
+    for (size, theme, most) in [
+        ((80, 24), THEMES[0], 350),
+        ((100, 30), THEMES[0], 350),
+        ((120, 40), THEMES[0], 300),
+        ((120, 40), THEMES[1], 300),
+    ] {
+        let counter = Counter::leak(size, None, None);
+        let mut display = Display::new(counter).unwrap();
+        let mut session = Session::new("wavy-sphere", theme);
+        session.draw_all(&mut display);
+        counter.take();
         session.draw(&mut display);
+        assert_eq!(counter.take(), [0], "an unchanged screen");
+        let rows = session.app.model.knobs().len();
+        let keys = std::iter::repeat_n('j', rows).chain(std::iter::repeat_n('k', rows));
+        let costs: Vec<usize> = keys.map(|key| session.cost(&mut display, counter, key)).collect();
+        assert!(costs.iter().all(|bytes| *bytes < most), "{costs:?} at {size:?}");
+        let over = costs.iter().filter(|bytes| **bytes >= 300).count();
+        assert!(over <= 2, "{costs:?} at {size:?}");
     }
-    counter.take();
-    session.draw(&mut display);
-    assert_eq!(counter.take(), [0], "an unchanged screen");
-    for key in ['j', 'j', 'k', 'j', 'k'] {
-        let bytes = session.cost(&mut display, counter, KeyCode::Char(key));
-        assert!(bytes > 0 && bytes < 300, "{bytes} bytes for {key}");
+}
+
+#[test]
+fn a_step_costs_less_than_one_and_a_half_kilobytes() {
+    // Every view of a curve with jumps: the curves, the pressure, the gap, the potential, the unloading.
+    for views in [0, 1, 2, 3, 4, 5, 6] {
+        for theme in THEMES {
+            let bytes = costliest_step("wavy-sphere", (120, 40), theme, views);
+            assert!(bytes < 1500, "{bytes} bytes in view {views}, {theme:?}");
+        }
     }
-    let steps: Vec<_> = (0..40).map(|_| session.cost(&mut display, counter, KeyCode::Char(' '))).collect();
-    let mean = steps.iter().sum::<usize>() / steps.len();
-    assert!(mean > 0 && mean < 1500, "{mean} bytes for a step: {steps:?}");
-    // One that passes an event changes the list below too.
-    assert!(steps.iter().all(|&bytes| bytes < 3000), "{steps:?}");
+    for (preset, size, views) in [
+        ("wavy-sphere", (80, 24), 3),
+        ("wavy-sphere", (160, 44), 3),
+        ("fig-1-hertz", (120, 40), 3),
+        ("fig-3-jkr", (120, 40), 0),
+        ("fig-10-force", (120, 40), 0),
+    ] {
+        let bytes = costliest_step(preset, size, THEMES[0], views);
+        assert!(bytes < 1500, "{bytes} bytes for {preset} at {size:?}");
+    }
+}
+
+#[test]
+fn four_charts_of_a_large_screen_cost_no_more_than_their_number() {
+    let [braille, ascii] = THEMES.map(|theme| costliest_step("wavy-sphere", (200, 60), theme, 0));
+    assert!(braille < 2500 && ascii < 1500, "{braille} and {ascii} bytes");
 }
 
 #[test]
 fn keys_that_come_while_a_frame_is_written_make_one_frame() {
     let (told, frame_begun) = channel();
     let (let_go, gate) = channel();
-    let counter = Counter::leak(Some(told), Some(gate));
-    let mut session = Session::new();
+    let counter = Counter::leak((120, 40), Some(told), Some(gate));
+    let mut session = Session::new("wavy-sphere", THEMES[0]);
     let inbox = Inbox::<Reply>::new();
     let typist = inbox.typist();
     let driving = std::thread::spawn(move || {

@@ -34,7 +34,7 @@ mod budget;
 pub use terminal::refuse_reason;
 
 use crate::explorer::archive::{Archive, Held, Keeper, ago};
-use crate::explorer::model::Level;
+use crate::explorer::model::{Level, Model};
 use crate::explorer::session::{Ended, Snapshot};
 use crate::explorer::{Effect, Reply, Workers};
 use crate::fault;
@@ -45,9 +45,9 @@ use keymap::Keymap;
 use look::Look;
 use std::io::{self, Write};
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use terminal::{Display, Inbox, Incoming, Sink};
-use theme::{Palette, Theme};
+use theme::Theme;
 use view::Pictures;
 
 /// What a person has set, ready to be used.
@@ -120,8 +120,6 @@ pub fn run(
     look: Look,
     settings: Settings,
 ) -> io::Result<ExitCode> {
-    // A theme asked for by name holds against NO_COLOR, which the backend would obey by itself.
-    crossterm::style::force_color_output(look.theme != Palette::Mono);
     let keeper = Keeper::new(archive);
     let last = keeper.clone();
     // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
@@ -163,6 +161,16 @@ pub fn run(
     Ok(ExitCode::SUCCESS)
 }
 
+/// A step is made sooner than this: a frame that says no more than that it has begun is spared the line, and the step
+/// does not wait for the frame after it.
+const GRACE: Duration = Duration::from_millis(30);
+
+/// Whether a walk is among these, none of whose states has come.
+fn is_walk_begun(model: &Model, effects: &[Effect]) -> bool {
+    effects.iter().any(|effect| matches!(effect, Effect::Walk(_)))
+        && model.walking.is_some_and(|walking| walking.made == 0)
+}
+
 /// Keys and replies in, frames out, until the person quits.
 ///
 /// All that has happened is taken in before a frame, and a frame is written before the next thing is looked at: a held
@@ -176,9 +184,12 @@ fn converse<S: Sink>(
 ) {
     let mut pictures = Pictures::default();
     let mut dirty = true;
+    // Until when the first change since the last frame may wait for the step that it began.
+    let mut grace = None;
     while !app.model.quit {
         // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
-        let first = inbox.next(dirty.then(|| display.due()));
+        let due = [Some(display.due()), grace].into_iter().flatten().max();
+        let first = inbox.next(due.filter(|_| dirty));
         for incoming in first.into_iter().chain(inbox.pending()) {
             let effects = match incoming {
                 Incoming::Key(key) if keymap::is_suspend(key) => {
@@ -197,21 +208,25 @@ fn converse<S: Sink>(
                 }
                 Incoming::App(reply) => app.reply(reply),
             };
+            if !dirty && is_walk_begun(&app.model, &effects) {
+                grace = Some(Instant::now() + GRACE);
+            }
             submit(effects);
             dirty = true;
         }
+        grace = grace.filter(|_| app.model.walking.is_some_and(|walking| walking.made == 0));
         keep(app);
         display.take_mouse(app.mouse);
         if let Some(text) = app.clipboard.take() {
             display.copy(&text);
         }
-        if dirty && display.is_due() {
+        if dirty && display.is_due() && grace.is_none_or(|until| until <= Instant::now()) {
             let (mut views, mut screen) = (0, app.screen);
             display.draw(|frame| {
                 screen = frame.area();
                 views = view::draw(frame, app, &mut pictures);
             });
-            dirty = false;
+            (dirty, grace) = (false, None);
             submit(app.make_room(screen, views));
         }
     }

@@ -11,6 +11,7 @@
 //! | `hangup` | notices that the terminal has gone away |
 //! | `input` | the [`Inbox`]: keys, pastes, sizes and the program's own messages in one queue |
 //! | `screen` | the ratatui backend: a frame is one write, nothing is asked of the terminal |
+//! | `pen` | cells as bytes, as few as a terminal needs |
 //! | `display` | [`Display`]: frames at a pace the line can carry |
 //!
 //! # Threads
@@ -57,6 +58,7 @@ mod guard;
 mod hangup;
 mod input;
 mod line;
+mod pen;
 mod refuse;
 mod report;
 mod screen;

@@ -9,13 +9,21 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crossterm::{
+    Command,
+    cursor::MoveTo,
+    terminal::{self, Clear},
+};
 use ratatui::{
-    backend::{Backend, ClearType, CrosstermBackend, WindowSize},
+    backend::{Backend, ClearType, WindowSize},
     buffer::Cell,
     layout::{Position, Size},
 };
 
-use super::end::{HUNG_UP, end};
+use super::{
+    end::{HUNG_UP, end},
+    pen::Pen,
+};
 
 /// Where frames go.
 pub trait Sink {
@@ -66,13 +74,13 @@ impl<S: Sink> Screen<S> {
         self.last
     }
 
-    /// Collects what the usual backend would write.
-    fn collect(
-        &mut self,
-        write: impl FnOnce(&mut CrosstermBackend<&mut Vec<u8>>) -> io::Result<()>,
-    ) -> io::Result<()> {
+    /// Collects a command.
+    fn collect(&mut self, command: impl Command) {
         self.cursor_at = None;
-        write(&mut CrosstermBackend::new(&mut self.frame))
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = command.write_ansi(&mut text);
+        self.frame.extend_from_slice(text.as_bytes());
     }
 
     fn show(&mut self, shown: bool) {
@@ -93,7 +101,13 @@ impl<S: Sink> Backend for Screen<S> {
         if content.peek().is_none() {
             return Ok(());
         }
-        self.collect(|backend| backend.draw(content))
+        self.cursor_at = None;
+        let mut pen = Pen::new(&mut self.frame);
+        for (x, y, cell) in content {
+            pen.write(Position::new(x, y), cell);
+        }
+        pen.end();
+        Ok(())
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {
@@ -113,7 +127,7 @@ impl<S: Sink> Backend for Screen<S> {
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
         let position = position.into();
         if self.cursor_at != Some(position) {
-            self.collect(|backend| backend.set_cursor_position(position))?;
+            self.collect(MoveTo(position.x, position.y));
             self.cursor_at = Some(position);
         }
         Ok(())
@@ -126,7 +140,14 @@ impl<S: Sink> Backend for Screen<S> {
     fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
         // After a stop the modes were taken anew, and nothing is known of the cursor.
         self.cursor_shown = None;
-        self.collect(|backend| backend.clear_region(clear_type))
+        self.collect(Clear(match clear_type {
+            ClearType::All => terminal::ClearType::All,
+            ClearType::AfterCursor => terminal::ClearType::FromCursorDown,
+            ClearType::BeforeCursor => terminal::ClearType::FromCursorUp,
+            ClearType::CurrentLine => terminal::ClearType::CurrentLine,
+            ClearType::UntilNewLine => terminal::ClearType::UntilNewLine,
+        }));
+        Ok(())
     }
 
     fn size(&self) -> io::Result<Size> {
