@@ -119,7 +119,7 @@ fn an_outward_jump_is_announced_as_an_inward_one_is() {
     let mut session = Session::new("wavy-sphere");
     session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::Reverse, Id::NextLimit]);
     let status = session.status();
-    assert!(status.contains("x jumps to crest") && status.contains("(loses "), "{status}");
+    assert!(status.contains("jump jumps to crest") && status.contains("(loses "), "{status}");
     assert!(status.contains("goes on unstable"), "{status}");
     let ahead = session.model.history.current().unwrap().ahead.unwrap();
     session.does(Id::Jump);
@@ -194,7 +194,7 @@ fn a_curve_can_be_given_up_and_undo_takes_the_values_back() {
     assert!(Arc::ptr_eq(&curve(&session), &shown));
     session.does(Id::Axes);
     assert_eq!(session.model.axes, Axes::Raw);
-    assert!(session.status().contains("u takes them back"), "{}", session.status());
+    assert!(session.status().contains("undo takes them back"), "{}", session.status());
     session.does(Id::Undo);
     assert!(!session.model.is_unsaved());
     assert!(Arc::ptr_eq(&curve(&session), &shown));

@@ -18,7 +18,7 @@ pub struct Flags {
     /// Only ASCII characters, as in a locale without UTF-8
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
     ascii: Option<bool>,
-    /// Take the mouse from the start; m takes it and gives it back
+    /// Take the mouse from the start; the command mouse takes it and gives it back
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
     mouse: Option<bool>,
 }

@@ -1,6 +1,7 @@
 //! `pulloff run`: a script of the explorer's commands, without a terminal.
 
 use super::{Failure, Problem, store};
+use crate::explorer::command::by_name;
 use crate::explorer::script::{self, Line, Permission, play};
 use crate::explorer::{Inline, Model, open};
 use crate::preset::file::{FileError, read_text};
@@ -86,7 +87,7 @@ fn source(path: &Path) -> Result<(String, String), Failure> {
 /// What became of a line, in one line.
 fn account(line: &Line, model: &Model) {
     let command = script::line(&line.command).unwrap_or_default();
-    let text = format!("{}: {command}: {}", line.number, model.status().1);
+    let text = format!("{}: {command}: {}", line.number, by_name(&model.status().1));
     // Nobody may be listening.
     let _ = writeln!(io::stderr(), "{}", sanitize(&text, ACCOUNT));
 }

@@ -3,8 +3,10 @@
 //! Dispatcher, footer, help screen and the manual's key table are read from it; the keymap of the terminal gives
 //! each id its keys.
 
+mod named;
 mod table;
 
+pub use named::{by_name, spelled};
 pub use table::{ROWS, row_of};
 
 use super::model::{Model, Panel};

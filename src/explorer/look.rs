@@ -1,5 +1,6 @@
 //! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
 
+use super::command::Id;
 use super::driver::Effect;
 use super::model::{Level, Model, Panel};
 use super::profile::{Ask, Inside};
@@ -33,7 +34,9 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
     match model.window(view).zoomed(times, about) {
         Some(window) => model.windows[view as usize] = window,
         None if closer => tell(model, Level::Info, "no closer: there is nothing more to tell apart"),
-        None => tell(model, Level::Info, "no further away: f shows the whole chart"),
+        None => {
+            tell(model, Level::Info, format!("no further away: {} shows the whole chart", Id::Fit.named()));
+        }
     }
 }
 
@@ -81,7 +84,7 @@ pub(super) fn pin(model: &mut Model) {
             tell(
                 model,
                 Level::Info,
-                format!("pinned as {number}: change a value to compare; P lists the pins"),
+                format!("pinned as {number}: change a value to compare; {} lists the pins", Id::Pins.named()),
             );
         }
         Err(reason) => tell(model, Level::Error, reason),

@@ -407,7 +407,8 @@ impl Model {
         }
     }
 
-    /// The status line: the message, or what the state is and which key is next.
+    /// The status line: the message, or what the state is and which command is next, which whoever shows it
+    /// [spells](super::command::spelled).
     pub fn status(&self) -> (Level, String) {
         self.message.clone().unwrap_or_else(|| (Level::Info, super::update::hint(self)))
     }

@@ -3,6 +3,7 @@
 //! The control is one knob: the stiffness k of the loading device, with force control (k → 0) and displacement control
 //! (k → ∞) as its ends.
 
+use super::command::Id;
 use crate::contact::Control;
 use crate::preset::schema::Kind;
 use crate::preset::{Parameter, Preset, Value};
@@ -33,7 +34,7 @@ pub fn nudge(
     let mut changed = preset.clone();
     let value = match (row.kind, preset.get(&row.key)) {
         (_, None) => {
-            return Err(format!("{} follows from other values; Enter types one", row.label));
+            return Err(format!("{} follows from other values; {} types one", row.label, Id::Edit.named()));
         }
         (
             Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
@@ -41,8 +42,9 @@ pub fn nudge(
         ) => {
             if x == 0.0 {
                 return Err(format!(
-                    "{} is 0 and has no scale to nudge it by; Enter types a value",
-                    row.label
+                    "{} is 0 and has no scale to nudge it by; {} types a value",
+                    row.label,
+                    Id::Edit.named()
                 ));
             }
             Value::Number(tidy(if up == (x > 0.0) { x * (1.0 + share) } else { x / (1.0 + share) }))
@@ -54,7 +56,11 @@ pub fn nudge(
             Value::Integer(if up { n + by } else { n - by })
         }
         (Kind::Count { .. }, Some(_)) => {
-            return Err(format!("{} is chosen by the program; Enter types a number", row.label));
+            return Err(format!(
+                "{} is chosen by the program; {} types a number",
+                row.label,
+                Id::Edit.named()
+            ));
         }
         (Kind::Choice(words), Some(Value::Text(word))) => {
             let at = words.iter().position(|w| *w == word).unwrap_or(0);
@@ -64,7 +70,7 @@ pub fn nudge(
         (Kind::Control, Some(Value::Control(control))) => {
             Value::Control(stiffened(control, up, amount, contact)?)
         }
-        _ => return Err(format!("{} is a text; Enter types it", row.label)),
+        _ => return Err(format!("{} is a text; {} types it", row.label, Id::Edit.named())),
     };
     changed.set(&row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)

@@ -2,6 +2,7 @@
 //!
 //! A pin is named by the values in which it differs from the preset as it is now, so its name changes with the preset.
 
+use super::command::Id;
 use super::curve::CurveData;
 use crate::preset::{Preset, Row, Value};
 use crate::report::number::short;
@@ -89,7 +90,10 @@ impl Pins {
         }
         let free = (1..=MOST).find(|number| !self.numbers().any(|taken| taken == *number));
         let Some(number) = free else {
-            return Err(format!("{MOST} curves are pinned, which is the most: P takes one away"));
+            return Err(format!(
+                "{MOST} curves are pinned, which is the most: {} takes one away",
+                Id::Pins.named()
+            ));
         };
         self.shown.push(Pin { number, curve: Arc::clone(curve) });
         self.shown.sort_by_key(|pin| pin.number);
@@ -157,6 +161,7 @@ pub fn name(pinned: &Preset, now: &Preset) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::explorer::command::by_name;
     use crate::preset::{read, shipped};
 
     fn preset(changes: &[(&str, &str)]) -> Preset {
@@ -210,7 +215,8 @@ mod tests {
         {
             assert_eq!(pins.add(&curve(amplitude)), Ok(number));
         }
-        assert!(pins.add(&curve("0.0016")).unwrap_err().contains("P takes one away"));
+        let refused = pins.add(&curve("0.0016")).unwrap_err();
+        assert!(by_name(&refused).contains("pins takes one away"), "{refused}");
         assert!(pins.remove(Some(3)) && !pins.remove(Some(3)));
         assert_eq!(pins.add(&curve("0.0016")), Ok(3));
         assert!(pins.remove(None) && pins.is_empty() && !pins.remove(None));

@@ -24,7 +24,7 @@ use super::nudge::Amount;
 use super::view::View;
 use super::walk::Action;
 use crate::preset::text::{greek, show_name};
-use crate::preset::{Loaded, Overwrite, Value, groups};
+use crate::preset::{Loaded, Overwrite, Row, Value, groups};
 use files::{browse, export, export_page, file, file_done, save, save_back};
 pub(in crate::explorer) use values::want_curve;
 use values::{
@@ -266,8 +266,12 @@ fn move_selection(model: &mut Model, down: bool) {
     };
     match model.panel {
         Panel::Problem => {
-            model.parameter = moved(model.parameter, model.knobs().len());
-            if let Some(text) = group_effect(model).or_else(|| long_text(model)) {
+            let knobs = model.knobs();
+            model.parameter = moved(model.parameter, knobs.len());
+            let selected = knobs.into_iter().nth(model.parameter);
+            if let Some(text) = selected
+                .and_then(|(row, value)| group_effect(&row).or_else(|| long_text(&row, value.as_ref())))
+            {
                 tell(model, Level::Info, text);
             }
         }
@@ -279,22 +283,19 @@ fn move_selection(model: &mut Model, down: bool) {
     }
 }
 
-/// What the selected group changes, if it is one.
-fn group_effect(model: &Model) -> Option<String> {
-    let (row, _) = model.selected_knob()?;
+/// What a group changes, if this is one; in few words, since the list may scroll at the same time.
+fn group_effect(row: &Row) -> Option<String> {
     let [changed, held] = groups::effect(&row.key)?;
-    Some(greek(&format!("{} follows from others: to turn it changes {changed}, {held} held", row.label)))
+    Some(greek(&format!("turning it changes {changed}, {held} held")))
 }
 
-/// A selected text that is longer than its place beside the label may be, whole.
-fn long_text(model: &Model) -> Option<String> {
+/// A text that is longer than its place beside the label may be, whole.
+fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
     /// Characters that fit on every screen.
     const FITTING: usize = 11;
-    match model.selected_knob()? {
-        (row, Some(Value::Text(text))) if text.chars().count() > FITTING => {
-            Some(format!("{}: {text}", row.label))
-        }
-        (row, Some(Value::Profile(rows))) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
+    match value? {
+        Value::Text(text) if text.chars().count() > FITTING => Some(format!("{}: {text}", row.label)),
+        Value::Profile(rows) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
         _ => None,
     }
 }

@@ -345,7 +345,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
             Outcome::Done
         }
         None => Outcome::Stopped(format!(
-            "no equilibrium at this {} near the old contact radius; 0 restarts",
+            "no equilibrium at this {} near the old contact radius",
             crate::report::unload::control_name(request.control)
         )),
     }

@@ -162,7 +162,7 @@ impl App {
         if model.question.is_none()
             && let Some((_, reason)) = model.message.take_if(|(level, _)| *level == Level::Error)
         {
-            (prompt.waits, prompt.error) = (false, Some(reason));
+            (prompt.waits, prompt.error) = (false, Some(self.keymap.spelled(&reason)));
         } else {
             self.overlay = None;
         }
@@ -170,8 +170,8 @@ impl App {
 
     /// A prompt whose line was taken: it stays with the reason if that was refused, and while it waits for a file.
     fn taken(&mut self, mut prompt: Prompt, effects: Vec<Effect>) -> Vec<Effect> {
-        prompt.error =
-            self.model.message.take_if(|(level, _)| *level == Level::Error).map(|(_, reason)| reason);
+        let refused = self.model.message.take_if(|(level, _)| *level == Level::Error);
+        prompt.error = refused.map(|(_, reason)| self.keymap.spelled(&reason));
         prompt.waits =
             prompt.error.is_none() && effects.iter().any(|effect| matches!(effect, Effect::File(_)));
         if prompt.waits || prompt.error.is_some() {
@@ -277,8 +277,13 @@ impl App {
             }
             Id::CommandLine => self.ask_line(),
             Id::Quit if self.model.is_unsaved() => {
-                let question = "The preset has unsaved changes. y quits without saving, Esc stays, S saves.";
-                self.ask(question.to_owned(), Id::Quit.into());
+                let saves =
+                    self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
+                let question = format!(
+                    "The preset has unsaved changes. y quits without saving, Esc stays{}.",
+                    saves.unwrap_or_default()
+                );
+                self.ask(question, Id::Quit.into());
                 Vec::new()
             }
             Id::Save if matches!(self.model.source, Source::Shipped(_)) => self.ask_name(),
@@ -442,7 +447,7 @@ impl App {
         match key.code {
             KeyCode::Char('y') => self.run(confirm.yes),
             KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
-            KeyCode::Char('S') => self.ask_name(),
+            _ if self.keymap.command(key) == Some(Id::SaveAs) => self.ask_name(),
             _ => {
                 self.overlay = Some(Over::Confirm(confirm));
                 Vec::new()

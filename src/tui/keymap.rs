@@ -5,7 +5,7 @@
 
 use crate::config::{Config, ConfigError, Mistake};
 use crate::explorer::Id;
-use crate::explorer::command::{ROWS, row_of};
+use crate::explorer::command::{ROWS, row_of, spelled};
 use crate::preset::text::quote;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
@@ -264,6 +264,11 @@ impl Keymap {
     /// The first key of a command, or how it is typed.
     pub fn first(&self, id: Id) -> String {
         self.keys(id).first().map_or_else(|| self.typed(id), |key| key.label())
+    }
+
+    /// A sentence with the first key of each command in it.
+    pub fn spelled(&self, sentence: &str) -> String {
+        spelled(sentence, |id| self.first(id))
     }
 
     /// How a command without a key is typed.

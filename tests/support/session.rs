@@ -1,6 +1,7 @@
 //! A session of the explorer without a terminal: commands in, model out, every effect done inline.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+use pulloff::explorer::command::by_name;
 use pulloff::explorer::{Command, Id, Inline, Model, NodeKind, open, update};
 use pulloff::preset::Store;
 
@@ -39,7 +40,7 @@ impl Session {
     }
 
     pub fn status(&self) -> String {
-        self.model.status().1
+        by_name(&self.model.status().1)
     }
 
     pub fn kind(&self) -> NodeKind {

@@ -3,6 +3,7 @@
 use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
 use crate::contact::Shape;
+use crate::explorer::command::Id;
 use crate::explorer::driver::Effect;
 use crate::explorer::files::{Content, Document, Done, Job, Page, ends_in};
 use crate::explorer::journal::Journal;
@@ -14,7 +15,9 @@ use std::path::{Path, PathBuf};
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     if let Source::Shipped(_) = model.source {
-        tell(model, Level::Error, "shipped presets are read-only: S saves under a name of your own");
+        let text =
+            format!("shipped presets are read-only: {} saves under a name of your own", Id::SaveAs.named());
+        tell(model, Level::Error, text);
         return Vec::new();
     }
     let overwrite = model.fingerprint.map_or(Overwrite::Never, Overwrite::IfUnchanged);

@@ -2,10 +2,11 @@
 
 use super::files::{file, read};
 use super::walk::{begin_walk, go_on, stop, walk};
+use super::words::of_before;
 use super::{number, tell};
 use crate::contact::shapes::Rows;
 use crate::contact::{Control, Gap, Shape, Start};
-use crate::explorer::command::Assignment;
+use crate::explorer::command::{Assignment, Id};
 use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
 use crate::explorer::files::Job;
@@ -46,15 +47,18 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
     let text = match (&model.curve, control) {
         (Some(_), Some(control)) => {
             model.preset.path.control = control;
-            "cancelled: the control is as before"
+            "cancelled: the control is as before".to_owned()
         }
-        (Some(_), None) => {
-            "cancelled: the curve shown is of the values before; u takes them back, 0 computes it again"
+        (Some(_), None) => format!("cancelled: {}", of_before()),
+        (None, _) => {
+            format!(
+                "cancelled: there is no curve; {} computes it again, or change a value",
+                Id::Restart.named()
+            )
         }
-        (None, _) => "cancelled: there is no curve; 0 computes it again, or change a value",
     };
     if control.is_none() {
-        model.curve_error = Some(text.to_owned());
+        model.curve_error = Some(text.clone());
         model.is_given_up = true;
     }
     tell(model, Level::Info, text);

@@ -1,6 +1,7 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
 use super::values::{adopt_parameters, want_curve};
+use super::words::{back_or_anew, of_before};
 use super::{allowed, number, tell};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::curve::CurveData;
@@ -10,10 +11,6 @@ use crate::explorer::model::{LENGTHS, Level, Model, Walking};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use crate::quasistatic::State;
 use std::sync::Arc;
-
-/// Why nothing is walked on a curve that stayed when another was given up.
-pub(super) const OF_BEFORE: &str =
-    "the curve shown is of the values before: u takes them back, 0 computes it again";
 
 pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     if model.is_computing() {
@@ -27,7 +24,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     };
     if !model.shows_its_curve() {
         let reason = model.curve_error.clone();
-        tell(model, Level::Error, reason.unwrap_or_else(|| OF_BEFORE.to_owned()));
+        tell(model, Level::Error, reason.unwrap_or_else(of_before));
         return Vec::new();
     }
     let control = curve.case.control;
@@ -35,16 +32,13 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {
-            tell(model, Level::Error, "the bodies are apart: u goes back, 0 restarts");
+            tell(model, Level::Error, format!("the bodies are apart: {}", back_or_anew()));
             return Vec::new();
         }
         let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
         if node.is_some_and(is_stale) {
-            tell(
-                model,
-                Level::Error,
-                "this state is not solved for the values as they are: u goes back, 0 restarts",
-            );
+            let text = format!("this state is not solved for the values as they are: {}", back_or_anew());
+            tell(model, Level::Error, text);
             return Vec::new();
         }
     }
@@ -88,7 +82,8 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         Outcome::Paused => {
             // Otherwise another value ended it, whose curve is to be told of.
             if !model.is_computing() {
-                tell(model, Level::Info, "paused; Space steps, r runs on");
+                let [step, run] = [Id::Step, Id::Run].map(Id::named);
+                tell(model, Level::Info, format!("paused; {step} steps, {run} runs on"));
             }
         }
         Outcome::Ended(reason) => {
@@ -100,8 +95,10 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
             if unsolved {
                 mark_stale(model, id, &reason);
+                tell(model, Level::Error, format!("{reason}; {} restarts", Id::Restart.named()));
+            } else {
+                tell(model, Level::Error, reason);
             }
-            tell(model, Level::Error, reason);
         }
     }
     // The problem may have changed while the walk ran.

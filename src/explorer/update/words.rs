@@ -9,27 +9,52 @@ use crate::report::unload::{StateReport, control_name};
 use crate::units::Quantity;
 
 /// Why a command cannot be done now.
-pub(super) fn unavailable(model: &Model, id: Id) -> &'static str {
+pub(super) fn unavailable(model: &Model, id: Id) -> String {
     let apart = model.history.current().is_some_and(Node::is_apart);
     match id {
-        Id::Undo | Id::UndoCommand => "this is the start: there is nothing to undo",
-        Id::Redo => "there is nothing to redo",
-        Id::Branches => "the walk has one branch: u goes back, and another step begins a second",
-        Id::Jump if apart => "the bodies are apart: u goes back, 0 restarts",
-        Id::Jump => "the state is stable: the edge stays; n runs to the next limit point",
-        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
-            "select a parameter first: Tab goes to the Problem panel"
+        Id::Undo | Id::UndoCommand => "this is the start: there is nothing to undo".to_owned(),
+        Id::Redo => "there is nothing to redo".to_owned(),
+        Id::Branches => {
+            format!(
+                "the walk has one branch: {} goes back, and another step begins a second",
+                Id::Undo.named()
+            )
         }
-        Id::Fit => "the whole chart is shown",
-        Id::Pins => "no curve is pinned: p pins the one on the screen",
-        _ if model.is_computing() => "the curve is being computed",
-        _ => "there is no curve: change a value, or 0 computes it again",
+        Id::Jump if apart => format!("the bodies are apart: {}", back_or_anew()),
+        Id::Jump => {
+            format!(
+                "the state is stable: the edge stays; {} runs to the next limit point",
+                Id::NextLimit.named()
+            )
+        }
+        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
+            format!("select a parameter first: {} goes to the Problem panel", Id::NextPanel.named())
+        }
+        Id::Fit => "the whole chart is shown".to_owned(),
+        Id::Pins => format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named()),
+        _ if model.is_computing() => "the curve is being computed".to_owned(),
+        _ => format!("there is no curve: change a value, or {} computes it again", Id::Restart.named()),
     }
+}
+
+/// The ways out of a state from which no walk goes on.
+pub(super) fn back_or_anew() -> String {
+    format!("{} goes back, {} restarts", Id::Undo.named(), Id::Restart.named())
+}
+
+/// Why nothing is walked on a curve that stayed when another was given up.
+pub(super) fn of_before() -> String {
+    format!(
+        "the curve shown is of the values before; {} takes them back, {} computes it again",
+        Id::Undo.named(),
+        Id::Restart.named()
+    )
 }
 
 /// How far the curve is that takes long.
 fn progress(model: &Model) -> String {
-    model.progress.map_or_else(String::new, |progress| format!(": {}; Esc gives up", progress.text()))
+    let Some(progress) = model.progress else { return String::new() };
+    format!(": {}; {} gives up", progress.text(), Id::Cancel.named())
 }
 
 /// What the state is and which key is next, behind why the state cannot be.
@@ -66,10 +91,10 @@ fn next(model: &Model) -> String {
     };
     if let Some(Walking { made, wanted, .. }) = model.walking {
         let of = wanted.filter(|count| *count > 1).map_or_else(String::new, |count| format!(" of {count}"));
-        return format!("walking, {made}{of} states; Esc stops");
+        return format!("walking, {made}{of} states; {} stops", Id::Cancel.named());
     }
     if let NodeKind::Stale(reason) = &node.kind {
-        return format!("not solved: {reason}");
+        return format!("not solved: {reason}; {} restarts", Id::Restart.named());
     }
     if model.is_computing() {
         return format!("computing the curve for the new values{}", progress(model));
@@ -85,15 +110,14 @@ fn next(model: &Model) -> String {
         });
         return match event.kind {
             EventKind::PullOff => {
-                format!(
-                    "Pulled off: the bodies are apart{}. u goes back, 0 restarts",
-                    lost.unwrap_or_default()
-                )
+                format!("Pulled off: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
             }
             EventKind::Snap => {
                 format!(
-                    "Landed, stable again{}. n runs to the next limit point, u undoes",
-                    lost.unwrap_or_default()
+                    "Landed, stable again{}. {} runs to the next limit point, {} undoes",
+                    lost.unwrap_or_default(),
+                    Id::NextLimit.named(),
+                    Id::Undo.named()
                 )
             }
         };
@@ -103,21 +127,27 @@ fn next(model: &Model) -> String {
     if node.is_limit(control) {
         return limit_hint(model, node);
     }
+    let [limit, jump, step] = [Id::NextLimit, Id::Jump, Id::Step].map(Id::named);
     match (node.stability().under(control), &node.kind) {
         (true, NodeKind::Start) => {
-            format!("Start, stable under {held} control. n runs to a limit point, ? helps")
+            let help = Id::Help.named();
+            format!("Start, stable under {held} control. {limit} runs to a limit point, {help} helps")
         }
         (true, NodeKind::Solved) => {
-            format!("Solved again at the {held} held, stable. n runs to a limit point")
+            format!("Solved again at the {held} held, stable. {limit} runs to a limit point")
         }
-        (true, _) => format!("Stable under {held} control. Space steps {way}, n runs to a limit point"),
+        (true, _) => {
+            format!("Stable under {held} control. {step} steps {way}, {limit} runs to a limit point")
+        }
         (false, NodeKind::Start | NodeKind::Moved) => {
-            format!("This start is unstable under {held} control: x lets the edge run outward")
+            format!("This start is unstable under {held} control: {jump} lets the edge run outward")
         }
         (false, NodeKind::Solved) => {
-            format!("Solved again at the {held} held, unstable there: x lets the edge run")
+            format!("Solved again at the {held} held, unstable there: {jump} lets the edge run")
         }
-        (false, _) => format!("Unstable under {held} control. x lets the edge run, Space steps {way}"),
+        (false, _) => {
+            format!("Unstable under {held} control. {jump} lets the edge run, {step} steps {way}")
+        }
     }
 }
 
@@ -127,8 +157,9 @@ fn limit_hint(model: &Model, node: &Node) -> String {
         (Some(at), Some(curve)) => format!("Limit point {}/{}", at + 1, curve.limits.len()),
         _ => "Limit point outside the curve".to_owned(),
     };
+    let [jump, step] = [Id::Jump, Id::Step].map(Id::named);
     let Some(ahead) = node.ahead else {
-        return format!("{name}: x lets the edge run, Space goes on along the curve");
+        return format!("{name}: {jump} lets the edge run, {step} goes on along the curve");
     };
     let after = ahead.after.map(|after| StateReport::new(&node.setting.reduced, &after));
     let lands = match (after, after.and_then(|after| after.wave)) {
@@ -156,5 +187,5 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     // The edge runs over the unstable part: walking the same way leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };
-    format!("{name}: x {lands}{}, Space goes on {part}", lost.unwrap_or_default())
+    format!("{name}: {jump} {lands}{}, {step} goes on {part}", lost.unwrap_or_default())
 }

@@ -1,9 +1,9 @@
 //! Names and paths asked for: saving, exporting, copying.
 
 use super::App;
-use crate::explorer::Effect;
 use crate::explorer::files::{Document, Page};
 use crate::explorer::model::Level;
+use crate::explorer::{Effect, Id};
 use crate::figure::Subject;
 use crate::plot::{Chart, Width, svg};
 use crate::preset::Source;
@@ -98,13 +98,16 @@ impl App {
     pub(super) fn copy(&mut self, content: Content) {
         let text = copy::text(self, content);
         let (level, told) = if text.len() > copy::LONGEST {
-            let told = format!("{} bytes are more than terminals take: e exports to a file", text.len());
+            let export = Id::Export.named();
+            let told =
+                format!("{} bytes are more than terminals take: {export} exports to a file", text.len());
             (Level::Error, told)
         } else {
             let told = format!(
-                "{} of {} bytes sent to the terminal's clipboard; if it takes none, e exports to a file",
+                "{} of {} bytes sent to the terminal's clipboard; if it takes none, {} exports to a file",
                 content.name(),
-                text.len()
+                text.len(),
+                Id::Export.named()
             );
             self.clipboard = Some(text);
             (Level::Info, told)

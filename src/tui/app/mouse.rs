@@ -29,11 +29,14 @@ impl App {
     pub(super) fn switch_mouse(&mut self) {
         self.mouse = !self.mouse;
         let told = if self.mouse {
-            "the mouse is taken: click and wheel; m leaves it to the terminal again"
+            format!(
+                "the mouse is taken: click and wheel; {} leaves it to the terminal again",
+                Id::Mouse.named()
+            )
         } else {
-            "the mouse is left to the terminal, to select text"
+            "the mouse is left to the terminal, to select text".to_owned()
         };
-        self.model.message = Some((Level::Info, told.to_owned()));
+        self.model.message = Some((Level::Info, told));
     }
 
     /// The mouse was pressed or its wheel turned.

@@ -1,11 +1,12 @@
 //! The instabilities, one line each, and behind those of the curve its inadmissible parts.
 
 use super::{is_selected, panel};
-use crate::explorer::{Axes, EventSource, Inadmissible, Model, Panel};
+use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
 use crate::report::OverlapReport;
 use crate::report::number::{fixed, loss, significant, with_unit};
 use crate::report::unload::EventReport;
 use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
 use crate::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -21,7 +22,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let events = model.shown_events();
     let selected = is_selected(app, Panel::Events);
-    let title = theme.text(&title(model));
+    let title = theme.text(&title(model, &app.keymap));
     let room = usize::from(area.width).saturating_sub(title.chars().count() + 3);
     let block = panel(theme, &title, selected)
         .title_top(Line::styled(theme.text(&headline(model, room)), theme.strong()).right_aligned());
@@ -34,7 +35,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Line::styled(theme.text(&heads), theme.dim()), head);
     let parts = model.shown_inadmissible();
     if events.is_empty() && parts.is_empty() {
-        frame.render_widget(Line::styled(theme.text(&empty(model)), theme.dim()), body);
+        frame.render_widget(Line::styled(theme.text(&empty(model, &app.keymap)), theme.dim()), body);
         return;
     }
     let rows = usize::from(body.height);
@@ -103,7 +104,8 @@ fn here(model: &Model, events: &[EventReport]) -> Option<usize> {
     events.iter().position(|event| (event.before.contact_radius - s).abs() <= 1e-6 * s)
 }
 
-fn title(model: &Model) -> String {
+fn title(model: &Model, keymap: &Keymap) -> String {
+    let key = keymap.first(Id::Events);
     let on_curve = model.curve.as_ref().and_then(|c| c.report.as_ref()).map_or(0, |r| r.events.len());
     let walked = model.walked_events().len();
     let units = &model.preset.units;
@@ -116,9 +118,9 @@ fn title(model: &Model) -> String {
                 0 => String::new(),
                 count => format!(", {count} inadmissible"),
             };
-            format!("Events on the curve: {on_curve}{parts}{units} (v: walked {walked})")
+            format!("Events on the curve: {on_curve}{parts}{units} ({key}: walked {walked})")
         }
-        EventSource::Walked => format!("Events walked: {walked}{units} (v: on the curve {on_curve})"),
+        EventSource::Walked => format!("Events walked: {walked}{units} ({key}: on the curve {on_curve})"),
     }
 }
 
@@ -165,10 +167,13 @@ fn headline(model: &Model, room: usize) -> String {
         .unwrap_or_default()
 }
 
-fn empty(model: &Model) -> String {
+fn empty(model: &Model, keymap: &Keymap) -> String {
+    let [limit, jump] = [Id::NextLimit, Id::Jump].map(|id| keymap.first(id));
     match (&model.curve, model.events) {
         (None, _) => " computing".to_owned(),
-        (Some(_), EventSource::Walked) => " none yet: n runs to a limit point, x takes the jump".to_owned(),
+        (Some(_), EventSource::Walked) => {
+            format!(" none yet: {limit} runs to a limit point, {jump} takes the jump")
+        }
         (Some(curve), EventSource::Curve) => match (&curve.unloading, &curve.report) {
             (Err(reason), _) => format!(" no path: {reason}"),
             (Ok(_), report) => format!(" none: {}", report.as_ref().map_or("", |report| &report.stop)),

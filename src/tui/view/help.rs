@@ -4,6 +4,7 @@ use super::panel;
 use crate::explorer::Model;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
@@ -12,6 +13,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
+/// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
 const READING: &[&str] = &[
     "The curve holds every equilibrium of one contact disc: approach δ, force P (tension is negative) and",
     "contact radius s. On its unstable parts (dotted) the contact would not stay under the control chosen.",
@@ -19,19 +21,20 @@ const READING: &[&str] = &[
     "next stable part, and the energy between is lost. d and p mark the limit points of displacement and force.",
     "Not every limit point is on the quasi-static path: the events are those where the edge lets go on it.",
     "! marks states that cannot be: outside the disc the next crest would touch. They stand behind the events.",
-    "Views follow each other with t: three of the curve, then the pressure in the disc, the gap outside it and the",
+    "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap outside it and the",
     "potential over the radius at the walker's state, and the unloading with its losses hatched. In the potential",
     "m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the crests.",
     "Along the curve w marks the states walked and j a jump; letters and dashes tell lines apart without colour.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
-    "First steps: n runs to a limit point, x takes the jump, u undoes. Then select A and press > a few times.",
+    "First steps: \u{1}next-limit\u{1} runs to a limit point, \u{1}jump\u{1} takes the jump, \u{1}undo\u{1} undoes. \
+     Then select A and press \u{1}more\u{1} a few times.",
 ];
 
 /// What narrow screens cut elsewhere, whole: the status, warnings, notes.
-fn now(theme: Theme, model: &Model) -> Vec<Line<'static>> {
+fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<Line<'static>> {
     let mut lines = vec![Line::default(), Line::styled("Now", theme.strong())];
-    lines.push(Line::raw(format!("  {}", theme.text(&model.status().1))));
+    lines.push(Line::raw(format!("  {}", theme.text(&keymap.spelled(&model.status().1)))));
     if let Some(curve) = &model.curve {
         let line = |text: &String, style| Line::styled(format!("  {}", theme.text(text)), style);
         lines.extend(curve.sweep.warnings.iter().map(|text| line(&format!("! {text}"), theme.error())));
@@ -42,7 +45,7 @@ fn now(theme: Theme, model: &Model) -> Vec<Line<'static>> {
 
 fn text(app: &App) -> Vec<Line<'static>> {
     let (theme, keymap) = (app.theme, &app.keymap);
-    let mut lines = now(theme, &app.model);
+    let mut lines = now(theme, keymap, &app.model);
     let mut section = "";
     for row in ROWS {
         if row.section != section {
@@ -61,7 +64,7 @@ fn text(app: &App) -> Vec<Line<'static>> {
     ]));
     lines.push(Line::default());
     lines.push(Line::styled("How to read it", theme.strong()));
-    lines.extend(READING.iter().map(|line| Line::raw(format!("  {}", theme.text(line)))));
+    lines.extend(READING.iter().map(|line| Line::raw(format!("  {}", theme.text(&keymap.spelled(line))))));
     lines.remove(0);
     lines
 }

@@ -2,10 +2,11 @@
 
 use super::{is_selected, pair, side_panel};
 use crate::contact::{Control, Gap, Groups};
-use crate::explorer::{Model, Panel};
+use crate::explorer::{Id, Model, Panel};
 use crate::preset::{Parameter, Row, Value, groups};
 use crate::report::number::{short, with_unit};
 use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use crate::units::{Quantity, UnitSystem};
 use ratatui::Frame;
@@ -31,7 +32,7 @@ struct Arranged {
 }
 
 fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
-    let (model, theme) = (&app.model, app.theme);
+    let model = &app.model;
     let selected = is_selected(app, Panel::Problem);
     let inner = Rect {
         x: area.x + 1,
@@ -41,9 +42,9 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     };
     // The groups that can be set stand behind the parameters, among those that cannot.
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
-    let chosen = model.selected_knob().filter(|_| selected).map(|(row, _)| row.key.clone());
+    let chosen = all.get(model.parameter).filter(|_| selected).map(|(row, _)| row.key.clone());
     let in_groups = model.parameter >= parameters && selected;
-    let mut groups = group_lines(theme, model, &all[parameters..], chosen.as_deref(), inner.width);
+    let mut groups = group_lines(app, &all[parameters..], chosen.as_deref(), inner.width);
     let height = usize::from(inner.height);
     // Both are seen in part where they have no room; what is selected, whole.
     let above = if in_groups { 2 } else { ABOVE };
@@ -66,10 +67,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     };
     frame.render_widget(side_panel(theme, &title, selected), area);
     let units = &model.preset.units;
+    let keys = turning(&app.keymap);
     let shown = all[..parameters].iter().enumerate().skip(first).take(rows);
     let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
-            knob_line(theme, units, row, value.as_ref(), i == model.parameter && selected, inner.width)
+            let turning = (i == model.parameter && selected).then_some(&*keys);
+            knob_line(theme, units, row, value.as_ref(), turning, inner.width)
         })
         .collect();
     lines.resize(rows, Line::default());
@@ -85,17 +88,24 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
     (below < rows && line < parameters).then_some(line)
 }
 
+/// The keys that turn the selected value, behind it, where they are as short as the usual ones.
+fn turning(keymap: &Keymap) -> String {
+    let keys = [Id::Less, Id::More].map(|id| keymap.first(id));
+    let is_short = keys.iter().all(|key| key.chars().count() == 1);
+    if is_short { format!(" {}", keys.join(" ")) } else { String::new() }
+}
+
 fn knob_line(
     theme: Theme,
     units: &UnitSystem,
     row: &Parameter,
     value: Option<&Value>,
-    selected: bool,
+    turning: Option<&str>,
     width: u16,
 ) -> Line<'static> {
-    let (mark, ends) = if selected { (">", " < >") } else { (" ", "") };
+    let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
     let label = format!("{mark}{:<9} ", theme.symbols(&row.label));
-    let room = usize::from(width).saturating_sub(label.chars().count() + ends.len());
+    let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
     // As many digits as there is room for, so that no unit is cut.
     let shown = |x, most: usize| {
         let shown = row.shown(units, x);
@@ -111,21 +121,22 @@ fn knob_line(
         Some(value) => theme.text(&value.to_string()),
     };
     // A word is worth more than the sign that it can be turned.
-    let (ends, room) = if text.chars().count() > room { ("", room + ends.len()) } else { (ends, room) };
+    let (ends, room) =
+        if text.chars().count() > room { ("", room + ends.chars().count()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
     let line = format!("{label}{text}{ends}");
-    let style = if selected { theme.selection() } else { ratatui::style::Style::new() };
+    let style = if turning.is_some() { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
 }
 
 /// The groups, as many on a line as fit; the one with the key `chosen` is selected.
 fn group_lines(
-    theme: Theme,
-    model: &Model,
+    app: &App,
     settable: &[(Row, Option<Value>)],
     chosen: Option<&str>,
     width: u16,
 ) -> Vec<Line<'static>> {
+    let (model, theme) = (&app.model, app.theme);
     let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
     let mut items: Vec<(String, f64, bool)> = settable
         .iter()
@@ -142,7 +153,13 @@ fn group_lines(
     let mut used = usize::MAX;
     for (name, value, is_chosen) in items {
         let spans = if is_chosen {
-            vec![Span::styled(format!(">{name} {} < >", short(value, 4)), theme.selection()), Span::raw(" ")]
+            vec![
+                Span::styled(
+                    format!(">{name} {}{}", short(value, 4), turning(&app.keymap)),
+                    theme.selection(),
+                ),
+                Span::raw(" "),
+            ]
         } else {
             let [name, value] = pair(theme, &format!(" {name} "), &format!("{} ", short(value, 4)));
             vec![name, value]

@@ -12,6 +12,7 @@ use ratatui::buffer::Buffer;
 use ratatui::style::{Color, Modifier};
 use std::cell::RefCell;
 
+mod keys;
 mod line;
 mod looks;
 mod reach;
@@ -80,7 +81,10 @@ impl Screen {
             terminal.backend().buffer().clone()
         };
         let anew = draw(&mut Pictures::default());
-        assert!(draw(&mut self.pictures.borrow_mut()) == anew, "a kept picture is of another state: {anew:?}");
+        assert!(
+            draw(&mut self.pictures.borrow_mut()) == anew,
+            "a kept picture is of another state: {anew:?}"
+        );
         anew
     }
 

@@ -4,10 +4,11 @@ use super::{is_selected, pair, side_panel};
 use crate::case::critical_force;
 use crate::contact::{Control, Gap};
 use crate::explorer::history::{Node, NodeKind};
-use crate::explorer::{Model, Panel};
+use crate::explorer::{Id, Model, Panel};
 use crate::quasistatic::equilibrium::wave_index;
 use crate::report::number::{difference, fixed, short, significant, with_unit};
 use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use crate::units::Quantity;
 use ratatui::Frame;
@@ -26,7 +27,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let Some(node) = node else { return };
     let stale = matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node);
     let mut lines = if node.is_apart() {
-        apart(theme, node)
+        apart(theme, &app.keymap, node)
     } else {
         state(theme, model, node, usize::from(inner.width))
     };
@@ -43,7 +44,7 @@ fn shown(theme: Theme, node: &Node, quantity: Quantity, x: f64, digits: usize) -
     with_unit(&node.setting.preset.units, quantity, x, theme.ascii, |x| significant(x, digits))
 }
 
-fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
+fn apart(theme: Theme, keymap: &Keymap, node: &Node) -> Vec<Line<'static>> {
     let state = node.state.in_units(node.setting.units());
     let shown = |quantity, x| shown(theme, node, quantity, x, 5);
     vec![
@@ -51,7 +52,7 @@ fn apart(theme: Theme, node: &Node) -> Vec<Line<'static>> {
         Line::from(pair(theme, " pulled off at δ ", &shown(Quantity::Length, state.approach)).to_vec()),
         Line::from(pair(theme, "              P ", &shown(Quantity::Force, state.force)).to_vec()),
         Line::from(pair(theme, "              s ", &shown(Quantity::Length, state.contact_radius)).to_vec()),
-        Line::raw(" u goes back, 0 restarts"),
+        Line::raw(format!(" {} goes back, {} restarts", keymap.first(Id::Undo), keymap.first(Id::Restart))),
     ]
 }
 

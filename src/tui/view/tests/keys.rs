@@ -1,0 +1,71 @@
+//! Sentences name the keys that the person has.
+
+use super::Screen;
+use crate::config::read;
+use crate::explorer::Id;
+use crate::tui::keymap::Keymap;
+use crossterm::event::KeyCode;
+
+fn bind(screen: &mut Screen, keys: &str) {
+    screen.app.keymap = Keymap::of(&read("c", &format!("[keys]\n{keys}")).unwrap()).unwrap();
+}
+
+#[test]
+fn sentences_name_the_keys_of_a_person() {
+    let mut screen = Screen::new("wavy-sphere");
+    assert!(screen.text(100, 30).contains("n runs to a limit point, ? helps"));
+    bind(
+        &mut screen,
+        "next-limit = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
+         events = \"F7\"\nsave-as = \"W\"\nfit = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"",
+    );
+    let says = |screen: &Screen, text: &str| {
+        let shown = screen.text(120, 40);
+        assert!(shown.contains(text), "{text}: {shown}");
+        assert!(!shown.contains('\u{1}'), "{shown}");
+    };
+    says(&screen, "F2 runs to a limit point, F5 helps");
+    says(&screen, "A         0.0025 ( )");
+    says(&screen, "(F7: walked 0)");
+    screen.press(KeyCode::F(7));
+    says(&screen, "none yet: F2 runs to a limit point, J takes the jump");
+    screen.keys("f");
+    says(&screen, "that key does nothing here; F5 shows all keys");
+    screen.press(KeyCode::F(2));
+    says(&screen, ": J jumps to");
+    says(&screen, "F3 goes on unstable");
+    screen.keys("J");
+    says(&screen, "F2 runs to the next limit point, F4 undoes");
+    screen.press(KeyCode::F(9));
+    says(&screen, ":pins lists the pins");
+    screen.press(KeyCode::F(5));
+    let help = super::super::help::plain(&screen.app).join("\n");
+    assert!(help.contains(
+        "First steps: F2 runs to a limit point, J takes the jump, F4 undoes. Then select A and press )"
+    ));
+    screen.keys("\x1b)q");
+    says(&screen, "Esc stays, W");
+    screen.keys("W");
+    says(&screen, "Save");
+    screen.keys("\x1b");
+    // Until the bodies are apart.
+    while !screen.app.model.history.current().unwrap().is_apart() {
+        screen.press(KeyCode::F(2));
+        screen.keys("J");
+    }
+    says(&screen, "F4 goes back, F6 restarts");
+    screen.press(KeyCode::F(3));
+    says(&screen, "the bodies are apart: F4 goes back, F6 restarts");
+}
+
+#[test]
+fn what_was_refused_in_a_prompt_names_keys_too() {
+    let mut screen = Screen::new("wavy-sphere");
+    bind(&mut screen, "pins = \"F2\"\npin = \"F3\"\nsave-as = []");
+    screen.keys(":pins\r");
+    let shown = screen.text(100, 30);
+    assert!(shown.contains("no curve is pinned: F3 pins the one on the screen"), "{shown}");
+    screen.keys("\x1b>q");
+    assert!(screen.text(100, 30).contains("y quits without saving, Esc stays."), "{}", screen.text(100, 30));
+    assert_eq!(screen.app.keymap.first(Id::SaveAs), ":save-as");
+}
