@@ -71,6 +71,7 @@ impl Late {
                 | Effect::Profile(_)
                 | Effect::File(_)
                 | Effect::StopCurve(_)
+                | Effect::StopPins
                 | Effect::Pin(..) => {}
             }
             self.pending.push_back(effect);

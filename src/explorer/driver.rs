@@ -28,7 +28,7 @@ use std::time::{Duration, Instant};
 pub enum Effect {
     /// Compute the curve of a preset; an older one still waiting is forgotten.
     Curve(Box<Wish>),
-    /// Give up the curves up to this number.
+    /// Give up the curves and checks up to this number.
     StopCurve(u64),
     /// Find which states of a curve are admissible; given up as soon as another curve is wanted.
     Check(Check),
@@ -40,6 +40,8 @@ pub enum Effect {
     StopWalk(u64),
     /// Compute the curve of a pin of a resumed session, by its number.
     Pin(usize, Box<Preset>),
+    /// Give up the curves of pins that are still on their way.
+    StopPins,
     /// Work on files.
     File(Box<Job>),
 }
@@ -143,15 +145,15 @@ impl Inline {
                 });
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
-            Effect::StopWalk(_) | Effect::StopCurve(_) => None,
-            Effect::Pin(number, preset) => Some(pinned(number, &preset)),
+            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopPins => None,
+            Effect::Pin(number, preset) => Some(pinned(number, &preset, || true)),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
     }
 }
 
-fn pinned(number: usize, preset: &Preset) -> Reply {
-    Reply::Pinned(number, CurveData::compute(preset, |_| true).ok().map(Arc::new))
+fn pinned(number: usize, preset: &Preset, go_on: impl Fn() -> bool) -> Reply {
+    Reply::Pinned(number, CurveData::compute(preset, |_| go_on()).ok().map(Arc::new))
 }
 
 impl Check {
@@ -188,7 +190,9 @@ pub struct Workers {
     profile: Arc<Slot<Box<Ask>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
-    pins: Sender<(usize, Box<Preset>)>,
+    pins: Sender<(u64, usize, Box<Preset>)>,
+    /// How often the curves of pins were given up: those asked for before are not computed.
+    pins_given_up: Arc<AtomicU64>,
     stopped: Arc<AtomicU64>,
     given_up: Arc<AtomicU64>,
 }
@@ -248,21 +252,30 @@ impl Workers {
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
-        let (pins, pinnings) = channel::<(usize, Box<Preset>)>();
+        let (pins, pinnings) = channel::<(u64, usize, Box<Preset>)>();
+        let pins_given_up = Arc::new(AtomicU64::new(0));
         let (slot, give_up, send) = (Arc::clone(&curve), Arc::clone(&given_up), reply.clone());
         thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
         let (slot, send) = (Arc::clone(&profile), reply.clone());
         thread::Builder::new().name("profile".to_owned()).spawn(move || profiles(&slot, &send))?;
-        let send = reply.clone();
+        let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
-            while let Ok((number, preset)) = pinnings.recv() {
-                send(pinned(number, &preset));
+            while let Ok((asked, number, preset)) = pinnings.recv() {
+                let is_wanted = || times.load(Ordering::Acquire) == asked;
+                if !is_wanted() {
+                    continue;
+                }
+                let answer = pinned(number, &preset, is_wanted);
+                // Given up meanwhile, it would answer for another pin of that number.
+                if is_wanted() {
+                    send(answer);
+                }
             }
         })?;
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, walks, files, pins, stopped, given_up })
+        Ok(Self { curve, profile, walks, files, pins, pins_given_up, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -282,7 +295,11 @@ impl Workers {
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
-            Effect::Pin(number, preset) => drop(self.pins.send((number, preset))),
+            Effect::Pin(number, preset) => {
+                let asked = self.pins_given_up.load(Ordering::Acquire);
+                drop(self.pins.send((asked, number, preset)));
+            }
+            Effect::StopPins => drop(self.pins_given_up.fetch_add(1, Ordering::AcqRel)),
             Effect::File(job) => drop(self.files.send(job)),
         }
     }
@@ -298,7 +315,9 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
             }
             Task::Check(check) => {
                 // Without patience: a knob that is turned further is not slowed.
-                if let Some(answer) = check.run(|| !slot.waiting.load(Ordering::Acquire)) {
+                let is_wanted =
+                    || !slot.waiting.load(Ordering::Acquire) && given_up.load(Ordering::Acquire) < check.id;
+                if let Some(answer) = check.run(is_wanted) {
                     reply(answer);
                 }
                 continue;

@@ -15,6 +15,7 @@
 //! | [`theory`] | the theory drawn over a curve, computed with it |
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`history`] | the walk as an append-only tree |
+//! | [`beside`] | what is under way beside the curve and the walk |
 //! | [`branches`] | its branches: what each ended with |
 //! | `thin` | which states of a long walk may be forgotten |
 //! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
@@ -34,6 +35,7 @@
 //! Nothing here knows terminals, keys or colours.
 
 pub mod archive;
+pub mod beside;
 pub mod branches;
 pub mod command;
 pub mod curve;

@@ -80,6 +80,15 @@ pub struct Walking {
     pub wanted: Option<usize>,
 }
 
+/// What became of the question which states of the curve are admissible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Checking {
+    /// It was asked under this number.
+    Asked(u64),
+    /// The person did not want to wait: it is not asked again on this curve.
+    GivenUp,
+}
+
 /// How much a message matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
@@ -117,7 +126,7 @@ pub struct Model {
     /// How far the curve is that is being computed, once that takes long.
     pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
-    pub checking: Option<u64>,
+    pub checking: Option<Checking>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.

@@ -66,6 +66,11 @@ impl Pins {
         true
     }
 
+    /// Those whose curves are still to be computed are given up.
+    pub fn give_up(&mut self) {
+        self.awaited.clear();
+    }
+
     /// All.
     pub fn all(&self) -> &[Pin] {
         &self.shown

@@ -15,6 +15,7 @@ mod words;
 
 pub use words::hint;
 
+use super::beside;
 use super::command::{Command, Id, row_of};
 use super::driver::{Effect, Reply};
 use super::files::Job;
@@ -225,7 +226,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Save => return save_back(model),
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),
-        Id::Cancel => model.cross = None,
+        Id::Cancel if model.cross.is_some() => model.cross = None,
+        Id::Cancel => return beside::give_up(model),
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
         Id::SaveAs

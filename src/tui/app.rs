@@ -22,6 +22,7 @@ use super::keymap::Keymap;
 use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
 use crate::contact::Control;
+use crate::explorer::beside::Beside;
 use crate::explorer::branches::are_several;
 use crate::explorer::files::Done;
 use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
@@ -70,6 +71,8 @@ pub struct App {
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
+    /// What takes so long beside the curve and the walk that it is told of.
+    pub late: Option<Beside>,
 }
 
 impl App {
@@ -91,6 +94,7 @@ impl App {
             mouse: false,
             clipboard: None,
             screen: Rect::ZERO,
+            late: None,
         }
     }
 

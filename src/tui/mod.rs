@@ -5,6 +5,7 @@
 //! | [`terminal`] | taking and giving back the terminal, signals, hang-ups, pacing |
 //! | [`keymap`] | command id → keys |
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
+//! | `late` | what takes so long that it is told of |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
@@ -20,6 +21,7 @@ pub mod chart;
 pub mod copy;
 pub mod hatch;
 pub mod keymap;
+mod late;
 pub mod layout;
 pub mod look;
 pub mod overlay;
@@ -42,6 +44,7 @@ use crate::preset::text::sanitize;
 use crate::preset::{Loaded, Store, temporary};
 use app::App;
 use keymap::Keymap;
+use late::Late;
 use look::Look;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -182,14 +185,14 @@ fn converse<S: Sink>(
     submit: &dyn Fn(Vec<Effect>),
     keep: &mut dyn FnMut(&App),
 ) {
-    let mut pictures = Pictures::default();
+    let (mut pictures, mut late) = (Pictures::default(), Late::default());
     let mut dirty = true;
     // Until when the first change since the last frame may wait for the step that it began.
     let mut grace = None;
     while !app.model.quit {
-        // Unchanged: wait for as long as it takes. Changed: only until the next frame is due.
+        // Unchanged: wait until something is late. Changed: only until the next frame is due.
         let due = [Some(display.due()), grace].into_iter().flatten().max();
-        let first = inbox.next(due.filter(|_| dirty));
+        let first = inbox.next(if dirty { due } else { late.due() });
         for incoming in first.into_iter().chain(inbox.pending()) {
             let effects = match incoming {
                 Incoming::Key(key) if keymap::is_suspend(key) => {
@@ -215,6 +218,7 @@ fn converse<S: Sink>(
             dirty = true;
         }
         grace = grace.filter(|_| app.model.walking.is_some_and(|walking| walking.made == 0));
+        dirty |= late.look(app);
         keep(app);
         display.take_mouse(app.mouse);
         if let Some(text) = app.clipboard.take() {

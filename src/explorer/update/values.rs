@@ -11,7 +11,7 @@ use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
 use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
-use crate::explorer::model::{Level, Model, Untried};
+use crate::explorer::model::{Checking, Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::walk::Action;
@@ -117,12 +117,12 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
         return None;
     }
     let id = number(model);
-    model.checking = Some(id);
+    model.checking = Some(Checking::Asked(id));
     Some(Effect::Check(Check { id, curve }))
 }
 
 pub(super) fn checked(model: &mut Model, id: u64, curve: Arc<CurveData>) {
-    if model.checking == Some(id) {
+    if model.checking == Some(Checking::Asked(id)) {
         model.curve = Some(curve);
     }
 }

@@ -54,14 +54,18 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let warnings = model.curve.iter().flat_map(|curve| &curve.sweep.warnings);
     let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
     for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
-        // A warning needs the room more than what the Problem panel says as well.
-        if let (Some(count), true) = (model.preset.get(key), warnings.is_empty()) {
+        // What is under way and a warning need the room more than what the Problem panel says as well.
+        if let (Some(count), true) = (model.preset.get(key), warnings.is_empty() && app.late.is_none()) {
             spans.push(Span::raw(format!("  {name} {count}")));
         }
     }
     if model.is_computing() {
         let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));
         spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
+    }
+    if let Some(beside) = app.late {
+        let text = theme.text(&app.keymap.spelled(&beside.text()));
+        spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     let used: usize = spans.iter().map(Span::width).sum();
     let room = usize::from(area.width).saturating_sub(used + 2);

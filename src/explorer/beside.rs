@@ -1,0 +1,140 @@
+//! Work done beside the curve and the walk, of which the status line has no words.
+
+use super::command::Id;
+use super::driver::Effect;
+use super::model::{Checking, Level, Model};
+use super::update::tell;
+
+/// Work beside the curve and the walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// The curves of so many pins of a resumed session are computed.
+    Pins(usize),
+    /// Which states of the curve are admissible is found out.
+    Check,
+    /// The inside of the walker's state is computed; it ends soon, and the next state takes its place.
+    Inside,
+}
+
+impl Beside {
+    /// What is under way, the longest first.
+    pub fn of(model: &Model) -> Option<Self> {
+        let pins = model.pins.awaited().len();
+        let is_inside_old = model
+            .profile_wanted
+            .as_ref()
+            .is_some_and(|wanted| model.profile.as_ref().is_none_or(|shown| shown.id < wanted.id));
+        if pins > 0 {
+            Some(Self::Pins(pins))
+        } else if matches!(model.checking, Some(Checking::Asked(_))) && !model.is_computing() {
+            Some(Self::Check)
+        } else {
+            is_inside_old.then_some(Self::Inside)
+        }
+    }
+
+    /// In words, short, with the command that ends it.
+    pub fn text(self) -> String {
+        match self {
+            Self::Pins(1) => format!("computing a pinned curve; {} gives up", Id::Cancel.named()),
+            Self::Pins(count) => format!("computing {count} pinned curves; {} gives up", Id::Cancel.named()),
+            Self::Check => format!("checking admissibility; {} gives up", Id::Cancel.named()),
+            Self::Inside => "computing the state".to_owned(),
+        }
+    }
+}
+
+/// Gives up what is under way, if that can be.
+pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
+    match (Beside::of(model), model.checking) {
+        (Some(Beside::Pins(count)), _) => {
+            model.pins.give_up();
+            let curves = if count == 1 { "the pinned curve" } else { "the pinned curves" };
+            tell(model, Level::Info, format!("cancelled: {curves} on the way will not be shown"));
+            vec![Effect::StopPins]
+        }
+        (Some(Beside::Check), Some(Checking::Asked(id))) => {
+            model.checking = Some(Checking::GivenUp);
+            tell(model, Level::Info, "cancelled: which states of this curve are admissible stays unknown");
+            vec![Effect::StopCurve(id)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explorer::driver::Inline;
+    use crate::explorer::pins::Pins;
+    use crate::explorer::{Command, Reply, Workers, answer, open, update};
+    use crate::preset::{Store, Value};
+    use std::sync::mpsc::channel;
+    use std::time::Duration;
+
+    /// A session whose curve has come, and its driver.
+    fn session() -> (Model, Inline, Vec<Effect>) {
+        let store = Store::at("/nowhere", &[]);
+        let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
+        let driver = Inline::new(store);
+        let (mut model, effects) = open(loaded);
+        let replies: Vec<_> = effects.into_iter().filter_map(|effect| driver.run(effect)).collect();
+        let effects = replies.into_iter().flat_map(|reply| answer(&mut model, reply)).collect();
+        (model, driver, effects)
+    }
+
+    #[test]
+    fn a_check_is_told_of_and_given_up_for_its_curve_alone() {
+        let (mut model, driver, effects) = session();
+        let asked = |effects: &[Effect]| effects.iter().any(|effect| matches!(effect, Effect::Check(_)));
+        assert!(asked(&effects), "{effects:?}");
+        assert_eq!(Beside::of(&model), Some(Beside::Check));
+        let Some(Checking::Asked(number)) = model.checking else { panic!("{:?}", model.checking) };
+        let effects = update(&mut model, Id::Cancel.into());
+        assert!(matches!(effects.as_slice(), [Effect::StopCurve(id)] if *id == number));
+        assert_eq!(Beside::of(&model), None);
+        assert!(model.status().1.contains("which states of this curve are admissible"));
+        // Nothing that happens on this curve asks again.
+        for effect in update(&mut model, Id::Step.into()) {
+            let effects = driver.run(effect).map_or_else(Vec::new, |reply| answer(&mut model, reply));
+            assert!(!asked(&effects), "{effects:?}");
+        }
+        assert!(update(&mut model, Id::Cancel.into()).is_empty());
+        // Another curve is asked about.
+        let set = Command::Set { key: "material.effective_modulus".into(), text: "2".to_owned() };
+        let mut waiting = update(&mut model, set);
+        let mut again = false;
+        while let Some(effect) = waiting.pop() {
+            again |= asked(std::slice::from_ref(&effect));
+            waiting.extend(driver.run(effect).map_or_else(Vec::new, |reply| answer(&mut model, reply)));
+        }
+        assert!(again);
+    }
+
+    #[test]
+    fn the_pins_of_a_resumed_session_are_given_up_together() {
+        let (mut model, driver, effects) = session();
+        driver.settle(&mut model, effects);
+        assert_eq!(Beside::of(&model), None);
+        model.pins = Pins::awaiting([(1, model.preset.clone()), (3, model.preset.clone())]);
+        assert_eq!(Beside::of(&model), Some(Beside::Pins(2)));
+        assert!(matches!(update(&mut model, Id::Cancel.into()).as_slice(), [Effect::StopPins]));
+        assert!(Beside::of(&model).is_none() && model.pins.is_empty());
+    }
+
+    #[test]
+    fn a_curve_that_is_given_up_is_not_computed_to_its_end() {
+        let (model, ..) = session();
+        let (send, replies) = channel();
+        let workers =
+            Workers::start(Store::at("/nowhere", &[]), move |reply| drop(send.send(reply))).unwrap();
+        let mut large = model.preset.clone();
+        large.set("basis.kind", "rings".into()).unwrap();
+        large.set("basis.rings", Value::Integer(3000)).unwrap();
+        workers.submit(Effect::Pin(1, Box::new(large)));
+        workers.submit(Effect::StopPins);
+        workers.submit(Effect::Pin(2, Box::new(model.preset)));
+        let first = replies.recv_timeout(Duration::from_secs(120)).unwrap();
+        assert!(matches!(first, Reply::Pinned(2, Some(_))), "{first:?}");
+    }
+}

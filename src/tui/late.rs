@@ -1,0 +1,66 @@
+//! What takes so long that it is told of: telling of everything would make two frames more of every step.
+
+use super::app::App;
+use crate::explorer::beside::Beside;
+use std::mem::discriminant;
+use std::time::{Duration, Instant};
+
+/// What is over sooner is not told of.
+const SHORT: Duration = Duration::from_millis(100);
+
+/// Work beside the curve and the walk, with the time when it was first seen.
+#[derive(Debug, Default)]
+pub(super) struct Late {
+    since: Option<(Beside, Instant)>,
+    is_told: bool,
+}
+
+impl Late {
+    /// Looks at what is under way, and says whether `app` has something else to show of it.
+    pub(super) fn look(&mut self, app: &mut App) -> bool {
+        let now = Instant::now();
+        let begun = |beside: Beside| {
+            let same = self.since.filter(|(last, _)| discriminant(last) == discriminant(&beside));
+            (beside, same.map_or(now, |(_, begun)| begun))
+        };
+        self.since = Beside::of(&app.model).map(begun);
+        let late = self.since.filter(|(_, begun)| now.duration_since(*begun) >= SHORT);
+        let late = late.map(|(beside, _)| beside);
+        self.is_told = late.is_some();
+        std::mem::replace(&mut app.late, late) != late
+    }
+
+    /// When to look again, though nothing has happened.
+    pub(super) fn due(&self) -> Option<Instant> {
+        self.since.filter(|_| !self.is_told).map(|(_, begun)| begun + SHORT)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explorer::pins::Pins;
+    use crate::preset::Store;
+    use crate::tui::theme::Theme;
+
+    #[test]
+    fn what_is_under_way_is_told_of_once_it_takes_long_and_no_longer_than_it_takes() {
+        let store = Store::at("/nowhere", &[]);
+        let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
+        let (mut app, _) = App::new(loaded, Theme::default());
+        let mut late = Late::default();
+        assert!(!late.look(&mut app) && late.due().is_none());
+        app.model.pins = Pins::awaiting([(1, app.model.preset.clone()), (2, app.model.preset.clone())]);
+        while !late.look(&mut app) {
+            assert!(app.late.is_none() && late.due().is_some());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!((app.late, late.due()), (Some(Beside::Pins(2)), None));
+        // The next of the same kind is late as well.
+        app.model.pins.came(1, None);
+        assert!(late.look(&mut app));
+        assert_eq!(app.late, Some(Beside::Pins(1)));
+        app.model.pins.came(2, None);
+        assert!(late.look(&mut app) && app.late.is_none());
+    }
+}
