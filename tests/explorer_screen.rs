@@ -159,9 +159,9 @@ fn quitting_with_unsaved_changes_asks_first() {
     pty.keys("}");
     pty.wait_for(|screen| screen.contains("unsaved"), "a change");
     pty.keys("q");
-    pty.wait_for(|screen| screen.contains("y quits without saving"), "the question");
+    pty.wait_for(|screen| screen.contains("y quits, Esc stays"), "the question");
     pty.keys("\x1b");
-    pty.wait_for(|screen| !screen.contains("y quits without saving"), "the screen");
+    pty.wait_for(|screen| !screen.contains("y quits, Esc stays"), "the screen");
     pty.keys("qy");
     assert_eq!(pty.exit_code(), 0);
 }
@@ -199,7 +199,7 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
     pty.keys("cc");
     pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "the last stiffness");
     pty.keys("q");
-    pty.wait_for(|screen| screen.contains("y quits without saving"), "the question");
+    pty.wait_for(|screen| screen.contains("y quits, Esc stays"), "the question");
     pty.keys("y");
     assert_eq!(pty.exit_code(), 0);
 }

@@ -23,9 +23,11 @@ use super::look;
 use super::model::{Axes, EventSource, LENGTHS, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
-use super::walk::Action;
+use super::walk::{Action, ROOM};
 use crate::preset::text::{greek, show_name};
 use crate::preset::{Loaded, Overwrite, Row, Value, groups};
+use crate::report::number::{short, with_unit};
+use crate::units::Quantity;
 use files::{browse, export, export_page, file, file_done, save, save_back};
 pub(in crate::explorer) use values::want_curve;
 use values::{
@@ -322,6 +324,19 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
 fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
     let reduced = radius / curve.case.units().length;
+    if reduced > ROOM * curve.case.start {
+        let largest = ROOM * curve.case.start * curve.case.units().length;
+        let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| short(s, 6));
+        let (asked, largest) = (length(radius), length(largest));
+        tell(
+            model,
+            Level::Error,
+            format!(
+                "contact radius {asked} is out of range: it must be at most {largest}, three times that of the start"
+            ),
+        );
+        return Vec::new();
+    }
     walk(model, Action::MoveTo(reduced))
 }
 

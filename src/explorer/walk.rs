@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Most states of one request: a run that meets nothing ends.
 pub const RUN_POINTS: usize = 5000;
 /// A walk leaves the range of the curve by at most this factor in the contact radius.
-const ROOM: f64 = 3.0;
+pub(super) const ROOM: f64 = 3.0;
 
 /// A state solved again lies within this share of a wave, or of its radius, of the old one.
 const NEAR: f64 = 0.5;

@@ -271,10 +271,24 @@ impl App {
         self.act(id, count)
     }
 
+    /// Does a command so many times, as far as it can be done.
+    fn again(&mut self, id: Id, count: usize) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        for _ in 0..count.max(1) {
+            let before = self.model.history.cursor();
+            effects.extend(self.run(id.into()));
+            if self.model.history.cursor() == before {
+                break;
+            }
+        }
+        effects
+    }
+
     /// Does a command, or asks for what it takes.
     fn act(&mut self, id: Id, count: Option<usize>) -> Vec<Effect> {
         match id {
             Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
+            Id::Undo | Id::UndoCommand | Id::Redo if count.is_some() => self.again(id, count.unwrap_or(1)),
             Id::Help => {
                 self.overlay = Some(Over::Help(Help::default()));
                 Vec::new()
@@ -284,7 +298,7 @@ impl App {
                 let saves =
                     self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
                 let question = format!(
-                    "The preset has unsaved changes. y quits without saving, Esc stays{}.",
+                    "The preset has unsaved changes; the session keeps them. y quits, Esc stays{}.",
                     saves.unwrap_or_default()
                 );
                 self.ask(question, Id::Quit.into());

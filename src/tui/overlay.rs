@@ -88,13 +88,16 @@ pub struct Help {
 }
 
 impl Prompt {
-    /// Asks for a line that begins as `text`; a value is replaced by the first character typed.
+    /// Asks for a line that begins as `text`; a value and the name of a file are replaced by the first character typed.
     pub fn new(title: impl Into<String>, note: &str, text: String, purpose: Purpose) -> Self {
         Self {
             title: title.into(),
             note: note.to_owned(),
             input: Input::new(text),
-            fresh: matches!(purpose, Purpose::Value(_)),
+            fresh: matches!(
+                purpose,
+                Purpose::Value(_) | Purpose::Name { .. } | Purpose::File(_) | Purpose::Page(_)
+            ),
             purpose,
             error: None,
             waits: false,

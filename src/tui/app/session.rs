@@ -35,8 +35,8 @@ impl App {
                 self.model = model;
                 effects
             }
-            KeyCode::Esc => Vec::new(),
-            // Whoever types on does not want it, and means the key.
+            KeyCode::Esc | KeyCode::Char('n' | 'N') => Vec::new(),
+            // Whoever types on does not want it, and means the key; n says no.
             _ => self.command_key(key),
         }
     }

@@ -63,6 +63,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));
         spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
     }
+    if model.curve.is_some() && !model.is_computing() && !model.shows_its_curve() {
+        spans.push(Span::styled("  curve and state of other values", theme.error()));
+    }
     if let Some(beside) = app.late {
         let text = theme.text(&app.keymap.spelled(&beside.text()));
         spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));

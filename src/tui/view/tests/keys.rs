@@ -66,6 +66,6 @@ fn what_was_refused_in_a_prompt_names_keys_too() {
     let shown = screen.text(100, 30);
     assert!(shown.contains("no curve is pinned: F3 pins the one on the screen"), "{shown}");
     screen.keys("\x1b>q");
-    assert!(screen.text(100, 30).contains("y quits without saving, Esc stays."), "{}", screen.text(100, 30));
+    assert!(screen.text(100, 30).contains("y quits, Esc stays."), "{}", screen.text(100, 30));
     assert_eq!(screen.app.keymap.first(Id::SaveAs), ":save-as");
 }

@@ -173,3 +173,23 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     screen.press(KeyCode::End);
     assert_eq!(screen.app.model.parameter, screen.app.model.knobs().len() - 1);
 }
+
+#[test]
+fn the_help_names_commands_and_undo_takes_a_count() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("?");
+    let shown = screen.text(100, 30);
+    assert!(shown.lines().nth(1).unwrap().contains("First steps"), "{shown}");
+    for (keys, found) in [("/next-limit\r", "next-limit"), ("/double-step\r", "double-step")] {
+        screen.keys(keys);
+        let shown = screen.text(100, 30);
+        assert!(!shown.contains("not found") && shown.contains(found), "{shown}");
+    }
+    screen.press(KeyCode::Esc);
+    screen.keys("   ");
+    let steps = screen.app.model.history.len();
+    screen.keys("3u");
+    assert_eq!(screen.app.model.history.cursor(), Some(steps - 4));
+    screen.keys("9u");
+    assert_eq!(screen.app.model.history.cursor(), Some(0), "as far as it goes");
+}
