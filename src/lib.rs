@@ -14,6 +14,7 @@
 //! | 6 | [`cli`] | the door: command line, one file per subcommand, exit codes |
 //! | 5 | `tui` | the terminal: guard, keys, layout, charts, one file per screen region (feature `tui`) |
 //! | 4 | [`plot`] | figures for print, those of the paper, maps of sweeps: SVG, CSV |
+//! | 4 | [`print`](mod@print) | a figure's SVG as the bytes of a file: SVG, PNG, PDF |
 //! | 4 | [`config`] | the person's settings: keys of commands, looks |
 //! | 4 | [`figure`] | figures of a curve, a walk and a state for any renderer: lines, marks, areas with roles |
 //! | 4 | [`explorer`] | the model of a session, its commands, `update`, the history tree, the workers, the sessions kept on disk |
@@ -26,7 +27,6 @@
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
 //! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
-//! | 1 | [`print`](mod@print) | a figure's SVG as the bytes of a file: SVG, PNG, PDF |
 //! | 1 | [`units`] | dimensions, unit names, values with units read and shown |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
 //! | 0 | `fault` | panics on demand, in test builds only (feature `fault-injection`) |
