@@ -136,7 +136,7 @@ fn an_outward_jump_is_announced_as_an_inward_one_is() {
         }
         session.does(Id::Jump);
     }
-    assert!(session.status().contains("pulls off, Space"), "{}", session.status());
+    assert!(session.status().contains("pulls off, step goes on"), "{}", session.status());
 }
 
 #[test]

@@ -130,7 +130,7 @@ mod tests {
             Workers::start(Store::at("/nowhere", &[]), move |reply| drop(send.send(reply))).unwrap();
         let mut large = model.preset.clone();
         large.set("basis.kind", "rings".into()).unwrap();
-        large.set("basis.rings", Value::Integer(3000)).unwrap();
+        large.set("basis.rings", Value::Integer(2000)).unwrap();
         workers.submit(Effect::Pin(1, Box::new(large)));
         workers.submit(Effect::StopPins);
         workers.submit(Effect::Pin(2, Box::new(model.preset)));

@@ -298,7 +298,7 @@ impl App {
                 let saves =
                     self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
                 let question = format!(
-                    "The preset has unsaved changes; the session keeps them. y quits, Esc stays{}.",
+                    "Not saved; the session keeps it. y quits, Esc stays{}.",
                     saves.unwrap_or_default()
                 );
                 self.ask(question, Id::Quit.into());

@@ -40,9 +40,9 @@ fn sentences_name_the_keys_of_a_person() {
     says(&screen, ":pins lists the pins");
     screen.press(KeyCode::F(5));
     let help = super::super::help::plain(&screen.app).join("\n");
-    assert!(help.contains(
-        "First steps: F2 runs to a limit point, J takes the jump, F4 undoes. Then select A and press )"
-    ));
+    assert!(
+        help.contains("F2 runs to a limit point, J takes the jump, F4 undoes. Then select A and press )")
+    );
     screen.keys("\x1b)q");
     says(&screen, "Esc stays, W");
     screen.keys("W");

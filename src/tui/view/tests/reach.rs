@@ -226,7 +226,11 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     let folder = tempfile::tempdir().unwrap();
     let figure = |screen: &mut Screen, name: &str| {
         screen.keys("ejjjjj\r");
-        assert!(screen.text(120, 40).contains("wavy-sphere-force-approach.svg"));
+        assert!(
+            screen.text(120, 40).contains("wavy-sphere-force-approach.svg"),
+            "{name}: {}",
+            screen.text(120, 40)
+        );
         for _ in 0..60 {
             screen.press(KeyCode::Backspace);
         }
