@@ -157,6 +157,7 @@ fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
         assert!(update(&mut session.model, id.into()).is_empty());
     }
     assert_eq!((session.model.history.len(), session.model.queue.len()), (steps, 6));
+    assert!(session.status().contains("new values, 6 commands wait for it"), "{}", session.status());
     session.driver.settle(&mut session.model, effects);
     let node = session.model.history.current().unwrap();
     assert!(node.is_limit(Control::Displacement) && session.model.is_on_curve(node) && session.model.inward);

@@ -97,7 +97,12 @@ fn next(model: &Model) -> String {
         return format!("not solved: {reason}; {} restarts", Id::Restart.named());
     }
     if model.is_computing() {
-        return format!("computing the curve for the new values{}", progress(model));
+        let waiting = match model.queue.len() {
+            0 => String::new(),
+            1 => ", 1 command waits for it".to_owned(),
+            n => format!(", {n} commands wait for it"),
+        };
+        return format!("computing the curve for the new values{waiting}{}", progress(model));
     }
     let Some(control) = model.control() else { return String::new() };
     if let NodeKind::Jump(event) = &node.kind {
