@@ -65,7 +65,7 @@ impl Entry {
                 Line::from(vec![Span::styled(label, theme.key()), Span::styled(row.into_owned(), self.style)])
             })
             .collect();
-        if let ([row], false) = (rows.as_mut_slice(), self.name.is_empty()) {
+        if let (Some(row), false) = (rows.last_mut(), self.name.is_empty()) {
             let left = width.saturating_sub(row.width() + self.name.len());
             if left > 1 {
                 row.push_span(Span::raw(" ".repeat(left)));
