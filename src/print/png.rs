@@ -5,6 +5,8 @@ use resvg::{tiny_skia, usvg};
 
 /// Pixels of a unit of 1/96 inch: 384 dots an inch, above the 300 that journals ask of figures with letters.
 const SCALE: f32 = 4.0;
+/// The same as the file says it: pixels a metre, 384 / 0.0254.
+const PER_METRE: u32 = 15_118;
 /// The most pixels a side: a figure of the widest paper stays below.
 const MOST: f32 = 20_000.0;
 
@@ -20,5 +22,24 @@ pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, DrawError> {
     let pixels = tiny_skia::Pixmap::new(width as u32, height as u32);
     let mut pixels = pixels.ok_or(too_large)?;
     resvg::render(tree, tiny_skia::Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| DrawError::Refused { format: "PNG", cause: error.to_string() })
+    let (width, height) = (pixels.width(), pixels.height());
+    encoded(width, height, &pixels.take_demultiplied())
+        .map_err(|error| DrawError::Refused { format: "PNG", cause: error.to_string() })
+}
+
+/// The pixels as a file that says how large they are on paper.
+fn encoded(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: PER_METRE,
+        yppu: PER_METRE,
+        unit: png::Unit::Meter,
+    }));
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgba)?;
+    writer.finish()?;
+    Ok(bytes)
 }
