@@ -154,7 +154,8 @@ key = "path.control"
 values = ["displacement", "stiffness=5 N/m", "force"]
 "#,
     );
-    home.sweep("pairs.toml", "r.csv", &[]);
+    let said = home.sweep("pairs.toml", "r.csv", &[]);
+    assert!(!said.contains("to plot it"), "pairs are no map: {said}");
     let all =
         home.columns("r.csv", &["gap.amplitude", "path.control", "start_contact_radius", "critical_force"]);
     assert_eq!(all[0], ["1e-5", "1.2e-5", "1e-5"]);
@@ -365,7 +366,10 @@ fn shards_join_to_the_single_run() {
     assert_eq!(home.text("all.csv.spec.toml"), home.text("whole.csv.spec.toml"));
     // It is the single run's: it can be gone on with.
     assert!(home.sweep("s.toml", "all.csv", &[]).contains("(10 from before)"));
-    home.refused(&["sweep", "merge", "1.csv", "2.csv", "3.csv", "-o", "all.csv"], "all.csv: exists already");
+    home.refused(
+        &["sweep", "merge", "1.csv", "2.csv", "3.csv", "-o", "all.csv"],
+        "all.csv: exists already; --overwrite replaces it",
+    );
 
     let merge = |parts: &[&'static str]| [&["sweep", "merge"], parts, &["-o", "no.csv"]].concat();
     home.refused(&merge(&["1.csv", "3.csv"]), "shards are missing: 2/3");
@@ -403,11 +407,33 @@ fn results_of_something_else_are_not_touched() {
         ("value.toml", GRID.replace("0.001,", "0.0011,")),
         ("preset.toml", GRID.replace("wavelength=0.1", "wavelength=0.11")),
         ("quantity.toml", GRID.replace("\"snaps_force\", ", "")),
+        (
+            "pairs.toml",
+            GRID.replace("count = 5", "count = 2").replace("preset =", "combine = \"pairs\"\npreset ="),
+        ),
     ] {
         home.file(name, &text);
-        home.refused(&["sweep", name, "-o", "r.csv"], "r.csv: holds the results of another sweep");
+        let differs = match name {
+            "value.toml" => "another sweep: other axes or values; --overwrite",
+            "preset.toml" => "another sweep: another preset (gap.wavelength); --overwrite",
+            "quantity.toml" => "another sweep: other quantities; --overwrite",
+            _ => "another sweep: other rows of the same axes, other axes or values; --overwrite",
+        };
+        home.refused(&["sweep", name, "-o", "r.csv"], &format!("r.csv: holds the results of {differs}"));
         assert_eq!(home.text("r.csv"), whole);
     }
+    // Another title is none, and an older program is.
+    home.file("title.toml", &GRID.replace("set = [", "set = [\"title=of today\", "));
+    assert!(home.sweep("title.toml", "r.csv", &[]).contains("(10 from before)"));
+    let side = home.text("r.csv.spec.toml");
+    let version = format!("program_version = \"{}\"", env!("CARGO_PKG_VERSION"));
+    let identity = side.lines().find(|line| line.starts_with("identity")).unwrap();
+    let older = side.replace(&version, "program_version = \"0.0.1\"").replace(identity, "identity = \"0\"");
+    home.file("r.csv.spec.toml", &older);
+    home.refused(
+        &["sweep", "s.toml", "-o", "r.csv"],
+        "another sweep: another version of pulloff; --overwrite",
+    );
     home.sweep("value.toml", "r.csv", &["--overwrite"]);
     assert!(home.text("r.csv").contains("\n0,0.0011,"));
     // A row that somebody changed, rows too many, a file that was never ours.

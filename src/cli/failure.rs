@@ -125,7 +125,8 @@ impl Failure {
                 },
             )
             | Self::Merge(
-                MergeError::NotOurs { .. }
+                MergeError::Exists { .. }
+                | MergeError::NotOurs { .. }
                 | MergeError::OtherSweep { .. }
                 | MergeError::OtherDivision { .. }
                 | MergeError::Doubled { .. }

@@ -3,6 +3,8 @@
 use super::{Failure, output};
 use crate::preset::text::{show_name, show_path};
 use crate::report::number::{short, significant};
+use crate::sweep::axis::Axis;
+use crate::sweep::spec::Design;
 use crate::sweep::{Existing, Output, OutputError, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -217,12 +219,19 @@ impl Sweep {
     }
 }
 
-/// How to draw it, where it is a map.
+/// How to draw it, where it is a curve or a map.
 fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
+    let is_numeric = spec.axes.iter().all(Axis::is_numeric);
+    let picture = match &spec.axes[..] {
+        [_] if is_numeric => "curve",
+        axes @ [_, _] if is_numeric && spec.design == Design::Grid => {
+            axes.iter().all(|axis| axis.count() > Some(1)).then_some("map")?
+        }
+        _ => return None,
+    };
     let file = show_name(&results.to_string_lossy());
     let quantity = spec.columns[0].name();
-    (spec.axes.len() == 2)
-        .then(|| format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o map.svg"))
+    Some(format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o {picture}.svg"))
 }
 
 /// The progress on standard error; none where that is no terminal.

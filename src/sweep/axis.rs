@@ -137,6 +137,17 @@ impl Axis {
         }
     }
 
+    /// Whether all its values are numbers, which have a place on an axis.
+    #[must_use]
+    pub fn is_numeric(&self) -> bool {
+        match &self.points {
+            Points::Values(values) => {
+                values.iter().all(|value| matches!(value, Value::Number(_) | Value::Integer(_)))
+            }
+            _ => true,
+        }
+    }
+
     /// How many values it has; `None` where they are drawn.
     #[must_use]
     pub fn count(&self) -> Option<u64> {

@@ -17,6 +17,12 @@ pub enum MergeError {
     /// The result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// There is a file already.
+    #[error("{path}: exists already; --overwrite replaces it")]
+    Exists {
+        /// The file.
+        path: String,
+    },
     /// Nothing says what a part is.
     #[error("{path}: is not known to be a part of a sweep ({cause})")]
     NotOurs {
@@ -90,7 +96,10 @@ pub enum MergeError {
 
 impl From<WriteError> for MergeError {
     fn from(error: WriteError) -> Self {
-        Self::Output(error.into())
+        match error {
+            WriteError::Exists { path } => Self::Exists { path },
+            error => Self::Output(error.into()),
+        }
     }
 }
 

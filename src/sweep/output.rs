@@ -59,12 +59,12 @@ pub enum OutputError {
         cause: SideError,
     },
     /// Results of another sweep.
-    #[error(
-        "{path}: holds the results of another sweep: another spec, preset or version; --overwrite replaces them"
-    )]
+    #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
     OtherSweep {
         /// The file.
         path: String,
+        /// What differs, in words.
+        what: String,
     },
     /// Results of another part.
     #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
@@ -224,9 +224,9 @@ impl Output {
 /// Refuses results that are not of this part of this sweep.
 fn check(path: &Path, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
     let shown = || show_path(path);
-    let (side, _) = Side::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
+    let (side, text) = Side::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
     if side.identity != spec.identity() {
-        return Err(OutputError::OtherSweep { path: shown() });
+        return Err(OutputError::OtherSweep { path: shown(), what: side::differences(&text, spec) });
     }
     if side.shard() != shard {
         return Err(OutputError::OtherShard { path: shown(), found: side.shard(), wanted: shard });

@@ -57,6 +57,13 @@ impl Results {
         Ok(Self { path: path.to_owned(), columns: side.columns, axes, rows: side.rows })
     }
 
+    /// What stands beside an axis of this column.
+    #[must_use]
+    pub fn title(&self, name: &str) -> String {
+        let column = self.columns.iter().find(|column| column.name == name);
+        column.map_or_else(|| name.to_owned(), ColumnInfo::title)
+    }
+
     fn place(&self, name: &str) -> Result<usize, ResultsError> {
         let names = || self.columns.iter().map(|column| column.name.as_str());
         names().position(|known| known == name).ok_or_else(|| ResultsError::NoColumn {

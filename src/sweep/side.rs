@@ -10,9 +10,11 @@ use crate::preset::file::{self, FileError, read_text};
 use crate::preset::text::{greek, sanitize, show_path};
 use crate::units::{Quantity, UnitSystem};
 use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use toml::{Table, Value};
 
 /// What is behind the name of the results.
 const ENDING: &str = ".spec.toml";
@@ -91,7 +93,7 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
         spec.canonical()
     );
     for ColumnInfo { name, symbol, unit, meaning } in columns(spec) {
-        let quoted = |text: String| toml::Value::String(text).to_string();
+        let quoted = |text: String| Value::String(text).to_string();
         let line = |key: &str, value: Option<String>| {
             value.map_or_else(String::new, |value| format!("{key} = {}\n", quoted(value)))
         };
@@ -112,6 +114,66 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
 pub fn of_whole(text: &str, part: Shard) -> String {
     let line = |shard: Shard| format!("\nshard = \"{shard}\"\n");
     text.replacen(&line(part), &line(Shard::WHOLE), 1)
+}
+
+/// What of a sweep may differ: its keys in the canonical form, and how it is called.
+const PARTS: [(&[&str], &str); 6] = [
+    (&["program_version"], "another version of pulloff"),
+    (&["preset"], "another preset"),
+    (&["data"], "another measured profile"),
+    (&["combine", "random"], "other rows of the same axes"),
+    (&["quantities"], "other quantities"),
+    (&["axis"], "other axes or values"),
+];
+
+/// In what a sweep differs from that of a file of this text, in words; safe to show.
+#[must_use]
+pub fn differences(text: &str, spec: &Spec) -> String {
+    let sweep = |text: &str| toml::from_str::<Table>(text).ok()?.remove("sweep");
+    let (theirs, ours) = (sweep(text), sweep(&spec.canonical()));
+    let part = |sweep: &Option<Value>, key: &str| sweep.as_ref().and_then(|sweep| sweep.get(key)).cloned();
+    let differs = |key: &&str| part(&theirs, key) != part(&ours, key);
+    let named = PARTS.iter().filter(|(keys, _)| keys.iter().any(|key| differs(&key))).map(|(keys, name)| {
+        let values = [&theirs, &ours].map(|sweep| part(sweep, keys[0]));
+        match values.map(|value| value.and_then(|value| value.as_str().map(values_of))) {
+            [Some(theirs), Some(ours)] if *keys == ["preset"] => format!("{name}{}", changed(&theirs, &ours)),
+            _ => (*name).to_owned(),
+        }
+    });
+    let named: Vec<String> = named.collect();
+    if named.is_empty() { "in another form".to_owned() } else { named.join(", ") }
+}
+
+/// The values of a preset by their dotted keys.
+fn values_of(preset: &str) -> BTreeMap<String, Value> {
+    let tables: Table = toml::from_str(preset).unwrap_or_default();
+    let mut values = BTreeMap::new();
+    for (key, value) in tables {
+        match value {
+            Value::Table(table) => {
+                values.extend(table.into_iter().map(|(name, value)| (format!("{key}.{name}"), value)));
+            }
+            value => {
+                values.insert(key, value);
+            }
+        }
+    }
+    values
+}
+
+/// The first keys whose values differ, in brackets.
+fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> String {
+    /// So many are told.
+    const TOLD: usize = 3;
+    let all: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
+    let keys: Vec<String> = all
+        .into_iter()
+        .filter(|key| theirs.get(*key) != ours.get(*key))
+        .map(|key| sanitize(key, 60))
+        .collect();
+    let rest = if keys.len() > TOLD { ", ..." } else { "" };
+    let told: Vec<&str> = keys.iter().take(TOLD).map(String::as_str).collect();
+    if told.is_empty() { String::new() } else { format!(" ({}{rest})", told.join(", ")) }
 }
 
 fn columns(spec: &Spec) -> Vec<ColumnInfo> {

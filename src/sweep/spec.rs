@@ -169,7 +169,9 @@ impl Spec {
         };
         let names: Vec<String> = self.columns.iter().map(|column| format!("\"{}\"", column.name())).collect();
         let _ = writeln!(text, "quantities = [{}]", names.join(", "));
-        let _ = writeln!(text, "preset = {}", toml::Value::String(write(&self.preset)));
+        // Another title makes no other numbers.
+        let untitled = Preset { title: String::new(), ..self.preset.clone() };
+        let _ = writeln!(text, "preset = {}", toml::Value::String(write(&untitled)));
         let data: Vec<String> = self.data().iter().map(|digest| format!("\"{digest}\"")).collect();
         if !data.is_empty() {
             let _ = writeln!(text, "data = [{}]", data.join(", "));
