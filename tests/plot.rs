@@ -116,6 +116,104 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+/// The status and what was said.
+fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = pulloff(folder, &[&["plot"], arguments].concat());
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn data_replace_nothing_but_data_of_a_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let results = "row,gap.amplitude,enhancement,error\n0,0.001,1.2,\n";
+    for text in [results, "", "name,curve\n", "r,h\n0,0\n"] {
+        std::fs::write(file("jkr.csv"), text).unwrap();
+        let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "jkr.svg"]);
+        assert_eq!(status, Some(2), "{said}");
+        assert!(
+            said.contains("--data jkr.csv: exists already and does not hold the data of a figure"),
+            "{said}"
+        );
+        assert_eq!(std::fs::read_to_string(file("jkr.csv")).unwrap(), text);
+        assert!(!file("jkr.svg").exists(), "nothing is drawn before");
+    }
+    // Without --data it is none of our business, and our own data are replaced.
+    assert_eq!(refused(folder.path(), &["fig-3-jkr", "-o", "jkr.svg"]).0, Some(0));
+    std::fs::remove_file(file("jkr.csv")).unwrap();
+    assert_eq!(refused(folder.path(), &["fig-3-jkr", "--data", "-o", "jkr.svg"]).0, Some(0));
+    let reduced = std::fs::read_to_string(file("jkr.csv")).unwrap();
+    assert_eq!(refused(folder.path(), &["fig-3-jkr", "--raw", "--data", "-o", "jkr.svg"]).0, Some(0));
+    assert_ne!(std::fs::read_to_string(file("jkr.csv")).unwrap(), reduced);
+    let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "-"]);
+    assert!(status == Some(2) && said.contains("--data: the data stand beside the file"), "{said}");
+    std::fs::create_dir(file("folder.csv")).unwrap();
+    let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "folder.svg"]);
+    assert!(
+        status == Some(1) && said.contains("not a regular file") && !file("folder.svg").exists(),
+        "{said}"
+    );
+}
+
+#[test]
+fn neither_the_figure_nor_its_data_replace_what_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let rows: String =
+        (0..=100).map(|i| 2.0 * f64::from(i)).map(|r| format!("{r},{}\n", r * r / 2e3)).collect();
+    std::fs::write(file("rows.csv"), format!("r,h\n{rows}")).unwrap();
+    let preset = pulloff(folder.path(), &["presets", "show", "profile"]).stdout;
+    let preset = String::from_utf8(preset).unwrap();
+    let line = preset.lines().find(|line| line.trim_start().starts_with("file = ")).unwrap();
+    std::fs::write(file("mine.toml"), preset.replace(line, "file = \"rows.csv\"")).unwrap();
+    let (status, said) = refused(folder.path(), &["./mine.toml", "--data", "-o", "rows.svg"]);
+    assert!(status == Some(2) && said.contains("is the file of the profile that is read"), "{said}");
+    assert!(!file("rows.svg").exists());
+    std::os::unix::fs::symlink("mine.toml", file("mine.svg")).unwrap();
+    let (status, said) = refused(folder.path(), &["./mine.toml", "-o", "mine.svg"]);
+    assert!(
+        status == Some(2) && said.contains("-o ") && said.contains("is the file of the preset that"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_range_of_an_axis_is_shown_in_its_own_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |range: &[&str]| {
+        let output =
+            pulloff(folder.path(), &[&["plot", "wavy-sphere", "--view", "radius-force"], range].concat());
+        assert!(output.status.success(), "{range:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let ticks = |svg: &str| -> Vec<f64> {
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let texts = document.descendants().filter_map(|node| node.text());
+        texts.filter_map(|text| text.trim().replace('−', "-").parse().ok()).collect()
+    };
+    let whole = ticks(&drawn(&[]));
+    let part = ticks(&drawn(&["--x", "-1..-0.5", "--y=2..4"]));
+    assert!(whole.iter().any(|tick| *tick > 4.0), "{whole:?}");
+    assert!(part.iter().all(|tick| (-1.0..=-0.5).contains(tick) || (2.0..=4.0).contains(tick)), "{part:?}");
+    assert!(part.contains(&-1.0) && part.contains(&4.0), "{part:?}");
+    let lower = ticks(&drawn(&["--y", "..1"]));
+    assert!(lower.iter().all(|tick| *tick <= 1.0 || whole.contains(tick)), "{lower:?}");
+    // Every view has ranges.
+    for view in VIEWS {
+        let both = ["wavy-sphere", "--view", view, "--x=0.0..", "--y=..1e3"];
+        roxmltree::Document::parse(&svg(folder.path(), &both)).unwrap();
+    }
+    for (range, words) in [
+        (&["--x", "1"][..], "expected LO..HI, two numbers in the units of the axis"),
+        (&["--x", "2..1"], "a number up to a larger one, not from 2 to 1"),
+        (&["--y", "1000.."], "--y 1000..: shows nothing of the figure, where P/Pc goes from "),
+        (&["--sweep", "r.csv", "--x", "0..1"], "cannot be used with"),
+    ] {
+        let (status, said) = refused(folder.path(), range);
+        assert!(status == Some(2) && said.contains(words), "{range:?}: {said}");
+    }
+}
+
 #[test]
 fn a_contact_radius_is_read_as_set_reads_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,6 +242,11 @@ fn a_png_has_the_size_of_the_figure_and_letters() {
     let pixels = resvg::tiny_skia::Pixmap::decode_png(&bytes).unwrap();
     // 86 mm at 384 dots an inch.
     assert_eq!(pixels.width(), 1301);
+    // Pixels a metre, both ways, and that it is metres.
+    let chunk = bytes.windows(4).position(|name| name == b"pHYs").unwrap() + 4;
+    assert_eq!(bytes[chunk..chunk + 9], [0, 0, 0x3b, 0x0e, 0, 0, 0x3b, 0x0e, 1]);
+    let millimetres = 1301.0 / f64::from(0x3b0e_u16) * 1e3;
+    assert!((millimetres - 86.0).abs() < 25.4 / 384.0, "{millimetres}");
     // The axis title to the left of everything else: letters are drawn.
     let dark = |x: u32| (0..pixels.height()).any(|y| pixels.pixel(x, y).unwrap().red() < 80);
     assert!((0..100).any(dark));
@@ -244,4 +347,56 @@ fn a_sweep_over_two_axes_is_a_map() {
     let refused = pulloff(folder.path(), &["plot", "--sweep", "map.csv", "--quantity", "snps"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("did you mean snaps?"));
+}
+
+#[test]
+fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = "preset = \"fig-9-si\"\nquantities = [\"kesari_lew\"]\n\
+        set = [\"basis.kind=spectral\", \"path.start_contact_radius=1 mm\"]\n\
+        [[axis]]\nkey = \"gap.amplitude\"\nvalues = [\"3 um\", \"1 um\", \"2 um\", \"2.5 um\", \"4 um\"]\n";
+    std::fs::write(folder.path().join("s.toml"), spec).unwrap();
+    let output = pulloff(folder.path(), &["sweep", "s.toml", "-o", "r.csv"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("plot --sweep 'r.csv' --quantity kesari_lew -o curve.svg"), "{said}");
+    let shapes = |svg: &str| {
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let count = |tag: &str| document.descendants().filter(|node| node.has_tag_name(tag)).count();
+        (count("circle"), count("path"))
+    };
+    let whole = svg(folder.path(), &["--sweep", "r.csv", "--quantity", "kesari_lew"]);
+    let texts = structure(&whole).join("\n");
+    assert!(texts.contains("\"A (") && texts.contains("\"kesari_lew\""), "{texts}");
+    assert_eq!(shapes(&whole).0, 5);
+    // A row without a value: its mark is missing and the line is in two.
+    let path = folder.path().join("r.csv");
+    let results = std::fs::read_to_string(&path).unwrap();
+    let row = results.lines().find(|line| line.starts_with("3,")).unwrap();
+    let fields: Vec<&str> = row.split(',').collect();
+    let empty = [fields[0], fields[1], "", "start not reached"].join(",");
+    std::fs::write(&path, results.replace(row, &empty)).unwrap();
+    let gap = svg(folder.path(), &["--sweep", "r.csv", "--quantity", "kesari_lew"]);
+    assert_eq!(shapes(&gap), (4, shapes(&whole).1 + 1));
+    for (column, words) in
+        [("error", "error = \"start not reached\" is no number"), ("kesari_low", "did you mean kesari_lew?")]
+    {
+        let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", column]);
+        assert!(status == Some(2) && said.contains(words), "{column}: {said}");
+    }
+    std::fs::write(&path, &results).unwrap();
+    let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", "error"]);
+    assert!(status == Some(2) && said.contains("the column error is empty in every row"), "{said}");
+}
+
+#[test]
+fn a_column_is_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [&["--quantity", "snaps"][..], &["wavy-sphere", "--quantity", "snaps"]] {
+        let (status, said) = refused(folder.path(), arguments);
+        assert!(
+            status == Some(2) && said.contains("--quantity: is a column of the results of a sweep"),
+            "{said}"
+        );
+    }
 }

@@ -21,8 +21,9 @@ pub fn write(text: &str, file: Option<&Path>) -> Result<(), Failure> {
     })
 }
 
-/// Refuses a file that the result is computed from: a preset must not become its own result.
-pub fn spares(file: Option<&Path>, loaded: &Loaded) -> Result<(), Failure> {
+/// Refuses a file, given or implied by `option`, that the result is computed from: a preset must not become its own
+/// result.
+pub fn spares(file: Option<&Path>, option: &str, loaded: &Loaded) -> Result<(), Failure> {
     let Some(Ok(file)) = file.map(fs::canonicalize) else { return Ok(()) };
     let preset = match &loaded.source {
         Source::User { path, .. } | Source::File(path) => Some(path.clone()),
@@ -35,7 +36,7 @@ pub fn spares(file: Option<&Path>, loaded: &Loaded) -> Result<(), Failure> {
     for (read, what) in [(preset, "the preset"), (data, "the profile")] {
         if read.and_then(|path| fs::canonicalize(path).ok()).is_some_and(|path| path == file) {
             return Err(Failure::Usage(format!(
-                "-o {}: is the file of {what} that is read; write to another",
+                "{option} {}: is the file of {what} that is read; write to another",
                 shown(&file)
             )));
         }

@@ -5,14 +5,18 @@ use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View, Window};
 use crate::figure::Subject;
 use crate::plot::map::{Map, MapError};
-use crate::plot::{Chart, Width, svg, table};
-use crate::preset::{Overwrite, Preset, write_atomically};
+use crate::plot::range::RangeError;
+use crate::plot::{Chart, Range, Width, series, svg, table};
+use crate::preset::file::kind_of;
+use crate::preset::{Loaded, Overwrite, Preset, WriteError, write_atomically};
 use crate::print::Format;
 use crate::quasistatic::jump::Run;
 use crate::sweep::Results;
 use crate::units::Quantity;
 use crate::units::number::said;
 use clap::{Args, ValueEnum};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -22,12 +26,12 @@ use std::sync::Arc;
 pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
-    /// Draw a map of the results of a sweep over its two axes instead of a view of a preset
-    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius", "data"])]
+    /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius", "data", "x", "y"])]
     sweep: Option<PathBuf>,
-    /// The column of the results that the map shows
-    #[arg(long, value_name = "COLUMN", requires = "sweep", default_value = "enhancement")]
-    quantity: String,
+    /// The column of the results that is drawn [default: enhancement]
+    #[arg(long, value_name = "COLUMN")]
+    quantity: Option<String>,
     /// What is drawn
     #[arg(long, value_enum, default_value = "force-approach")]
     view: Shown,
@@ -40,16 +44,25 @@ pub struct Arguments {
     /// The state whose pressure, gap or energy is drawn, by its contact radius: a number, in an SI preset in metres or with its unit, as 1.2mm; the start when left out
     #[arg(long, value_name = "RADIUS")]
     contact_radius: Option<String>,
+    /// The part of the x axis that is shown, in its units as drawn; one end may be left out: --x ..0.1
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    x: Option<Range>,
+    /// The part of the y axis that is shown, in its units as drawn; one end may be left out: --y -1..
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    y: Option<Range>,
     /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
     width: Width,
-    /// Write the data beside the figure too, to FILE.csv
+    /// Write the data beside the figure too, to FILE.csv; a file there that holds anything else is kept, and refused
     #[arg(long, requires = "output")]
     data: bool,
     /// Write to this file, as SVG, PNG or PDF by its ending, instead of SVG to standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
+
+/// The column of the results that is drawn when none is named.
+const QUANTITY: &str = "enhancement";
 
 /// A view by the name the explorer gives it.
 #[derive(Debug, Clone, Copy)]
@@ -87,12 +100,17 @@ fn width(text: &str) -> Result<Width, String> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = format(arguments.output.as_deref())?;
     if let Some(path) = &arguments.sweep {
-        let results = Results::open(path).map_err(MapError::from)?;
-        let map = Map::of(&results, &results.axes, &arguments.quantity)?;
-        write(&map.svg(arguments.width), format, arguments.output.as_deref())?;
+        write(&arguments.of_sweep(path)?, format, arguments.output.as_deref())?;
         return Ok(ExitCode::SUCCESS);
     }
-    let preset = arguments.problem.load()?.preset;
+    if arguments.quantity.is_some() {
+        let what = "--quantity: is a column of the results of a sweep, which --sweep RESULTS.csv names";
+        return Err(Failure::Usage(what.to_owned()));
+    }
+    let loaded = arguments.problem.load()?;
+    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
+    let data = arguments.data_file(&loaded)?;
+    let preset = loaded.preset;
     let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
     warn(&curve.sweep.warnings);
@@ -110,13 +128,81 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
     let subject = Subject { inside: inside.as_ref(), axes, ..Subject::alone(&curve, overlays) };
-    let chart = Chart::of(&subject.figure(view), &Window::WHOLE);
+    let chart = arguments.part(Chart::of(&subject.figure(view), &Window::WHOLE))?;
     write(&svg::svg(&chart, arguments.width), format, arguments.output.as_deref())?;
-    if let (Some(path), true) = (&arguments.output, arguments.data) {
-        let text = table::csv(&chart)?;
-        write_atomically(&path.with_extension("csv"), text.as_bytes(), Overwrite::Always)?;
+    if let Some((path, overwrite)) = data {
+        write_atomically(&path, table::csv(&chart)?.as_bytes(), overwrite)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// The picture of the results of a sweep.
+    fn of_sweep(&self, path: &Path) -> Result<String, Failure> {
+        let results = Results::open(path).map_err(MapError::from)?;
+        let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
+        Ok(match &results.axes[..] {
+            [axis] => svg::svg(&series::chart(&results, axis, quantity)?, self.width),
+            axes => Map::of(&results, axes, quantity)?.svg(self.width),
+        })
+    }
+
+    /// The part of the chart that is asked for.
+    fn part(&self, mut chart: Chart) -> Result<Chart, Failure> {
+        let refused = |axis: &'static str, range: Range| {
+            move |error: RangeError| Failure::Usage(format!("--{axis} {range}: {error}"))
+        };
+        if let Some(range) = self.x {
+            chart = chart.across(range).map_err(refused("x", range))?;
+        }
+        if let Some(range) = self.y {
+            chart = chart.upwards(range).map_err(refused("y", range))?;
+        }
+        Ok(chart)
+    }
+
+    /// The file of the data, and whether there is one to be replaced: only data of a figure are.
+    fn data_file(&self, loaded: &Loaded) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
+        let Some(figure) = self.output.as_ref().filter(|_| self.data) else { return Ok(None) };
+        if figure == Path::new("-") {
+            let what = "--data: the data stand beside the file of the figure, which -o FILE names";
+            return Err(Failure::Usage(what.to_owned()));
+        }
+        let path = figure.with_extension("csv");
+        output::spares(Some(&path), "--data", loaded)?;
+        let overwrite = match first_line(&path)? {
+            None => Overwrite::Never,
+            Some(line) if table::is_header(&line) => Overwrite::Always,
+            Some(_) => {
+                return Err(Failure::Usage(format!(
+                    "--data {}: exists already and does not hold the data of a figure; name the figure otherwise, \
+                     or move that file away",
+                    output::shown(&path)
+                )));
+            }
+        };
+        Ok(Some((path, overwrite)))
+    }
+}
+
+/// The first line of a file; `None` where there is no file.
+fn first_line(path: &Path) -> Result<Option<String>, Failure> {
+    /// Far more than the header of a table of data.
+    const LONGEST: u64 = 4096;
+    let failed = |error: io::Error| Failure::Usage(format!("--data {}: {error}", output::shown(path)));
+    let file = match path.metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(failed(error)),
+        // A pipe would wait for its writer.
+        Ok(metadata) if !metadata.is_file() => {
+            let (path, what) = (output::shown(path), kind_of(&metadata));
+            return Err(WriteError::NotRegular { path, what }.into());
+        }
+        Ok(_) => File::open(path).map_err(failed)?,
+    };
+    let mut line = Vec::new();
+    BufReader::new(file.take(LONGEST)).read_until(b'\n', &mut line).map_err(failed)?;
+    Ok(Some(String::from_utf8_lossy(&line).into_owned()))
 }
 
 /// The inside of the state of this contact radius, or of the start.

@@ -35,7 +35,7 @@ enum Format {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let loaded = arguments.problem.load()?;
-    output::spares(arguments.output.as_deref(), &loaded)?;
+    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
     let mut report = TraceReport::compute(&loaded.preset)?;
     if arguments.theory {
         report = report.beside(&Exact::of(&loaded.preset.problem()));

@@ -77,6 +77,8 @@ pub enum Sign {
     Stray,
     /// The walker.
     Walker,
+    /// A computed value, on a line through all of them.
+    Value,
 }
 
 /// A sign at a point in axis values.

@@ -1,7 +1,8 @@
 //! What is drawn on paper.
 
+use super::range::{Range, RangeError};
 use crate::explorer::Window;
-use crate::figure::{Area, Bounds, Figure, Line, Mark};
+use crate::figure::{Area, Bounds, Figure, Line, Mark, Role};
 
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,6 +63,48 @@ impl Chart {
         let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
         let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };
         Self { x, y, bounds, lines, marks: Vec::new(), areas: Vec::new(), missing: None }
+    }
+
+    /// The part of its x axis in `range`; an empty chart stays as it is.
+    ///
+    /// # Errors
+    /// [`RangeError`] when the range shows nothing.
+    pub fn across(mut self, range: Range) -> Result<Self, RangeError> {
+        if self.missing.is_none() {
+            self.bounds.x = range.ends(&self.x.title, self.bounds.x, self.drawn().x)?;
+        }
+        Ok(self)
+    }
+
+    /// The part of its y axis in `range`; an empty chart stays as it is.
+    ///
+    /// # Errors
+    /// [`RangeError`] when the range shows nothing.
+    pub fn upwards(mut self, range: Range) -> Result<Self, RangeError> {
+        if self.missing.is_none() {
+            self.bounds.y = range.ends(&self.y.title, self.bounds.y, self.drawn().y)?;
+        }
+        Ok(self)
+    }
+
+    /// How far anything drawn reaches, and how far it is shown.
+    fn drawn(&self) -> Bounds {
+        let Bounds { x, y } = &self.bounds;
+        let lines = self.lines.iter().flat_map(|line| line.points.iter().copied());
+        lines.filter(|(x, y)| x.is_finite() && y.is_finite()).fold(Bounds { x: *x, y: *y }, |all, (x, y)| {
+            let wider = |[lo, hi]: [f64; 2], at: f64| [lo.min(at), hi.max(at)];
+            Bounds { x: wider(all.x, x), y: wider(all.y, y) }
+        })
+    }
+
+    /// Names the computed curve, which its stability alone does not tell from curves beside it.
+    #[must_use]
+    pub fn naming(mut self, curve: &str) -> Self {
+        let own = self.lines.iter_mut().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
+        for line in own {
+            line.name = format!("{curve}, {}", line.name);
+        }
+        self
     }
 }
 

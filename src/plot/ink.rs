@@ -27,7 +27,7 @@ pub struct Stamp {
     pub color: &'static str,
     /// Half its width in units of 1/96 inch.
     pub size: f64,
-    /// Its name.
+    /// Its name; empty where it needs none.
     pub name: &'static str,
 }
 
@@ -89,6 +89,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Maximum => stamp(MarkerShape::Diamond, VERMILLION, 2.4, "maximum"),
         Sign::Barrier => stamp(MarkerShape::Star, VERMILLION, 3.0, "barrier"),
         Sign::Stray | Sign::Walker => stamp(MarkerShape::Hexagon, BLACK, 2.6, "state"),
+        // The axes say what it is.
+        Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::Width;
 use super::svg::{cropped, entry, finish, frame, hatched, hatches, outline, plain};
+use crate::preset::text::quote;
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
-use crate::sweep::side::ColumnInfo;
 use kuva::plot::ContourPlot;
 use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::render::layout::ComputedLayout;
@@ -35,15 +35,22 @@ pub struct Map {
     pub snaps: Option<Vec<Vec<f64>>>,
 }
 
-/// Why there is no map.
+/// Why results are not drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     /// The results cannot be read.
     #[error(transparent)]
     Results(#[from] ResultsError),
-    /// They are no grid over two axes of numbers.
+    /// They are neither a grid over two axes of numbers nor rows over one.
     #[error("{0}")]
     Grid(String),
+}
+
+impl MapError {
+    /// No row has a number in this column.
+    pub(super) fn empty(column: &str) -> Self {
+        Self::Grid(format!("the column {} is empty in every row", quote(column)))
+    }
 }
 
 impl Map {
@@ -53,7 +60,9 @@ impl Map {
     /// [`MapError`] when there is no such column, or the rows make no whole grid of at least two by two.
     pub fn of(results: &Results, axes: &[String], quantity: &str) -> Result<Self, MapError> {
         let [x, y] = axes else {
-            return Err(MapError::Grid(format!("a map is over two axes; the sweep has {}", axes.len())));
+            let what =
+                format!("the results of a sweep are drawn over one axis or two; it has {}", axes.len());
+            return Err(MapError::Grid(what));
         };
         let has_snaps = results.columns.iter().any(|column| column.name == SNAPS);
         let names: Vec<&str> =
@@ -84,12 +93,9 @@ impl Map {
         };
         let (cells, snaps) = (grid(&found), snapped.map(|column| grid(&column)));
         if cells.iter().flatten().all(|cell| !cell.is_finite()) {
-            return Err(MapError::Grid(format!("no row has a {quantity}")));
+            return Err(MapError::empty(quantity));
         }
-        let title = |name: &str| {
-            let column = results.columns.iter().find(|column| column.name == name);
-            column.map_or_else(|| name.to_owned(), ColumnInfo::title)
-        };
+        let title = |name: &str| results.title(name);
         Ok(Self { titles: [title(x), title(y)], quantity: title(quantity), values, cells, snaps })
     }
 
@@ -194,15 +200,15 @@ fn borders(axis: &[f64]) -> Vec<f64> {
 }
 
 /// The values of an axis, each once, ascending.
-fn distinct(column: &[Option<f64>]) -> Vec<f64> {
+pub(super) fn distinct(column: &[Option<f64>]) -> Vec<f64> {
     let mut values: Vec<f64> = column.iter().flatten().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values.dedup_by(|a, b| a.total_cmp(b).is_eq());
     values
 }
 
-/// Whether the factors between neighbours are more alike than the steps.
-fn is_logarithmic(axis: &[f64]) -> bool {
+/// Whether the factors between neighbours are more alike than the steps; of one value nothing can be said.
+pub(super) fn is_logarithmic(axis: &[f64]) -> bool {
     let (first, last) = (axis[0], axis[axis.len() - 1]);
     let spread = |apart: fn(f64, f64) -> f64| {
         let all = axis.windows(2).map(|pair| apart(pair[0], pair[1]));

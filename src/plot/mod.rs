@@ -6,6 +6,8 @@
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
 //! | [`map`] | a quantity of a sweep over its two axes |
 //! | [`paper`] | the figures of the paper, computed again |
+//! | [`range`] | the part of an axis that is asked for |
+//! | [`series`] | a quantity of a sweep over its one axis |
 //! | [`svg`] | the one place that knows the drawing library |
 //! | [`table`] | the data of a chart as CSV |
 //!
@@ -15,10 +17,13 @@ pub mod chart;
 pub mod ink;
 pub mod map;
 pub mod paper;
+pub mod range;
+pub mod series;
 pub mod svg;
 pub mod table;
 
 pub use chart::Chart;
+pub use range::Range;
 
 /// The width of a figure on paper, in millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]

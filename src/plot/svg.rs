@@ -195,7 +195,7 @@ pub(super) fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -
     LegendEntry { label: plain(name), color: color.to_owned(), shape, dasharray }
 }
 
-/// Every name once, the lines before the signs.
+/// Every name once, the lines before the signs; a sign that is out of sight needs none.
 fn legend(chart: &Chart) -> Vec<LegendEntry> {
     let mut named: Vec<&Line> = chart.lines.iter().filter(|line| !line.name.is_empty()).collect();
     // The computed curve first, as on the screen.
@@ -213,8 +213,8 @@ fn legend(chart: &Chart) -> Vec<LegendEntry> {
         let Stroke { color, dashes, .. } = ink::stroke(line.role);
         add(entry(&line.name, color, LegendShape::Line, dashes));
     }
-    for mark in &chart.marks {
-        let stamp = ink::stamp(mark.sign);
+    let shown = chart.marks.iter().filter(|mark| chart.bounds.share(mark.at).is_some());
+    for stamp in shown.map(|mark| ink::stamp(mark.sign)).filter(|stamp| !stamp.name.is_empty()) {
         add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
     }
     if !chart.areas.is_empty() {
@@ -238,7 +238,7 @@ fn plots(chart: &Chart) -> Vec<Plot> {
     let (exact, others): (Vec<&Line>, Vec<&Line>) =
         chart.lines.iter().partition(|line| line.role == Role::Exact);
     let mut plots: Vec<Drawn> = others.into_iter().chain(exact).flat_map(line).collect();
-    plots.extend(chart.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()).map(mark));
+    plots.extend(chart.marks.chunk_by(|a, b| a.sign == b.sign).filter_map(marks));
     if plots.is_empty() {
         // Without anything to draw the library draws no axes either.
         plots.push(LinePlot::new().into());
@@ -262,14 +262,13 @@ fn line(line: &Line) -> Vec<Drawn> {
         .collect()
 }
 
-fn mark(mark: &Mark) -> Drawn {
-    let stamp = ink::stamp(mark.sign);
-    ScatterPlot::new()
-        .with_data([mark.at])
-        .with_color(stamp.color)
-        .with_size(stamp.size)
-        .with_marker(stamp.shape)
-        .into()
+/// Marks of one sign.
+fn marks(marks: &[Mark]) -> Option<Drawn> {
+    let stamp = ink::stamp(marks.first()?.sign);
+    let places: Vec<(f64, f64)> =
+        marks.iter().map(|mark| mark.at).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    let plot = || ScatterPlot::new().with_color(stamp.color).with_size(stamp.size).with_marker(stamp.shape);
+    (!places.is_empty()).then(|| plot().with_data(places).into())
 }
 
 /// An outline as path data.
@@ -364,6 +363,18 @@ mod tests {
                 assert!(!text.contains("NaN"), "{text}");
             }
         }
+    }
+
+    #[test]
+    fn the_legend_names_only_the_signs_in_sight() {
+        let mut chart = chart(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
+        chart.marks =
+            vec![Mark { sign: Sign::Limit, at: (0.8, 0.8) }, Mark { sign: Sign::PullOff, at: (0.1, 0.1) }];
+        let names = |chart: &Chart| legend(chart).into_iter().map(|entry| entry.label).collect::<Vec<_>>();
+        assert_eq!(names(&chart), ["curve", "limit point", "pull-off"]);
+        let close = chart.across("0.5..".parse().unwrap()).unwrap();
+        assert_eq!(names(&close), ["curve", "limit point"]);
+        assert_eq!(names(&close.naming("A 2")), ["A 2, curve", "limit point"]);
     }
 
     #[test]

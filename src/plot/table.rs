@@ -3,13 +3,16 @@
 use super::chart::Chart;
 use super::ink;
 
+/// The first columns of every table; behind them are x and y, named as the axes.
+const FIRST: [&str; 2] = ["name", "curve"];
+
 /// One row a point: the curve's name, its number among the curves, x, y; an empty x and y break a curve.
 ///
 /// # Errors
 /// When a row cannot be encoded, which no name can cause.
 pub fn csv(chart: &Chart) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["name", "curve", &chart.x.title, &chart.y.title])?;
+    writer.write_record([FIRST[0], FIRST[1], &chart.x.title, &chart.y.title])?;
     let number = |x: f64| if x.is_finite() { format!("{x:?}") } else { String::new() };
     let mut curve = 0_usize;
     let mut row = |name: &str, points: &[(f64, f64)]| {
@@ -28,4 +31,32 @@ pub fn csv(chart: &Chart) -> Result<String, csv::Error> {
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Whether a file that begins with `line` is the table of a chart.
+pub fn is_header(line: &str) -> bool {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+    let record = reader.records().next().and_then(Result::ok);
+    record.is_some_and(|fields| {
+        fields.len() == FIRST.len() + 2 && fields.iter().zip(FIRST).all(|(a, b)| a == b)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::chart::Axis;
+
+    #[test]
+    fn a_table_is_known_by_its_first_line() {
+        let axis = |title: &str| Axis { title: title.to_owned(), ..Axis::default() };
+        let chart = Chart::new(axis("E*, \"quoted\" (µm)"), axis("P/Pc"), Vec::new());
+        let text = csv(&chart).unwrap();
+        assert!(is_header(text.lines().next().unwrap()));
+        for other in
+            ["", "name,curve", "name,curve,x,y,z", "row,gap.amplitude,enhancement,error", "Name,curve,x,y"]
+        {
+            assert!(!is_header(other), "{other}");
+        }
+    }
 }

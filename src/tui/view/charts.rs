@@ -133,6 +133,7 @@ pub fn letter(sign: Sign) -> &'static str {
         Sign::Maximum => "M",
         Sign::Barrier => "B",
         Sign::Stray | Sign::Walker => "@",
+        Sign::Value => "o",
     }
 }
 
@@ -141,7 +142,9 @@ fn mark(mark: &Placed, styles: &Styles) -> Mark {
         Sign::OtherLimit(_) => styles.aid,
         Sign::Landing => styles.landing,
         Sign::Crest | Sign::Edge => styles.smooth,
-        Sign::Limit | Sign::PullOff | Sign::Minimum | Sign::Maximum | Sign::Barrier => styles.mark,
+        Sign::Limit | Sign::PullOff | Sign::Minimum | Sign::Maximum | Sign::Barrier | Sign::Value => {
+            styles.mark
+        }
         Sign::Stray => styles.stray,
         Sign::Walker => styles.walker,
     };

@@ -57,7 +57,7 @@ fn rank(role: Role, theme: Theme) -> u8 {
 /// What a sign means, and how much that is wanted.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
-        Sign::Stray => return None,
+        Sign::Stray | Sign::Value => return None,
         Sign::OtherLimit(Control::Force) => (3, "limit of P"),
         Sign::OtherLimit(_) => (3, "limit of δ"),
         Sign::Limit => (1, "limit"),

@@ -1,0 +1,135 @@
+//! The part of an axis that a figure is asked to show, in the units of that axis: `0..0.1`, `..0.1`, `-2..`.
+
+use crate::report::number::short;
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
+/// From one value of an axis to another; an end that is left out is that of the whole figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    lo: Option<f64>,
+    hi: Option<f64>,
+}
+
+/// Why a figure cannot show a range.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RangeError {
+    /// The text is no range.
+    #[error(
+        "expected LO..HI, two numbers in the units of the axis, or one of them alone: 0..0.1, ..0.1, 0.1.."
+    )]
+    Text,
+    /// The ends are not one below the other, or doubles cannot tell places between them apart.
+    #[error("the range must go from a number up to a larger one, not from {0} to {1}")]
+    Order(String, String),
+    /// Nothing of the figure is in it.
+    #[error("shows nothing of the figure, where {title} goes from {from} to {to}")]
+    Empty {
+        /// What stands beside the axis.
+        title: String,
+        /// The least value on it.
+        from: String,
+        /// The largest.
+        to: String,
+    },
+}
+
+/// Doubles told apart across a range at least.
+const PLACES: f64 = 1e3;
+/// Digits of a number in a message.
+const DIGITS: usize = 6;
+
+impl Range {
+    /// Its ends on an axis of this title that goes over `whole` when nothing is asked for, and whose lines over `drawn`.
+    ///
+    /// # Errors
+    /// [`RangeError`] when the ends do not ascend or nothing drawn lies between them.
+    pub fn ends(self, title: &str, whole: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], RangeError> {
+        let empty = || RangeError::Empty {
+            title: title.to_owned(),
+            from: short(drawn[0], DIGITS),
+            to: short(drawn[1], DIGITS),
+        };
+        let ends @ [lo, hi] = [self.lo.unwrap_or(whole[0]), self.hi.unwrap_or(whole[1])];
+        if lo >= drawn[1] || hi <= drawn[0] {
+            return Err(empty());
+        }
+        ascending(ends)
+    }
+}
+
+fn ascending(ends: [f64; 2]) -> Result<[f64; 2], RangeError> {
+    let [lo, hi] = ends;
+    let least = PLACES * f64::EPSILON * lo.abs().max(hi.abs());
+    let apart = hi - lo;
+    if apart > 0.0 && apart >= least && apart.is_finite() {
+        return Ok(ends);
+    }
+    Err(RangeError::Order(short(lo, DIGITS), short(hi, DIGITS)))
+}
+
+impl FromStr for Range {
+    type Err = RangeError;
+
+    fn from_str(text: &str) -> Result<Self, RangeError> {
+        let (lo, hi) = text.split_once("..").ok_or(RangeError::Text)?;
+        let end = |text: &str| match text.trim() {
+            "" => Ok(None),
+            text => text.parse().ok().filter(|x: &f64| x.is_finite()).map(Some).ok_or(RangeError::Text),
+        };
+        match (end(lo)?, end(hi)?) {
+            (None, None) => Err(RangeError::Text),
+            (lo, hi) => {
+                if let (Some(lo), Some(hi)) = (lo, hi) {
+                    ascending([lo, hi])?;
+                }
+                Ok(Self { lo, hi })
+            }
+        }
+    }
+}
+
+impl Display for Range {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let end = |x: Option<f64>| x.map_or_else(String::new, |x| short(x, DIGITS));
+        write!(f, "{}..{}", end(self.lo), end(self.hi))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_two_numbers_or_one_and_ascends() {
+        let range = |text: &str| text.parse::<Range>();
+        for (text, lo, hi) in [
+            ("0..0.1", Some(0.0), Some(0.1)),
+            ("..1e-2", None, Some(0.01)),
+            (" -2.5 .. ", Some(-2.5), None),
+            ("-2..-1", Some(-2.0), Some(-1.0)),
+        ] {
+            assert_eq!(range(text), Ok(Range { lo, hi }), "{text}");
+        }
+        for text in ["", "..", "0.1", "0,1", "a..b", "0..1 mm", "nan..1", "0..inf", "0..1..2"] {
+            assert_eq!(range(text), Err(RangeError::Text), "{text}");
+        }
+        for text in ["1..0", "1..1", "1..1.0000000000001", "-1e308..1e308"] {
+            assert!(matches!(range(text), Err(RangeError::Order(..))), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_end_left_out_is_that_of_the_figure_and_nothing_is_not_shown() {
+        let ends = |text: &str| text.parse::<Range>().unwrap().ends("s/λ", [-1.0, 2.0], [0.0, 4.0]);
+        assert_eq!(ends("..1"), Ok([-1.0, 1.0]));
+        assert_eq!(ends("1.."), Ok([1.0, 2.0]));
+        assert_eq!(ends("3..9"), Ok([3.0, 9.0]));
+        // What is drawn there is beyond the end that was left out.
+        assert!(matches!(ends("3.."), Err(RangeError::Order(..))));
+        for text in ["4..5", "..-3", "-3..0"] {
+            let said = ends(text).unwrap_err().to_string();
+            assert_eq!(said, "shows nothing of the figure, where s/λ goes from 0 to 4", "{text}");
+        }
+    }
+}
