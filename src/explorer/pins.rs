@@ -7,6 +7,7 @@ use super::curve::CurveData;
 use crate::preset::{Preset, Row, Value};
 use crate::report::number::short;
 use crate::units::UnitSystem;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Most curves pinned: each has a digit and a colour of its own.
@@ -151,16 +152,30 @@ pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, betwee
 
 /// The values of `pinned` that `now` has not, as labels and values; the first few of them.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
-    let differences = differences(pinned, now);
-    if differences.is_empty() {
-        // An end that is given up differs only in what the other has.
-        return "as now".to_owned();
-    }
+    // An end that is given up differs only in what the other has.
+    named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
+}
+
+/// The values of `now` that some of the pins have not, as labels and values: its own name among them; `None` where it
+/// has no such value.
+pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
+    let keys: HashSet<String> = pins
+        .iter()
+        .flat_map(|pin| differences(now, pin.preset()))
+        .map(|(row, _)| row.key.to_string())
+        .collect();
+    let own = now.rows().filter(|row| keys.contains(&*row.key));
+    let own: Vec<(Row, Value)> = own.filter_map(|row| now.get(&row.key).map(|value| (row, value))).collect();
+    named(&own, &now.units)
+}
+
+/// The first few of them, as labels and values.
+fn named(differences: &[(Row, Value)], units: &UnitSystem) -> Option<String> {
     let named: Vec<String> =
-        differences.iter().take(NAMED).map(|(row, value)| labelled(row, value, &now.units)).collect();
+        differences.iter().take(NAMED).map(|(row, value)| labelled(row, value, units)).collect();
     let more = differences.len().saturating_sub(NAMED);
     let rest = if more > 0 { format!(" +{more}") } else { String::new() };
-    format!("{}{rest}", named.join(", "))
+    (!named.is_empty()).then(|| format!("{}{rest}", named.join(", ")))
 }
 
 #[cfg(test)]

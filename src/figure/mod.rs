@@ -34,7 +34,7 @@ pub use scale::Scale;
 use crate::explorer::branches::{Branch, branches};
 use crate::explorer::device;
 use crate::explorer::model::is_on_curve;
-use crate::explorer::pins::Pin;
+use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays};
 use crate::preset::Preset;
@@ -105,6 +105,11 @@ impl<'a> Subject<'a> {
     /// The divisors of the axes.
     pub fn scale(&self) -> Scale<'a> {
         Scale::of(self.curve, self.axes)
+    }
+
+    /// What tells the curve from the pinned ones beside it, named as they are; `None` without any.
+    pub fn own_name(&self) -> Option<String> {
+        name_among(&self.curve.setting.preset, self.pins)
     }
 
     /// Whether a state solves the problem of the curve.

@@ -261,6 +261,27 @@ fn near_a_limit_point_a_landing_or_a_pin_the_cross_hair_says_so() {
 }
 
 #[test]
+fn among_pins_the_curve_is_named_by_what_differs() {
+    let mut session = Session::new("wavy-sphere");
+    assert_eq!(Subject::of(&session.model).unwrap().own_name(), None);
+    session.does(Id::Pin);
+    assert_eq!(Subject::of(&session.model).unwrap().own_name(), None);
+    session.does(Command::Set { key: "gap.amplitude".into(), text: "0.0035".to_owned() });
+    assert_eq!(Subject::of(&session.model).unwrap().own_name().unwrap(), "A 0.0035");
+    session.does(Id::Pin);
+    session.does(Command::Set { key: "gap.wavelength".into(), text: "0.06".to_owned() });
+    let subject = Subject::of(&session.model).unwrap();
+    // The amplitude is that of the second pin, but not of the first.
+    assert_eq!(subject.own_name().unwrap(), "A 0.0035, lambda 0.06");
+    let chart = crate::plot::Chart::of(&subject.figure(View::ForceApproach), &crate::explorer::Window::WHOLE);
+    let names: Vec<String> = chart.naming("A 0.0035").lines.into_iter().map(|line| line.name).collect();
+    assert!(
+        names.iter().any(|name| name == "A 0.0035, stable") && !names.iter().any(|name| name == "stable")
+    );
+    assert!(names.iter().any(|name| name == "A 0.0025, lambda 0.05"), "{names:?}");
+}
+
+#[test]
 fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     let mut session = Session::new("wavy-sphere");
     session.does(Command::Overlay(Overlay::Exact)).does(Id::NextLimit).does(Id::Jump);

@@ -82,8 +82,11 @@ impl App {
     /// The first view as a figure for print; none before the first curve.
     fn figure(&self) -> Option<String> {
         let view = self.model.view;
-        let figure = Subject::of(&self.model)?.figure(view);
-        Some(svg::svg(&Chart::of(&figure, &self.model.window(view)), Width::ONE_COLUMN))
+        let subject = Subject::of(&self.model)?;
+        let chart = Chart::of(&subject.figure(view), &self.model.window(view));
+        let own_name = subject.own_name().filter(|_| view.is_curve());
+        let chart = if let Some(name) = own_name { chart.naming(&name) } else { chart };
+        Some(svg::svg(&chart, Width::ONE_COLUMN))
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {
