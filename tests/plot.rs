@@ -159,8 +159,8 @@ fn data_replace_nothing_but_data_of_a_figure() {
 fn neither_the_figure_nor_its_data_replace_what_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
-    let rows: String =
-        (0..=100).map(|i| 2.0 * f64::from(i)).map(|r| format!("{r},{}\n", r * r / 2e3)).collect();
+    let rows: Vec<String> = (0..=100).map(|i| format!("{},{}", 2 * i, f64::from(2 * i * i) / 1e3)).collect();
+    let rows = rows.join("\n");
     std::fs::write(file("rows.csv"), format!("r,h\n{rows}")).unwrap();
     let preset = pulloff(folder.path(), &["presets", "show", "profile"]).stdout;
     let preset = String::from_utf8(preset).unwrap();

@@ -133,7 +133,7 @@ pub fn differences(text: &str, spec: &Spec) -> String {
     let (theirs, ours) = (sweep(text), sweep(&spec.canonical()));
     let part = |sweep: &Option<Value>, key: &str| sweep.as_ref().and_then(|sweep| sweep.get(key)).cloned();
     let differs = |key: &&str| part(&theirs, key) != part(&ours, key);
-    let named = PARTS.iter().filter(|(keys, _)| keys.iter().any(|key| differs(&key))).map(|(keys, name)| {
+    let named = PARTS.iter().filter(|(keys, _)| keys.iter().any(differs)).map(|(keys, name)| {
         let values = [&theirs, &ours].map(|sweep| part(sweep, keys[0]));
         match values.map(|value| value.and_then(|value| value.as_str().map(values_of))) {
             [Some(theirs), Some(ours)] if *keys == ["preset"] => format!("{name}{}", changed(&theirs, &ours)),
