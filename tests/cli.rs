@@ -608,8 +608,11 @@ fn what_is_read_is_not_written_over() {
     let preset = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.01\n[gap]\nshape = \"profile\"\n\
                   file = \"scan.csv\"\n[path]\nstart_contact_radius = 0.5\n";
     home.file("mine.toml", preset);
-    let rows: String =
-        (0..100).map(f64::from).map(|i| format!("{},{}\n", i / 50.0, i * i / 5000.0)).collect();
+    let rows: String = (0..100)
+        .map(f64::from)
+        .map(|i| format!("{},{}\n", i / 50.0, i * i / 5000.0))
+        .collect::<Vec<_>>()
+        .concat();
     home.file("scan.csv", &rows);
     for (command, file) in [("trace", "./mine.toml"), ("unload", "mine.toml"), ("trace", "scan.csv")] {
         home.refused(&[command, "mine.toml", "-o", file], &["that is read"]);

@@ -290,7 +290,8 @@ fn a_profile_without_units_in_si_is_taken_in_metres_with_a_warning() {
         (0..200)
             .map(f64::from)
             .map(|i| format!("{},{}\n", i * 5.0 * unit, (i * 0.005).powi(2) * 500.0 * unit))
-            .collect()
+            .collect::<Vec<_>>()
+            .concat()
     };
     let preset = home.file(
         "scan.toml",

@@ -9,7 +9,7 @@
 use super::command::{Command, Id, MOST_STEPS};
 use super::curve::CurveData;
 use super::history::{Node, NodeKind};
-use super::model::{FIRST_LENGTH, Model};
+use super::model::{CurveError, FIRST_LENGTH, Model};
 use super::script;
 use super::walk::{Action, Outcome};
 use crate::preset::changes::changes;
@@ -115,10 +115,10 @@ impl Journal {
         journal.abandoned();
         // Values whose curve was given up have no state: nothing was done with them.
         let preset = match &model.curve {
-            Some(curve) if model.is_given_up => &curve.setting.preset,
+            Some(curve) if matches!(model.curve_error, Some(CurveError::GivenUp(_))) => &curve.setting.preset,
             _ => &model.preset,
         };
-        let failed = model.curve_error.is_some() && !model.is_given_up;
+        let failed = matches!(model.curve_error, Some(CurveError::Failed(_)));
         journal.sync(preset, Some((model.inward, model.length)), failed);
         journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
     }

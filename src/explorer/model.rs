@@ -17,6 +17,24 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+/// Why the values as they are have no curve, in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CurveError {
+    /// It was given up.
+    GivenUp(String),
+    /// It could not be computed.
+    Failed(String),
+}
+
+impl CurveError {
+    /// The words.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::GivenUp(text) | Self::Failed(text) => text,
+        }
+    }
+}
+
 /// The panels that can be selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -116,9 +134,7 @@ pub struct Model {
     /// The curve on the screen; it can be older than the preset while a new one is computed.
     pub curve: Option<Arc<CurveData>>,
     /// That the preset as it is now has no curve, and why, in words.
-    pub curve_error: Option<String>,
-    /// That it has none because it was given up.
-    pub is_given_up: bool,
+    pub curve_error: Option<CurveError>,
     /// The number of the newest curve asked for.
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
@@ -226,7 +242,6 @@ impl Model {
             fingerprint: loaded.fingerprint,
             curve: None,
             curve_error: None,
-            is_given_up: false,
             curve_wanted: 0,
             curve_shown: 0,
             progress: None,

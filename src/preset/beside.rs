@@ -100,7 +100,8 @@ mod tests {
     fn data_in_micrometres_are_the_same_beside_a_preset_in_si() {
         let home = tempfile::tempdir().unwrap();
         let at = |name: &str| home.path().join(name);
-        let rows: String = (0..100).map(f64::from).map(|r| format!("{r} {}\n", r * r / 2000.0)).collect();
+        let rows = (0..100).map(f64::from).map(|r| format!("{r} {}\n", r * r / 2000.0));
+        let rows = rows.collect::<Vec<_>>().concat();
         fs::write(at("scan.dat"), format!("r [um] h [um]\n{rows}")).unwrap();
         fs::write(
             at("si.toml"),

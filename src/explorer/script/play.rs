@@ -4,7 +4,7 @@ use super::borders::allowed;
 use super::{Line, line};
 use crate::explorer::command::{Command, by_name};
 use crate::explorer::driver::{Effect, Inline};
-use crate::explorer::model::{Level, Model};
+use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
 use thiserror::Error;
 
@@ -83,5 +83,5 @@ fn refusal(model: &Model) -> Option<String> {
     let (_, text) = model.message.as_ref().filter(|(level, _)| *level == Level::Error)?;
     // Nothing is computed any more: where there is no curve, it could not be.
     let cause = model.curve_error.as_ref().filter(|_| model.curve.is_none());
-    Some(by_name(cause.unwrap_or(text)))
+    Some(by_name(cause.map_or(text, CurveError::text)))
 }

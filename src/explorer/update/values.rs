@@ -11,7 +11,7 @@ use crate::explorer::curve::CurveData;
 use crate::explorer::driver::{Check, Effect, Wish};
 use crate::explorer::files::Job;
 use crate::explorer::history::NodeKind;
-use crate::explorer::model::{Checking, Level, Model, Untried};
+use crate::explorer::model::{Checking, CurveError, Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::walk::Action;
@@ -29,7 +29,7 @@ use std::sync::Arc;
 pub(in crate::explorer) fn want_curve(model: &mut Model) -> Effect {
     let id = number(model);
     model.curve_wanted = id;
-    (model.progress, model.curve_error, model.is_given_up) = (None, None, false);
+    (model.progress, model.curve_error) = (None, None);
     // The curve does not know what is controlled: under another control it need not be swept again.
     let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
     let sweep = known.map(Arc::clone);
@@ -58,8 +58,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
         }
     };
     if control.is_none() {
-        model.curve_error = Some(text.clone());
-        model.is_given_up = true;
+        model.curve_error = Some(CurveError::GivenUp(text.clone()));
     }
     tell(model, Level::Info, text);
     vec![Effect::StopCurve(model.curve_wanted)]
@@ -75,7 +74,7 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
             model.queue.clear();
             let text = format!("no curve for these values: {reason}");
             tell(model, Level::Error, text.clone());
-            model.curve_error = Some(text);
+            model.curve_error = Some(CurveError::Failed(text));
             Vec::new()
         }
         Ok(curve) => {
@@ -175,7 +174,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     if model.shows_its_curve() {
         // Back at the values of the curve on the screen: the one being computed is no longer wanted.
         model.curve_shown = model.curve_wanted;
-        (model.curve_error, model.is_given_up) = (None, false);
+        model.curve_error = None;
         effects.push(Effect::StopCurve(model.curve_wanted));
     } else {
         effects.push(want_curve(model));

@@ -23,7 +23,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
         return vec![want_curve(model)];
     };
     if !model.shows_its_curve() {
-        let reason = model.curve_error.clone();
+        let reason = model.curve_error.as_ref().map(|error| error.text().to_owned());
         tell(model, Level::Error, reason.unwrap_or_else(of_before));
         return Vec::new();
     }

@@ -84,7 +84,7 @@ fn fault(node: &Node) -> Option<String> {
 
 fn next(model: &Model) -> String {
     if let Some(error) = &model.curve_error {
-        return error.clone();
+        return error.text().to_owned();
     }
     let Some(node) = model.history.current() else {
         return format!("computing the equilibrium curve{}", progress(model));
