@@ -1,7 +1,7 @@
 //! What the panels last showed, to show it again: most keys change one panel, and the charts take longest to draw.
 //!
-//! A picture is kept for as long as every frame shows it, together with all that it was drawn from: the [`Scene`], which
-//! is that of the whole screen, and its [`What`]. Large things are the same when they are the same in memory, which the
+//! A picture is kept for as long as every frame shows it, together with all that it was drawn from: the scene, which
+//! is that of the whole screen, and what it is. Large things are the same when they are the same in memory, which the
 //! scene keeps alive, or by the number that the history counts its changes with.
 
 use crate::explorer::pins::Pin;
