@@ -252,6 +252,20 @@ fn a_png_has_the_size_of_the_figure_and_letters() {
     assert!((0..100).any(dark));
 }
 
+#[test]
+#[cfg(feature = "png")]
+fn every_view_is_a_png_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for view in VIEWS {
+        let output = pulloff(folder.path(), &["plot", "fig-3-jkr", "--view", view, "-o", "view.png"]);
+        assert!(output.status.success(), "{view}: {}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(folder.path().join("view.png")).unwrap();
+        let pixels = resvg::tiny_skia::Pixmap::decode_png(&bytes).unwrap();
+        let dark = pixels.pixels().iter().filter(|pixel| pixel.red() < 80).count();
+        assert!(pixels.width() == 1301 && dark > 1000, "{view}: {dark} dark pixels");
+    }
+}
+
 /// The streams of a PDF as text, where they are texts.
 #[cfg(feature = "pdf")]
 fn streams(pdf: &[u8]) -> Vec<String> {

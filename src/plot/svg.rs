@@ -361,6 +361,8 @@ mod tests {
                 let document = roxmltree::Document::parse(&text).unwrap();
                 assert_eq!(document.root_element().tag_name().name(), "svg");
                 assert!(!text.contains("NaN"), "{text}");
+                #[cfg(feature = "png")]
+                assert!(crate::print::Format::Png.bytes(&text).unwrap().starts_with(b"\x89PNG"));
             }
         }
     }
