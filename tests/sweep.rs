@@ -2,6 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+#[path = "support/home.rs"]
+mod home;
+
+use home::{Ended, Home};
 use pulloff::contact::Shape;
 use pulloff::preset::Store;
 use pulloff::sweep::{QUANTITIES, Results, Shard, Spec};
@@ -10,44 +14,31 @@ use pulloff::theory::kesari_lew::KesariLew;
 use rustix::process::{Pid, Signal, kill_process};
 use std::fs;
 use std::io::{self, BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::ops::Deref;
+use std::path::Path;
+use std::process::{Child, Output, Stdio};
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
-/// A home of its own, in which the program runs.
-struct Home(TempDir);
+/// A home with its sweeps.
+struct Sweeps(Home);
 
-impl Home {
+impl Deref for Sweeps {
+    type Target = Home;
+
+    fn deref(&self) -> &Home {
+        &self.0
+    }
+}
+
+impl Sweeps {
     fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn file(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
-        let home = self.0.path();
-        command.env_clear().env("HOME", home).env("XDG_CONFIG_HOME", home).current_dir(home);
-        command.args(arguments).stdin(Stdio::null());
-        command
+        Self(Home::new())
     }
 
     /// Runs to the end: status, standard output, standard error.
     fn run(&self, arguments: &[&str]) -> (i32, String, String) {
-        let Output { status, stdout, stderr } = self.command(arguments).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (status.code().unwrap(), text(stdout), text(stderr))
+        let Ended { status, out, err } = self.0.run(arguments);
+        (status, out, err)
     }
 
     /// A sweep that succeeds; what it says.
@@ -58,9 +49,7 @@ impl Home {
     }
 
     fn refused(&self, arguments: &[&str], said: &str) {
-        let (status, out, err) = self.run(arguments);
-        assert_eq!((status, out.as_str()), (2, ""), "{arguments:?}: {err}");
-        assert!(err.contains(said), "{arguments:?}: no {said:?} in {err}");
+        self.0.refused(arguments, &[said]);
     }
 
     /// Columns of results as text.
@@ -94,7 +83,7 @@ fn long(rows: u64) -> String {
 
 #[test]
 fn a_grid_has_every_row_and_each_can_be_repeated() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("grid.toml", GRID);
     let said = home.sweep("grid.toml", "r.csv", &["--jobs", "2"]);
     assert!(
@@ -138,7 +127,7 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
 
 #[test]
 fn pairs_go_together_and_units_are_read() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file(
         "pairs.toml",
         r#"
@@ -197,7 +186,7 @@ distribution = { uniform = [0.2, 0.9] }
 
 #[test]
 fn random_rows_follow_from_seed_and_number() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("a.toml", RANDOM);
     home.file("b.toml", &RANDOM.replace("seed = 7\n[[", "seed = 8\n[["));
     home.sweep("a.toml", "a.csv", &[]);
@@ -220,7 +209,7 @@ fn random_rows_follow_from_seed_and_number() {
     // Many draws have the mean and the spread that were asked for.
     let store = Store::at(home.path("presets"), &[]);
     let many = RANDOM.replace("draws = 12", "draws = 20000");
-    let spec = Spec::read(&store, home.0.path(), "many", &many).unwrap();
+    let spec = Spec::read(&store, home.folder(), "many", &many).unwrap();
     let draws: Vec<f64> =
         (0..20000).map(|row| spec.values(row)[2].to_string().parse::<f64>().unwrap()).collect();
     let mean = draws.iter().sum::<f64>() / 2e4;
@@ -230,7 +219,7 @@ fn random_rows_follow_from_seed_and_number() {
 
 #[test]
 fn a_row_that_fails_says_why_and_stops_nothing() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file(
         "s.toml",
         r#"
@@ -267,7 +256,7 @@ values = ["auto", "auto", "auto", 4]
 
 #[test]
 fn a_sweep_goes_on_from_any_byte() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("s.toml", GRID);
     home.sweep("s.toml", "whole.csv", &[]);
     let whole = home.text("whole.csv");
@@ -296,7 +285,7 @@ fn wait_for_rows(child: &mut Child, results: &Path, rows: usize) {
 
 #[test]
 fn signals_keep_what_is_done() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("s.toml", &long(6000));
     let ended = |results: &str, signal: Signal| {
         // Rows of its own: by then it catches signals.
@@ -326,7 +315,7 @@ fn signals_keep_what_is_done() {
 
 #[test]
 fn two_at_once_do_not_write_one_file() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("s.toml", &long(3000));
     let mut child = home.command(&["sweep", "s.toml", "-o", "r.csv"]).stderr(Stdio::null()).spawn().unwrap();
     wait_for_rows(&mut child, &home.path("r.csv"), 2);
@@ -353,7 +342,7 @@ fn two_at_once_do_not_write_one_file() {
 
 #[test]
 fn shards_join_to_the_single_run() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("s.toml", GRID);
     home.sweep("s.toml", "whole.csv", &[]);
     let parts = ["1.csv", "2.csv", "3.csv"];
@@ -396,7 +385,7 @@ fn shards_join_to_the_single_run() {
 
 #[test]
 fn results_of_something_else_are_not_touched() {
-    let home = Home::new();
+    let home = Sweeps::new();
     home.file("s.toml", GRID);
     home.sweep("s.toml", "r.csv", &[]);
     let whole = home.text("r.csv");
@@ -465,7 +454,7 @@ fn results_of_something_else_are_not_touched() {
 
 #[test]
 fn a_preset_is_found_beside_the_spec() {
-    let home = Home::new();
+    let home = Sweeps::new();
     fs::create_dir(home.path("specs")).unwrap();
     let (_, preset, _) = home.run(&["presets", "show", "wavy-sphere"]);
     home.file("specs/mine.toml", &preset);
@@ -481,7 +470,7 @@ fn a_preset_is_found_beside_the_spec() {
 
 #[test]
 fn the_quantities_are_listed_and_in_the_manual() {
-    let home = Home::new();
+    let home = Sweeps::new();
     let (status, out, _) = home.run(&["sweep", "quantities"]);
     assert_eq!(status, 0);
     let manual = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
@@ -492,7 +481,7 @@ fn the_quantities_are_listed_and_in_the_manual() {
 }
 
 /// Rows of many small waves; `start` says where their curves begin.
-fn small_waves(home: &Home, start: &str) -> Spec {
+fn small_waves(home: &Sweeps, start: &str) -> Spec {
     let store = Store::at(home.path("presets"), &[]);
     let text = format!(
         r#"
@@ -513,7 +502,7 @@ key = "groups.adhesion"
 distribution = {{ log-uniform = [0.01, 0.05] }}
 {start}"#
     );
-    Spec::read(&store, home.0.path(), "s", &text).unwrap()
+    Spec::read(&store, home.folder(), "s", &text).unwrap()
 }
 
 /// The rows of `spec` with an enhancement: its number, its distance from the estimate, the waves; and those without.
@@ -540,7 +529,7 @@ fn enhanced(spec: &Spec) -> (Vec<(u64, f64, f64)>, Vec<u64>) {
 
 #[test]
 fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
-    let home = Home::new();
+    let home = Sweeps::new();
     let spec = small_waves(&home, "");
     let (had, cut_off) = enhanced(&spec);
     assert!(cut_off.is_empty(), "{cut_off:?}");
@@ -553,7 +542,7 @@ fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
 
 #[test]
 fn a_start_that_cuts_the_smallest_force_off_is_said() {
-    let home = Home::new();
+    let home = Sweeps::new();
     // The same problems and one more draw, from starts on both sides of the smallest force.
     let start = "[[axis]]\nkey = \"path.start_contact_radius\"\ndistribution = { uniform = [0.12, 0.45] }\n";
     let spec = small_waves(&home, start);

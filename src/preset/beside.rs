@@ -7,8 +7,7 @@ use super::model::Preset;
 use super::profile::LARGEST;
 use super::text::show_path;
 use crate::contact::Shape;
-use crate::contact::shapes::{Measured, Rows};
-use crate::units::UnitSystem;
+use crate::contact::shapes::Measured;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,11 +28,7 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
     let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
         return Err(format!("{shown}: is no name of a file"));
     };
-    // As the preset holds them, which is in metres in SI.
-    let held = |rows: Rows| {
-        if preset.units == UnitSystem::Reduced { Arc::new(rows) } else { Arc::new(rows).in_metres() }
-    };
-    let now = held(measured::load(rows.folder.as_deref(), &rows.name)?);
+    let now = Arc::new(measured::load(rows.folder.as_deref(), &rows.name)?).held_in(&preset.units);
     if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
         return Err(format!("{shown}: holds other rows than were read; choose the file again first"));
     }
@@ -45,7 +40,7 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
         }
         Err(error) => return Err(error.to_string()),
     }
-    let copied = held(measured::load(Some(folder), name)?);
+    let copied = Arc::new(measured::load(Some(folder), name)?).held_in(&preset.units);
     let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
     copy.gap = Shape::Profile(Arc::new(measured));
     Ok(copy)

@@ -181,8 +181,7 @@ impl Given<'_> {
             },
             _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
         };
-        let rows = if self.units == UnitSystem::Reduced { rows } else { rows.in_metres() };
-        match Measured::new(rows, smoothing) {
+        match Measured::new(rows.held_in(&self.units), smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),
             Err(error) => self.fault("gap.file", &error.words(&self.units)),
         }

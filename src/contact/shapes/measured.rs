@@ -1,7 +1,7 @@
 //! A measured profile together with the file it came from.
 
 use super::profile::{InvalidProfile, Profile, Smoothing};
-use crate::units::{Quantity, Unit};
+use crate::units::{Quantity, Unit, UnitSystem};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -28,9 +28,13 @@ impl Rows {
         self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
     }
 
-    /// The rows in metres; those without a unit are taken to be, with a note.
+    /// The rows as a preset in these units holds them: in SI in metres, and those without a unit are taken to be, with a
+    /// note.
     #[must_use]
-    pub fn in_metres(self: Arc<Self>) -> Arc<Self> {
+    pub fn held_in(self: Arc<Self>, units: &UnitSystem) -> Arc<Self> {
+        if *units == UnitSystem::Reduced {
+            return self;
+        }
         let metre = Unit::parse("m", 0).ok();
         if self.unit.is_some() && self.unit == metre {
             return self;
