@@ -59,11 +59,6 @@ impl<'a> Breaks<'a> {
         &self.knots[first..last.max(first)]
     }
 
-    /// Whether sums over a disc of radius `s` need a rule of its own.
-    pub fn matter(&self, s: f64) -> bool {
-        self.cubic || self.axis == Axis::Broken || self.knots.first().is_some_and(|knot| *knot < s)
-    }
-
     /// The stretches between the radii `from` and `to > from`, ascending.
     ///
     /// What a disc of radius a feels of a knot at c < a is singular there, as a power of √(a − c); a disc that does not reach
@@ -241,6 +236,5 @@ mod tests {
         assert_eq!(found, [[0.15, 0.2, 0.1], [0.2, 0.5, 0.2]]);
         let found: Vec<[f64; 3]> = breaks.stretches(0.0, 0.05).map(|s| [s.from, s.to, s.base]).collect();
         assert_eq!(found, [[0.0, 0.05, 0.0]]);
-        assert!(breaks.matter(0.11) && !breaks.matter(0.1) && !Breaks::default().matter(9.0));
     }
 }

@@ -29,6 +29,16 @@ impl Control {
         }
     }
 
+    /// The weights of δ and P in a positive multiple of the controlled quantity: the larger is between ½ and 1, whatever the
+    /// stiffness, and nothing overflows.
+    pub fn weights(self) -> (f64, f64) {
+        match self {
+            Self::Displacement => (1.0, 0.0),
+            Self::Force => (0.0, 1.0),
+            Self::Stiffness(k) => (k / (1.0 + k), 1.0 / (1.0 + k)),
+        }
+    }
+
     /// The same control with its stiffness divided by `unit`.
     #[must_use]
     pub fn in_units(self, unit: f64) -> Self {

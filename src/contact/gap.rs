@@ -23,6 +23,65 @@ impl Jet {
     pub const UNKNOWN: Self = Self { value: f64::NAN, first: f64::NAN, second: f64::NAN, third: f64::NAN };
 }
 
+/// One wave of a gap's slope: h' has the term `amplitude`·`wavenumber`·sin(`wavenumber` r + phase).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    /// A, a length.
+    pub amplitude: f64,
+    /// q = 2π/λ, positive, 1/length.
+    pub wavenumber: f64,
+    /// The sine and the cosine of the phase.
+    pub phase: [f64; 2],
+}
+
+/// One piece of a gap that is a cubic between its knots: h' = c₀ + c₁t + c₂t², t = r − `lo`, on [`lo`, `hi`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// The smaller end.
+    pub lo: f64,
+    /// The larger end.
+    pub hi: f64,
+    /// c₀, c₁, c₂.
+    pub slope: [f64; 3],
+}
+
+/// What is known of a gap as a function, beyond its values: transforms of some are found faster, or in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    /// Nothing.
+    Any,
+    /// h = c rⁿ.
+    Power {
+        /// c, a length to the power 1 − n.
+        factor: f64,
+        /// n.
+        exponent: f64,
+    },
+    /// A paraboloid h'' = `curvature` with waves.
+    Waves {
+        /// 1/R.
+        curvature: f64,
+        /// The waves.
+        waves: Vec<Wave>,
+    },
+    /// A cubic between knots, from the axis to the last row.
+    Cubic(Vec<Piece>),
+}
+
+/// A disc of the complex plane over which a gap's slope is bounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// Its centre c, a real radius.
+    pub centre: f64,
+    /// Its radius R.
+    pub radius: f64,
+    /// A real radius r: of abs, min, max, sign, step the branch that holds there is meant, continued over the disc.
+    pub branch: f64,
+}
+
+/// The most breaks of one gap.
+pub const MOST_BREAKS: usize = 100_000;
+
 /// An axisymmetric initial gap h(r) between the undeformed bodies, with h(0) = 0.
 pub trait Gap: Debug + Send + Sync {
     /// The gap and its derivatives at the radius `r ≥ 0`.
@@ -56,18 +115,37 @@ pub trait Gap: Debug + Send + Sync {
         None
     }
 
-    /// The shortest wave of a gap that is smooth in r apart from its waves, or `None` where nothing is promised.
-    ///
-    /// Sums over such a gap take no more nodes than its waves need.
-    fn band_limit(&self) -> Option<f64> {
-        None
-    }
-
     /// Where the gap is not smooth.
     ///
     /// Sums over it, in a disc or along the curve, are broken there.
     fn breaks(&self) -> Breaks<'_> {
         Breaks::default()
+    }
+
+    /// An upper bound of |h'| on `disc` for the analytic continuation of the smooth piece that holds at its `branch`;
+    /// infinite where there is no bound: a pole or a branch point.
+    ///
+    /// `None`: the gap promises nothing about complex radii. How finely it must be divided is then judged by samples.
+    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+        let _ = disc;
+        None
+    }
+
+    /// All radii above 0 and below `to` where h or a derivative may jump, ascending, to the last bit.
+    ///
+    /// Some may be superfluous, none is missing, except where a gap has more than [`MOST_BREAKS`].
+    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
+        self.breaks().between(0.0, to).to_vec()
+    }
+
+    /// What is known of it as a function.
+    fn form(&self) -> Form {
+        Form::Any
+    }
+
+    /// The name of the first function in the gap whose slope over complex discs has no rule: the gap is then not certified.
+    fn uncertified(&self) -> Option<&'static str> {
+        None
     }
 
     /// The length by which the problem is reduced (the radius of curvature, where there is one).
@@ -128,12 +206,51 @@ impl<G: Gap> Gap for Scaled<G> {
         self.gap.wavelength().map(|wavelength| wavelength / self.length)
     }
 
-    fn band_limit(&self) -> Option<f64> {
-        self.gap.band_limit().map(|f| f / self.length)
-    }
-
     fn breaks(&self) -> Breaks<'_> {
         Breaks { knots: &self.knots, ..self.gap.breaks() }
+    }
+
+    fn form(&self) -> Form {
+        let l = self.length;
+        match self.gap.form() {
+            Form::Any => Form::Any,
+            Form::Power { factor, exponent } => {
+                Form::Power { factor: factor * l.powf(exponent - 1.0), exponent }
+            }
+            Form::Waves { curvature, waves } => {
+                let scaled = |wave: Wave| Wave {
+                    amplitude: wave.amplitude / l,
+                    wavenumber: wave.wavenumber * l,
+                    phase: wave.phase,
+                };
+                Form::Waves { curvature: curvature * l, waves: waves.into_iter().map(scaled).collect() }
+            }
+            Form::Cubic(pieces) => {
+                let scaled = |Piece { lo, hi, slope: [a, b, c] }| Piece {
+                    lo: lo / l,
+                    hi: hi / l,
+                    slope: [a, b * l, c * l * l],
+                };
+                Form::Cubic(pieces.into_iter().map(scaled).collect())
+            }
+        }
+    }
+
+    fn slope_bound(&self, Disc { centre, radius, branch }: Disc) -> Option<f64> {
+        let l = self.length;
+        self.gap.slope_bound(Disc { centre: l * centre, radius: l * radius, branch: l * branch })
+    }
+
+    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
+        let l = self.length;
+        let mut breaks: Vec<f64> =
+            self.gap.breaks_up_to(l * to).into_iter().map(|b| first_beyond(b, l)).collect();
+        breaks.retain(|b| *b < to);
+        breaks
+    }
+
+    fn uncertified(&self) -> Option<&'static str> {
+        self.gap.uncertified()
     }
 
     fn reference_length(&self) -> f64 {
@@ -143,6 +260,18 @@ impl<G: Gap> Gap for Scaled<G> {
     fn largest_radius(&self) -> Option<f64> {
         self.gap.largest_radius().map(|r| r / self.length)
     }
+}
+
+/// The smallest r̃ with L r̃ ≥ r, as rounded: a break stays on the same side of what lies beside it.
+fn first_beyond(r: f64, length: f64) -> f64 {
+    let mut scaled = r / length;
+    while length * scaled < r {
+        scaled = scaled.next_up();
+    }
+    while length * scaled.next_down() >= r {
+        scaled = scaled.next_down();
+    }
+    scaled
 }
 
 impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
@@ -166,12 +295,24 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
         (**self).wavelength()
     }
 
-    fn band_limit(&self) -> Option<f64> {
-        (**self).band_limit()
-    }
-
     fn breaks(&self) -> Breaks<'_> {
         (**self).breaks()
+    }
+
+    fn form(&self) -> Form {
+        (**self).form()
+    }
+
+    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+        (**self).slope_bound(disc)
+    }
+
+    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
+        (**self).breaks_up_to(to)
+    }
+
+    fn uncertified(&self) -> Option<&'static str> {
+        (**self).uncertified()
     }
 
     fn reference_length(&self) -> f64 {

@@ -8,17 +8,21 @@
 //! | [`shape`] | the gap shapes a person can choose |
 //! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
 //! | [`formula`] | gaps typed as formulas in r |
+//! | [`panels`] | panels on which the slope of a gap is proved to be resolved |
 //! | [`problem`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
 //! | [`start`] | how the start of a path is given |
 
 pub mod breaks;
+#[cfg(test)]
+mod complex;
 pub mod control;
 pub mod formula;
 pub mod gap;
 pub mod groups;
-mod lanes;
+pub(crate) mod lanes;
+pub mod panels;
 pub mod problem;
 pub mod shape;
 pub mod shapes;
@@ -26,7 +30,7 @@ pub mod start;
 
 pub use breaks::{Axis, Breaks};
 pub use control::Control;
-pub use gap::{Gap, Jet};
+pub use gap::{Disc, Form, Gap, Jet, Piece, Wave};
 pub use groups::Groups;
 pub use problem::{Problem, Reduced, Units};
 pub use shape::Shape;

@@ -2,8 +2,9 @@
 
 use super::breaks::Breaks;
 use super::formula::TypedGap;
-use super::gap::{Gap, Jet};
+use super::gap::{Disc, Form, Gap, Jet, Wave};
 use super::lanes::map_lanes;
+use super::shapes::harmonics::sine_change;
 use super::shapes::power_law::NEARLY_A_CONE;
 use super::shapes::random_waves::RandomWavesError;
 use super::shapes::{ExactSphere, Harmonics, Measured, PowerLaw, RandomWaves};
@@ -125,6 +126,14 @@ impl Shape {
         }
     }
 
+    /// What else is worth knowing of the gap, likewise.
+    pub fn remarks(&self, units: &UnitSystem) -> Vec<String> {
+        match self {
+            Self::Profile(measured) => measured.profile().remarks(units),
+            _ => Vec::new(),
+        }
+    }
+
     /// The gap where it is not one of the paper's two, which are computed here.
     fn other(&self) -> Option<Other<'_>> {
         Some(match self {
@@ -225,13 +234,6 @@ impl Gap for Shape {
         self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
     }
 
-    fn band_limit(&self) -> Option<f64> {
-        if let Some(other) = self.other() {
-            return other.gap().band_limit();
-        }
-        self.feature_length()
-    }
-
     fn breaks(&self) -> Breaks<'_> {
         match self {
             Self::Sphere { .. } | Self::WavySphere { .. } => Breaks::default(),
@@ -242,6 +244,45 @@ impl Gap for Shape {
             Self::Formula(typed) => typed.gap().breaks(),
             Self::Profile(measured) => measured.profile().breaks(),
         }
+    }
+
+    fn form(&self) -> Form {
+        match self {
+            Self::Sphere { radius_of_curvature } => {
+                Form::Power { factor: 0.5 / radius_of_curvature, exponent: 2.0 }
+            }
+            Self::WavySphere { radius_of_curvature, amplitude, wavelength } => {
+                let wave = Wave { amplitude: *amplitude, wavenumber: TAU / wavelength, phase: [0.0, 1.0] };
+                let waves = if *amplitude == 0.0 { Vec::new() } else { vec![wave] };
+                Form::Waves { curvature: 1.0 / radius_of_curvature, waves }
+            }
+            Self::Cone { slope } => PowerLaw::cone(*slope).form(),
+            Self::PowerLaw(gap) => gap.form(),
+            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => gap.form(),
+            Self::Profile(measured) => measured.profile().form(),
+            Self::ExactSphere(_) | Self::Formula(_) => Form::Any,
+        }
+    }
+
+    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+        if let Some(other) = self.other() {
+            return other.gap().slope_bound(disc);
+        }
+        let Disc { centre, radius, .. } = disc;
+        let wave = self.wave().map_or(0.0, |(amplitude, wavelength)| {
+            let q = TAU / wavelength;
+            let (sin, cos) = (q * centre).sin_cos();
+            (amplitude * q).abs() * sine_change(sin, cos, q * radius)
+        });
+        Some(self.jet(centre).first.abs() + radius / self.paraboloid() + wave)
+    }
+
+    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
+        self.other().map_or_else(Vec::new, |other| other.gap().breaks_up_to(to))
+    }
+
+    fn uncertified(&self) -> Option<&'static str> {
+        self.other()?.gap().uncertified()
     }
 
     fn reference_length(&self) -> f64 {
@@ -256,7 +297,9 @@ impl Gap for Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::complex::{Complex, largest_on};
     use crate::contact::gap::Scaled;
+    use crate::contact::shapes::{Harmonic, Profile, Smoothing};
 
     #[test]
     fn derivatives_agree_with_central_differences() {
@@ -317,5 +360,88 @@ mod tests {
         let flat = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0, wavelength: 0.1 };
         assert_eq!(flat.feature_length(), None);
         assert_eq!(flat.jet(0.3), Shape::Sphere { radius_of_curvature: 1.0 }.jet(0.3));
+    }
+
+    /// h' at a complex radius, of the piece that holds at a real one.
+    type Slope<'a> = Box<dyn Fn(Complex, f64) -> Complex + 'a>;
+
+    #[test]
+    fn slopes_on_discs_stay_within_their_bounds() {
+        let wave = |amplitude, wavelength, phase| Harmonic { amplitude, wavelength, phase };
+        let waves = vec![wave(0.003, 0.07, 0.0), wave(-0.001, 0.2, 1.1)];
+        let rows: Vec<f64> = (0..40).map(|i| f64::from(i) / 20.0).collect();
+        let heights: Vec<f64> = rows.iter().map(|r| 0.5 * r * r + 0.01 * (9.0 * r).cos()).collect();
+        let profile = Profile::new(&rows, &heights, Smoothing::None).unwrap();
+        let spline = profile.clone();
+        let sine = |z: Complex, Harmonic { amplitude, wavelength, phase }: Harmonic| {
+            let q = TAU / wavelength;
+            (z * q + phase).sin() * (amplitude * q)
+        };
+        let examples: Vec<(Box<dyn Gap>, Slope)> = vec![
+            (Box::new(Shape::Sphere { radius_of_curvature: 1.7 }), Box::new(|z, _| z * (1.0 / 1.7))),
+            (
+                Box::new(Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 }),
+                Box::new(|z, _| z * 1.25 + sine(z, waves[0])),
+            ),
+            (
+                Box::new(Harmonics::new(0.8, waves.clone()).unwrap()),
+                Box::new(|z, _| z * 1.25 + sine(z, waves[0]) + sine(z, waves[1])),
+            ),
+            (Box::new(Shape::Cone { slope: 0.3 }), Box::new(|_, _| Complex(0.3, 0.0))),
+            (Box::new(PowerLaw { factor: 0.4, exponent: 2.7 }), Box::new(|z, _| z.power(1.7) * (0.4 * 2.7))),
+            (Box::new(PowerLaw { factor: 0.4, exponent: 4.0 }), Box::new(|z, _| z * z * z * 1.6)),
+            (Box::new(ExactSphere { radius: 1.7 }), Box::new(|z, _| z / (-(z * z) + 1.7 * 1.7).power(0.5))),
+            (
+                Box::new(profile),
+                Box::new(|z, branch| {
+                    let jet = spline.jet(branch);
+                    let t = z + -branch;
+                    t * t * (0.5 * jet.third) + t * jet.second + jet.first
+                }),
+            ),
+        ];
+        let mut random = fastrand::Rng::with_seed(2);
+        for (gap, slope) in &examples {
+            let mut looked_at = 0;
+            for _ in 0..300 {
+                let (centre, branch) = (1.5 * random.f64(), 1.5 * random.f64());
+                let radius = 10f64.powf(-4.0 + 4.0 * random.f64());
+                let most = gap.slope_bound(Disc { centre, radius, branch }).unwrap();
+                looked_at += i32::from(most.is_finite());
+                let largest = largest_on(centre, radius, |z| slope(z, branch));
+                assert!(
+                    largest <= most * (1.0 + 1e-12) || most.is_infinite(),
+                    "{gap:?} {centre} {radius}: {largest} {most}"
+                );
+                // A small disc is hardly more than its centre.
+                if radius < 1e-3 && most.is_finite() {
+                    assert!(most <= 1.01 * largest + 0.01, "{gap:?} {centre} {radius}: {largest} {most}");
+                }
+            }
+            assert!(looked_at > 200, "{gap:?}");
+        }
+    }
+
+    #[test]
+    fn another_unit_of_length_keeps_breaks_and_bounds() {
+        let text = "r^2/2 + 0.01*abs(r - 0.3) + max(r - 0.7, 0)^2";
+        let plain = TypedGap::new(text, Vec::new(), Some(1.0)).unwrap();
+        let shape = Shape::Formula(Arc::new(plain.clone()));
+        for length in [0.3, 1.7e-6, 12.1] {
+            let scaled = Scaled::new(shape.clone(), length);
+            let breaks = scaled.breaks_up_to(1.0 / length);
+            assert_eq!(breaks.len(), 2);
+            for (found, exact) in breaks.iter().zip([0.3, 0.7]) {
+                assert!(length * found >= exact && length * found.next_down() < exact, "{found} {exact}");
+            }
+            let disc = Disc { centre: 0.5, radius: 0.1, branch: 0.4 };
+            let [centre, radius, branch] = [0.5, 0.1, 0.4].map(|r| r / length);
+            let (ours, exact) =
+                (scaled.slope_bound(Disc { centre, radius, branch }), plain.gap().slope_bound(disc));
+            assert!((ours.unwrap() / exact.unwrap() - 1.0).abs() < 1e-14);
+            assert_eq!(scaled.uncertified(), None);
+        }
+        // Beyond what was searched at first.
+        assert_eq!(shape.breaks_up_to(100.0), [0.3, 0.7]);
     }
 }

@@ -63,6 +63,8 @@ static ELECTRONVOLT: Named = Named { mantissa: 1.602_176_634, ..named("eV", ENER
 // The second character is the ångström sign, which looks the same.
 static ANGSTROM: Named =
     Named { ascii: "angstrom", alias: "\u{212b}", prefixed: false, ..named("Å", LENGTH, -10) };
+static MICRON: Named = Named { prefixed: false, ..named("micron", LENGTH, -6) };
+static INCH: Named = Named { mantissa: 2.54, prefixed: false, ..named("in", LENGTH, -2) };
 static BAR: Named = named("bar", STRESS, 5);
 static DYNE: Named = Named { prefixed: false, ..named("dyn", FORCE, -5) };
 static ERG: Named = Named { prefixed: false, ..named("erg", ENERGY, -7) };
@@ -76,7 +78,7 @@ static DEGREE: Named = Named {
 };
 
 /// The units by name.
-pub static UNITS: [&Named; 13] = [
+pub static UNITS: [&Named; 15] = [
     &METRE,
     &NEWTON,
     &PASCAL,
@@ -85,6 +87,8 @@ pub static UNITS: [&Named; 13] = [
     &SECOND,
     &ELECTRONVOLT,
     &ANGSTROM,
+    &MICRON,
+    &INCH,
     &BAR,
     &DYNE,
     &ERG,
@@ -160,7 +164,7 @@ mod tests {
                 }
             }
         }
-        for word in ["", "k", "mkm", "kdeg", "um2", "PA", "n m", "metre"] {
+        for word in ["", "k", "mkm", "kdeg", "um2", "PA", "n m", "metre", "min", "kmicron"] {
             assert_eq!(lookup(word), None, "{word}");
         }
     }

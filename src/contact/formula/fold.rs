@@ -44,23 +44,26 @@ pub struct Wave {
     pub period: f64,
 }
 
-/// Steps whose zeros make the formula infinite.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pole {
-    /// The steps of a denominator, of the argument of a logarithm or of a tangent.
-    pub argument: Range<usize>,
-    /// Whether it is a tangent, infinite where the cosine is zero.
-    pub tangent: bool,
+/// What is zero where the formula may not be smooth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Zero {
+    /// x, or x − y: the argument of abs, sign, step, of a root, a broken power, a logarithm, or what min, max compare.
+    Difference,
+    /// x² + y², the radicand of hypot.
+    Squares,
+    /// 1 − x², the radicand of the slopes of arcsin and arccos.
+    Unit,
 }
 
-/// Steps whose sign, or the smaller of which, decides what the formula is: at zero, or where they are equal, it has a
-/// corner.
+/// Steps whose values decide where the formula may not be smooth.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Corner {
-    /// The steps of the argument, or of the first.
+pub struct Switch {
+    /// The steps of x.
     pub argument: Range<usize>,
-    /// The steps of the second, where two are compared.
+    /// The steps of y, where there are two.
     pub other: Option<Range<usize>>,
+    /// What of them is zero there.
+    pub zero: Zero,
 }
 
 /// The formula as steps.
@@ -72,10 +75,8 @@ pub struct Steps {
     pub depth: usize,
     /// Its periodic functions.
     pub waves: Vec<Wave>,
-    /// Its possible poles.
-    pub poles: Vec<Pole>,
-    /// Its possible corners.
-    pub corners: Vec<Corner>,
+    /// Where it may not be smooth.
+    pub switches: Vec<Switch>,
 }
 
 /// A value on the stack while the steps are written.
@@ -132,20 +133,16 @@ impl Folder {
     /// A step on the value made by the steps from `start` on.
     fn step(&mut self, start: usize, step: Step) {
         let argument = start..self.out.steps.len();
-        let pole = |tangent| Pole { argument: argument.clone(), tangent };
+        let wave = |period| Wave { argument: argument.clone(), period };
+        let switch = |zero| Switch { argument: argument.clone(), other: None, zero };
         match step {
-            Step::Unary(Unary::Sin | Unary::Cos) => {
-                self.out.waves.push(Wave { argument: argument.clone(), period: TAU });
+            Step::Unary(Unary::Sin | Unary::Cos) => self.out.waves.push(wave(TAU)),
+            Step::Unary(Unary::Tan) => self.out.waves.push(wave(PI)),
+            Step::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Sqrt | Unary::Log | Unary::Log10) => {
+                self.out.switches.push(switch(Zero::Difference));
             }
-            Step::Unary(Unary::Tan) => {
-                self.out.waves.push(Wave { argument: argument.clone(), period: PI });
-                self.out.poles.push(pole(true));
-            }
-            Step::Unary(Unary::Log | Unary::Log10) | Step::Over(_) => self.out.poles.push(pole(false)),
-            Step::RealPower(p) if p < 0.0 => self.out.poles.push(pole(false)),
-            Step::Unary(Unary::Abs | Unary::Sign | Unary::Step) => {
-                self.out.corners.push(Corner { argument: argument.clone(), other: None });
-            }
+            Step::RealPower(p) if p.fract() != 0.0 => self.out.switches.push(switch(Zero::Difference)),
+            Step::Unary(Unary::Asin | Unary::Acos) => self.out.switches.push(switch(Zero::Unit)),
             _ => {}
         }
         self.out.steps.push(step);
@@ -156,8 +153,7 @@ impl Folder {
     fn replace(&mut self, start: usize, number: f64) {
         self.out.steps.truncate(start);
         self.out.waves.retain(|wave| wave.argument.end <= start);
-        self.out.poles.retain(|pole| pole.argument.end <= start);
-        self.out.corners.retain(|corner| corner.argument.end <= start);
+        self.out.switches.retain(|switch| switch.argument.end <= start);
         self.slots.push(Slot::Constant(number));
     }
 
@@ -166,10 +162,6 @@ impl Folder {
         match (a, b) {
             (Slot::Constant(a), Slot::Constant(b)) => self.slots.push(Slot::Constant(binary.value(a, b))),
             (Slot::From(start), Slot::From(second)) => {
-                if binary == Binary::Divide {
-                    let argument = second..self.out.steps.len();
-                    self.out.poles.push(Pole { argument, tangent: false });
-                }
                 self.compared(binary, start, second);
                 self.step(start, Step::Binary(binary));
             }
@@ -187,12 +179,16 @@ impl Folder {
         }
     }
 
-    /// The corner of an operation that compares what the steps from `start` on make with those from `second` on.
+    /// Where an operation on what the steps from `start` on make, and those from `second` on, may not be smooth.
     fn compared(&mut self, binary: Binary, start: usize, second: usize) {
-        if matches!(binary, Binary::Min | Binary::Max) {
-            let other = Some(second..self.out.steps.len());
-            self.out.corners.push(Corner { argument: start..second, other });
-        }
+        let other = Some(second..self.out.steps.len());
+        let (other, zero) = match binary {
+            Binary::Min | Binary::Max => (other, Zero::Difference),
+            Binary::Hypot => (other, Zero::Squares),
+            Binary::Power => (None, Zero::Difference),
+            _ => return,
+        };
+        self.out.switches.push(Switch { argument: start..second, other, zero });
     }
 
     /// An operation whose second operand is a number.
@@ -224,7 +220,6 @@ impl Folder {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small integer by now")]
         let n = p.abs() as u32;
         if p < 0.0 {
-            // Before the power, so that the pole is looked for where the base changes its sign.
             self.step(start, Step::Over(1.0));
             self.slots.pop();
         }
@@ -266,11 +261,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_multiplied_by_zero_leaves_no_wave_and_no_pole() {
-        let wavy = steps("r^2 + sin(3*r)*tan(r)/r");
-        assert_eq!((wavy.waves.len(), wavy.poles.len()), (2, 2));
+    fn what_is_multiplied_by_zero_leaves_no_wave_and_no_switch() {
+        let wavy = steps("r^2 + sin(3*r)*tan(r)/sqrt(r)");
+        assert_eq!((wavy.waves.len(), wavy.switches.len()), (2, 1));
         assert_eq!(wavy.waves[0].argument, 2..4);
-        let flat = steps("cos(r) + 0*(sin(3*r)*tan(r)/r)");
-        assert_eq!((flat.waves.len(), flat.poles.len()), (1, 0));
+        let flat = steps("cos(r) + 0*(sin(3*r)*tan(r)/sqrt(r))");
+        assert_eq!((flat.waves.len(), flat.switches.len()), (1, 0));
     }
 }

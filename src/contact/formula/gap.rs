@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::survey::NotFinite;
-use crate::contact::{Axis, Breaks, Gap, Jet};
+use crate::contact::{Axis, Breaks, Disc, Gap, Jet};
 
 /// How far beyond the radius asked for a formula is looked at.
 const BEYOND: f64 = 16.0;
@@ -18,6 +18,8 @@ pub struct FormulaGap {
     feature_length: Option<f64>,
     known: Option<f64>,
     corners: Vec<f64>,
+    /// How far the corners have been looked for.
+    searched: f64,
     axis: Axis,
 }
 
@@ -39,8 +41,6 @@ impl Bound {
     /// Where h, h' or h'' is not finite.
     pub fn from_axis(self, largest: f64, needed: bool) -> Result<FormulaGap, NotFinite> {
         let most = if needed { largest } else { NEAR_AXIS * largest };
-        self.check(most)?;
-        // The first of two looks may miss a pole that the second, with another grid, finds: below `most` it counts too.
         let known = match self.check(BEYOND * largest) {
             Ok(()) => None,
             Err(NotFinite { radius, .. }) if radius <= most => {
@@ -56,10 +56,11 @@ impl Bound {
     fn gap(self, largest: f64, surveyed: f64, known: Option<f64>) -> FormulaGap {
         let feature_length = self.feature_length(surveyed);
         // A path may run outward from its start.
-        let corners = self.corners(known.map_or(BEYOND * surveyed, |known| known.min(BEYOND * surveyed)));
+        let searched = known.map_or(BEYOND * surveyed, |known| known.min(BEYOND * surveyed));
+        let corners = self.breaks(searched);
         let first = corners.first().copied().unwrap_or(surveyed).min(feature_length.unwrap_or(surveyed));
         let axis = self.axis(first);
-        FormulaGap { bound: self, largest, feature_length, known, corners, axis }
+        FormulaGap { bound: self, largest, feature_length, known, corners, searched, axis }
     }
 }
 
@@ -99,6 +100,18 @@ impl Gap for FormulaGap {
 
     fn breaks(&self) -> Breaks<'_> {
         Breaks { knots: &self.corners, axis: self.axis, cubic: false }
+    }
+
+    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+        Some(self.bound.slope_bound(disc))
+    }
+
+    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
+        if to <= self.searched {
+            self.breaks().between(0.0, to).to_vec()
+        } else {
+            self.bound.breaks(self.known.map_or(to, |known| known.min(to)))
+        }
     }
 
     /// The largest radius: a formula need not have a radius of curvature.

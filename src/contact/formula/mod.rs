@@ -13,13 +13,17 @@
 //! | [`fold`] | parameters put in, constants folded: text order → steps |
 //! | [`jets`] | the rules of differentiation, on a block of radii |
 //! | [`bound`] | the formula with its parameters given: h and its derivatives anywhere |
+//! | `ball` | functions on complex discs: a value and how far it can change |
+//! | `discs` | the formula and its slope on discs and on intervals |
 //! | [`corners`] | where it is not smooth |
 //! | [`survey`] | is it finite up to a radius, and how short are its waves? |
 //! | [`gap`] | the formula as the gap of a problem |
 //! | [`typed`] | its text and its parameters, with the lengths that follow |
 
+mod ball;
 pub mod bound;
 pub mod corners;
+mod discs;
 pub mod fold;
 pub mod gap;
 pub mod jets;

@@ -1,31 +1,37 @@
 //! Is a formula finite up to a radius, and how short are its waves there?
 //!
-//! Both are looked for on a grid, uniform and near the axis geometric. A stretch where h, h' or h'' is not finite is
-//! followed to its edge by bisection. A pole between two nodes of the grid is found from what causes it: a denominator,
-//! the argument of a logarithm, the cosine below a tangent, where it changes its sign or touches zero.
+//! Both are answered by bounds on intervals (`discs`): one on which h and h' have a bound is done with, any
+//! other is halved. Where there is no bound even at some units in the last place, h and h' beside the place decide: they
+//! are not finite, or grow without end towards it, or it is a corner or a branch point that they pass. A curvature
+//! that overflows before the slope is seen in the middles of the intervals, and followed to its edge by bisection.
 
 use super::bound::Bound;
-use super::fold::{Pole, Wave};
+use super::corners::NARROW;
+use super::fold::Wave;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::ops::Range;
 use thiserror::Error;
 
-/// Uniform nodes of the grid, a multiple of the block.
-const NODES: usize = 4096;
+/// Intervals open at a time at most: rounding then hides what the formula is.
+const MOST_OPEN: usize = 1 << 15;
 
-/// Halvings of the first uniform interval towards the axis, a multiple of the block.
-const HALVINGS: usize = 24;
+/// How far beside a place without a bound the slope is looked at, as shares of the largest radius, from near to far.
+const BESIDE: [f64; 3] = [1e-13, 1e-11, 1e-9];
 
-/// Halvings of an interval until its ends are neighbours, or nearly.
-const BISECTIONS: usize = 60;
+/// The same beside the axis, whose radius has no rounding.
+const BESIDE_AXIS: [f64; 3] = [1e-12, 1e-8, 1e-4];
 
-/// What counts as zero, measured by the values at the neighbouring nodes: a parabola that touches zero is found to
-/// the square of half the digits.
-const ZERO: f64 = 1e-12;
+/// A slope that grows without end grows from step to step at least by nearly as much: a logarithm by as much, while the
+/// share of a power r^q that is bounded falls.
+const ENDLESS: f64 = 0.95;
 
-/// The share of an interval that golden sections keep.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Growth below this share of the slope is rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// The steepest phase is found to this factor, and to the radius over this where it varies more.
+const STEEP: f64 = 1.2;
+const FINEST: f64 = 1.0 / 4096.0;
 
 /// Where a formula is no gap.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -47,15 +53,8 @@ impl NotFinite {
     }
 }
 
-/// The grid on (0, `largest`], ascending.
-pub(super) fn grid(largest: f64) -> Vec<f64> {
-    let step = largest / NODES as f64;
-    let halved = (1..=HALVINGS).rev().map(|k| step * 0.5f64.powi(i32::try_from(k).unwrap_or(i32::MAX)));
-    halved.chain((1..=NODES).map(|k| if k == NODES { largest } else { step * k as f64 })).collect()
-}
-
 impl Bound {
-    /// Whether h(0) and, for 0 < r ≤ `largest`, h, h' and h'' are finite.
+    /// Whether h(0) and, for 0 < r ≤ `largest`, h, h' and h'' are finite, apart from places that h and h' pass.
     ///
     /// # Errors
     /// The smallest radius found where they are not.
@@ -64,19 +63,100 @@ impl Bound {
         if !self.offset().is_finite() {
             return Err(error(0.0));
         }
-        let radii = grid(largest);
-        let whole = 0..self.steps.steps.len();
-        let is_finite = |jet: &[f64; 3]| jet.iter().all(|x| x.is_finite());
-        let mut first = self.operand(&whole, &radii).iter().position(|jet| !is_finite(jet)).map(|bad| {
-            let good = if bad == 0 { 0.0 } else { radii[bad - 1] };
-            bisect(good, radii[bad], |r| is_finite(&self.operand(&whole, &[r])[0]))
-        });
-        for pole in &self.steps.poles {
-            if let Some(radius) = self.pole(pole, &radii) {
-                first = Some(first.map_or(radius, |known| known.min(radius)));
+        let Survey { mut sound, narrow, blank } = self.survey(largest);
+        let pole = narrow.iter().find_map(|&place| self.pole(place, largest)).or(blank);
+        sound.retain(|[lo, _]| pole.is_none_or(|pole| *lo < pole));
+        sound.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        self.bends(&sound).or(pole).map_or(Ok(()), |radius| Err(error(radius)))
+    }
+
+    /// The radii up to `largest`, as far as they may be finite, in intervals with a bound and places without one.
+    fn survey(&self, largest: f64) -> Survey {
+        let mut survey = Survey::default();
+        let mut open = vec![[0.0, largest]];
+        while !open.is_empty() {
+            let mut halves = Vec::new();
+            for interval in open {
+                let [lo, hi] = interval;
+                if survey.blank.is_some_and(|blank| lo >= blank) {
+                    break;
+                }
+                if self.on(interval).is_bounded() {
+                    survey.sound.push(interval);
+                } else if hi - lo > NARROW * largest {
+                    let blank = self.blank::<2>(interval);
+                    survey.blank = [survey.blank, blank].into_iter().flatten().min_by(f64::total_cmp);
+                    let middle = 0.5 * (lo + hi);
+                    halves.extend([[lo, middle], [middle, hi]]);
+                } else {
+                    match survey.narrow.last_mut() {
+                        Some(last) if lo - last[1] <= NARROW * largest => last[1] = hi,
+                        _ => survey.narrow.push(interval),
+                    }
+                }
+            }
+            // Nearly nowhere a bound, but finite wherever looked at.
+            open = if halves.len() > MOST_OPEN { Vec::new() } else { halves };
+        }
+        survey
+    }
+
+    /// The first radius looked at in the middle of the interval, if N − 1 derivatives are finite at none of them: not
+    /// one point alone, which h and h' may pass.
+    fn blank<const N: usize>(&self, [lo, hi]: [f64; 2]) -> Option<f64> {
+        let (middle, step) = (0.5 * (lo + hi), 0.125 * (hi - lo));
+        let looked_at = [middle - step, middle, middle + step];
+        looked_at.iter().all(|&r| !self.is_finite::<N>(r)).then_some(looked_at[0])
+    }
+
+    fn is_finite<const N: usize>(&self, r: f64) -> bool {
+        self.whole::<N>(r).iter().all(|x| x.is_finite())
+    }
+
+    fn whole<const N: usize>(&self, r: f64) -> [f64; N] {
+        self.operand(&(0..self.steps.steps.len()), &[r])[0]
+    }
+
+    /// Where in a place without a bound the formula stops being finite, if h or h' does.
+    fn pole(&self, [lo, hi]: [f64; 2], largest: f64) -> Option<f64> {
+        let axis = lo <= 0.0;
+        let beside = if axis { BESIDE_AXIS } else { BESIDE }.map(|share| share * largest);
+        let reach = beside[2];
+        let left = (lo >= reach).then(|| beside.map(|step| lo - step));
+        let right = (hi + reach <= largest).then(|| beside.map(|step| hi + step));
+        let bad = |radii: &[f64; 3]| radii.iter().copied().find(|&r| !self.is_finite::<2>(r));
+        if let Some(radius) = left.as_ref().and_then(bad) {
+            return Some(radius);
+        }
+        if let Some(radius) = right.as_ref().and_then(bad) {
+            let from = if axis { return Some(0.0) } else { (lo - beside[0]).max(0.0) };
+            return Some(bisect(from, radius, |r| self.is_finite::<3>(r)));
+        }
+        let endless = |radii: [f64; 3]| {
+            let [near, between, far] = radii.map(|r| self.whole::<2>(r)[1]);
+            let (last, before) = ((near - between).abs(), (between - far).abs());
+            near.abs() > between.abs()
+                && between.abs() > far.abs()
+                && last >= ENDLESS * before
+                && last > ROUNDING * near.abs()
+        };
+        let middle = if axis { 0.0 } else { 0.5 * (lo + hi) };
+        [left, right].into_iter().flatten().any(endless).then_some(middle)
+    }
+
+    /// Where h'' stops being finite, looked for in the middles of these intervals.
+    fn bends(&self, intervals: &[[f64; 2]]) -> Option<f64> {
+        let mut good = 0.0;
+        for &interval in intervals {
+            let [lo, hi] = interval;
+            let middle = 0.5 * (lo + hi);
+            if self.is_finite::<3>(middle) {
+                good = middle;
+            } else if let Some(bad) = self.blank::<3>(interval) {
+                return Some(bisect(good, bad, |r| self.is_finite::<3>(r)));
             }
         }
-        first.map_or(Ok(()), |radius| Err(error(radius)))
+        None
     }
 
     /// The shortest wave on (0, `largest`], a length: the smallest 2π/|dφ/dr| of the sines and cosines of φ(r).
@@ -84,47 +164,31 @@ impl Bound {
     /// A tangent counts with its period π. A function whose argument runs through less than half a period there is
     /// no wave.
     pub fn feature_length(&self, largest: f64) -> Option<f64> {
-        let radii = grid(largest);
-        self.steps.waves.iter().filter_map(|wave| self.wave_length(wave, &radii)).min_by(f64::total_cmp)
+        self.steps.waves.iter().filter_map(|wave| self.wave_length(wave, largest)).min_by(f64::total_cmp)
     }
 
-    fn wave_length(&self, wave: &Wave, radii: &[f64]) -> Option<f64> {
+    fn wave_length(&self, wave: &Wave, largest: f64) -> Option<f64> {
         let (mut lowest, mut highest, mut steepest) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
-        for [phase, slope] in self.operand(&wave.argument, radii) {
-            lowest = lowest.min(phase);
-            highest = highest.max(phase);
-            steepest = steepest.max(slope.abs());
+        let mut open = vec![[0.0, largest]];
+        while !open.is_empty() {
+            let radii: Vec<f64> = open.iter().flat_map(|[lo, hi]| [0.5 * (lo + hi), *hi]).collect();
+            for [phase, slope] in self.operand(&wave.argument, &radii) {
+                lowest = lowest.min(phase);
+                highest = highest.max(phase);
+                steepest = steepest.max(slope.abs());
+            }
+            let halves = |[lo, hi]: [f64; 2]| {
+                let middle = 0.5 * (lo + hi);
+                [[lo, middle], [middle, hi]]
+            };
+            let steeper = |interval: &[f64; 2]| {
+                interval[1] - interval[0] > FINEST * largest
+                    && self.operand_on(&wave.argument, *interval).slope.bound() > STEEP * steepest
+            };
+            open = open.into_iter().filter(steeper).flat_map(halves).collect();
         }
         let length = wave.period / steepest;
         (highest - lowest >= 0.5 * wave.period && length > 0.0).then_some(length)
-    }
-
-    /// The first pole of this kind.
-    fn pole(&self, pole: &Pole, radii: &[f64]) -> Option<f64> {
-        let found = |value: f64| if pole.tangent { value.cos() } else { value };
-        let values = |radii: &[f64]| -> Vec<f64> {
-            self.operand(&pole.argument, radii).into_iter().map(|[value]| found(value)).collect()
-        };
-        let at = |r: f64| values(&[r])[0];
-        let values = values(radii);
-        for i in 1..values.len() {
-            let (before, here) = (values[i - 1], values[i]);
-            let near = before.abs().max(here.abs());
-            let root = if here == 0.0 {
-                Some(radii[i])
-            } else if before * here < 0.0 {
-                Some(bisect(radii[i - 1], radii[i], |r| at(r) * before > 0.0))
-            } else if i + 1 < values.len() && here.abs() <= before.abs() && here.abs() < values[i + 1].abs() {
-                Some(lowest(radii[i - 1], radii[i + 1], |r| at(r).abs()))
-            } else {
-                None
-            };
-            // A jump over zero is no zero.
-            if let Some(radius) = root.filter(|&r| at(r).abs() <= ZERO * near) {
-                return Some(radius);
-            }
-        }
-        None
     }
 
     /// The operand made by these steps, with N − 1 derivatives, at each of `radii`.
@@ -135,27 +199,30 @@ impl Bound {
     }
 }
 
+/// What is known of a formula up to a radius.
+#[derive(Debug, Default)]
+struct Survey {
+    /// The intervals on which h and h' have a bound.
+    sound: Vec<[f64; 2]>,
+    /// Places of some units in the last place, ascending, where they have none.
+    narrow: Vec<[f64; 2]>,
+    /// The smallest radius at and around which they are not finite.
+    blank: Option<f64>,
+}
+
 /// The first radius found where `good` no longer holds; it holds at `from` and not at `to`.
 pub(super) fn bisect(mut from: f64, mut to: f64, good: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..BISECTIONS {
+    loop {
         let middle = 0.5 * (from + to);
+        if middle <= from || middle >= to {
+            return to;
+        }
         if good(middle) {
             from = middle;
         } else {
             to = middle;
         }
     }
-    to
-}
-
-/// Where `f`, with one minimum between the two radii, is smallest: golden sections.
-fn lowest(mut from: f64, mut to: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..BISECTIONS {
-        let width = GOLDEN * (to - from);
-        let (left, right) = (to - width, from + width);
-        if f(left) < f(right) { to = right } else { from = left }
-    }
-    0.5 * (from + to)
 }
 
 #[cfg(test)]
@@ -187,6 +254,20 @@ mod tests {
             ("log(r)", 0.0),
             ("sin(r)/r", 0.0),
             ("0/0", 0.0),
+            // Between the nodes of any grid.
+            ("1e-9/((r-0.30001)^2)", 0.30001),
+            ("1e-25/(r-0.30001)", 0.30001),
+            ("1/(r-0.300013)", 0.300_013),
+            ("log(abs(r-0.300013))", 0.300_013),
+            ("r^2 + (r-0.300013)*log(abs(r-0.300013))", 0.300_013),
+            ("sqrt(abs(r-0.300013))", 0.300_013),
+            ("sqrt(r)", 0.0),
+            ("r^2 + 1/abs(cos(pi*r/2.600026))^0.1", 1.300_013),
+            ("r^2/max(abs(r - 1.1) - 1e-7, 0)", 1.1 - 1e-7),
+            ("sqrt(abs(r - 1.1) - 1e-7)", 1.1 - 1e-7),
+            ("max(r - 0.3, 0)^0.9", 0.3),
+            // 1 - sin² is rounding where it is zero, and its root has no slope there.
+            ("asin(sin(10*r))", std::f64::consts::PI / 20.0),
         ] {
             let error = bound(text).check(2.0).unwrap_err();
             assert!((error.radius - radius).abs() < 1e-6, "{text}: {error}");
@@ -197,6 +278,14 @@ mod tests {
             "r^1.5",
             "max(r - 0.3, 0)^1.5",
             "1/(1e-3 + (r - 0.3)^2)",
+            "1/(1e-12 + (r-0.3)^2)",
+            "1/(1e-20 + (r-0.3)^2)",
+            "abs(r - 0.300013)^1.02",
+            "(r - 0.300013)^2*log(abs(r - 0.300013))",
+            "r^1.001 + r^2",
+            "hypot(r - 0.3, 0) + sqrt((r - 0.5)^4)",
+            "sqrt(r*r - r^2)",
+            "abs(tan(r/2)) + sign(r - 1)*r",
             "1/(2*step(r - 0.3001) - 1)",
             "tan(r/2)",
             "7",

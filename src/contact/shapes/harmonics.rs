@@ -16,7 +16,8 @@
 //! The feature length is the shortest wavelength with an amplitude. The exact solution is
 //! [`theory::harmonics`](crate::theory::harmonics).
 
-use crate::contact::{Axis, Breaks, Gap, Jet};
+use crate::contact::gap::{Form, Wave};
+use crate::contact::{Axis, Breaks, Disc, Gap, Jet};
 use std::f64::consts::TAU;
 
 /// The most waves of one gap.
@@ -112,11 +113,6 @@ impl Gap for Harmonics {
         self.waves.iter().filter(|wave| wave.amplitude != 0.0).fold(None, shortest)
     }
 
-    /// Waves of any phase are smooth in r.
-    fn band_limit(&self) -> Option<f64> {
-        self.feature_length()
-    }
-
     fn breaks(&self) -> Breaks<'_> {
         // The sine of a multiple of π as rounded.
         let slope = |term: &Term| term.phase_sin.abs() > PHASE_ROUNDING;
@@ -124,9 +120,39 @@ impl Gap for Harmonics {
         Breaks { axis, ..Breaks::default() }
     }
 
+    fn form(&self) -> Form {
+        let wave = |term: &Term| Wave {
+            amplitude: term.amplitude,
+            wavenumber: term.wavenumber,
+            phase: [term.phase_sin, term.phase_cos],
+        };
+        let waves = self.terms.iter().map(wave).collect();
+        Form::Waves { curvature: 1.0 / self.radius_of_curvature, waves }
+    }
+
+    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+        let wave = |&Term { amplitude, wavenumber: q, phase_sin, phase_cos }: &Term| {
+            let (sin, cos) = (q * centre).sin_cos();
+            let (shifted_sin, shifted_cos) =
+                (sin * phase_cos + cos * phase_sin, cos * phase_cos - sin * phase_sin);
+            (amplitude * q).abs() * sine_change(shifted_sin, shifted_cos, q * radius)
+        };
+        let change = radius / self.radius_of_curvature + self.terms.iter().map(wave).sum::<f64>();
+        Some(self.jet(centre).first.abs() + change)
+    }
+
     fn reference_length(&self) -> f64 {
         self.radius_of_curvature
     }
+}
+
+/// How far the sine can be from its value on a complex disc of this radius w, by its sine and cosine at the centre x:
+/// sin (x + w) − sin x = sin x (cos w − 1) + cos x sin w.
+pub fn sine_change(sin: f64, cos: f64, radius: f64) -> f64 {
+    let half = (0.5 * radius).sinh();
+    let change = 2.0 * sin.abs() * half * half + cos.abs() * radius.sinh();
+    // Zero times an overflow.
+    if change.is_nan() { f64::INFINITY } else { change }
 }
 
 #[cfg(test)]

@@ -18,6 +18,9 @@ pub struct Rows {
     pub gaps: Vec<f64>,
     /// The unit of both, where the file names one.
     pub unit: Option<Unit>,
+    /// The line of the file whose header names units; none where a person did not choose them here: in data that come with
+    /// the program, and in a session as it was.
+    pub header: Option<usize>,
     /// What was put right, in words.
     pub notes: Vec<String>,
 }
@@ -53,6 +56,7 @@ impl Rows {
             radii: scaled(&self.radii),
             gaps: scaled(&self.gaps),
             unit: metre,
+            header: self.header,
             name: self.name.clone(),
             folder: self.folder.clone(),
             notes,
@@ -103,6 +107,12 @@ impl Measured {
     /// The curve through the rows.
     pub fn profile(&self) -> &Profile {
         &self.profile
+    }
+
+    /// The curve through the same rows in half as many cells: where it has other events, the cells decide them, and not the
+    /// gap. None where every row is a knot.
+    pub fn coarser(&self) -> Option<Profile> {
+        self.profile.coarser(&self.rows.radii, &self.rows.gaps)
     }
 }
 

@@ -16,7 +16,7 @@
 //! The exact solution is [`theory::power_law`](crate::theory::power_law). L. A. Galin, *Contact Problems in the Theory
 //! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
 
-use crate::contact::{Axis, Breaks, Gap, Jet};
+use crate::contact::{Axis, Breaks, Disc, Form, Gap, Jet};
 use std::ops::RangeInclusive;
 
 /// The allowed exponents: below 1 the tip is a cusp without a disc of contact, above 100 it is a flat punch.
@@ -87,6 +87,19 @@ impl Gap for PowerLaw {
             _ => Axis::Odd,
         };
         Breaks { axis, ..Breaks::default() }
+    }
+
+    /// |zⁿ⁻¹| = |z|ⁿ⁻¹; a broken power has no bound around the axis, where it branches.
+    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+        let n = self.exponent;
+        if n.fract() != 0.0 && centre <= radius {
+            return Some(f64::INFINITY);
+        }
+        Some((n * self.factor).abs() * (centre.abs() + radius).powf(n - 1.0))
+    }
+
+    fn form(&self) -> Form {
+        Form::Power { factor: self.factor, exponent: self.exponent }
     }
 
     fn reference_length(&self) -> f64 {

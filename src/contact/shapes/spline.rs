@@ -6,8 +6,8 @@
 //! Σ wᵢ (yᵢ − f(rᵢ))² + (Λ/2π)⁴ ∫₀^{rₙ} f''² dr      is smallest,
 //! ```
 //!
-//! wᵢ the width of the cell of rᵢ, from the middle between it and one neighbour to the middle on the other side: the
-//! sum is an integral, and the result does not depend on how densely was measured. It passes a wave of length λ with
+//! wᵢ the [width](widths) of the cell of rᵢ: the sum is an integral, and the result does not depend on how densely was
+//! measured. It passes a wave of length λ with
 //! the share 1/(1 + (Λ/λ)⁴), half of it at the cutoff λ = Λ; this is the spline filter of ISO 16610-22. Λ = 0 interpolates.
 //!
 //! f is a cubic between neighbours, has two continuous derivatives, and f'' = 0 at the last radius. Its second
@@ -47,7 +47,7 @@ pub struct Rows<'a> {
     radii: &'a [f64],
     values: &'a [f64],
     /// wᵢ, one for each row.
-    weights: Vec<f64>,
+    weights: &'a [f64],
     /// The entries (i, i−1), (i, i), (i, i+1) of Qᵀ, one row fewer than there are radii.
     second_difference: Vec<[f64; 3]>,
     /// R.
@@ -68,17 +68,10 @@ pub struct Fit {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows `values` at `radii`, which ascend from 0 or above; at least three.
-    pub fn new(radii: &'a [f64], values: &'a [f64]) -> Self {
+    /// The rows `values` at `radii`, which ascend from 0 or above, with their weights; at least three.
+    pub fn new(radii: &'a [f64], values: &'a [f64], weights: &'a [f64]) -> Self {
         let n = radii.len() - 1;
         let d: Vec<f64> = radii.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        // The cell of the first row reaches to the axis.
-        let weights: Vec<f64> = (0..=n)
-            .map(|i| {
-                let inner = if i == 0 { radii[0] } else { 0.5 * d[i - 1] };
-                inner + d.get(i).map_or(0.0, |d| 0.5 * d)
-            })
-            .collect();
         let second_difference: Vec<[f64; 3]> = (0..n)
             .map(|i| {
                 let (left, right) = (if i == 0 { 0.0 } else { d[i - 1].recip() }, d[i].recip());
@@ -90,8 +83,7 @@ impl<'a> Rows<'a> {
             let inner = if i == 0 { 3.0 * radii[0] } else { d[i - 1] };
             [(inner + d[i]) / 3.0, if i + 1 < n { d[i] / 6.0 } else { 0.0 }, 0.0]
         });
-        let q = &second_difference;
-        let w = &weights;
+        let (q, w) = (&second_difference, weights);
         let filter = band(&mut |i| {
             let [left, middle, right] = q[i];
             let inner = if i == 0 { 0.0 } else { left * left / w[i - 1] };
@@ -104,7 +96,7 @@ impl<'a> Rows<'a> {
 
     /// wᵢ.
     pub fn weights(&self) -> &[f64] {
-        &self.weights
+        self.weights
     }
 
     /// The spline of cutoff Λ; `None` when the equations cannot be solved in floating point.
@@ -127,11 +119,11 @@ impl<'a> Rows<'a> {
             moved[i] += middle * m;
             moved[i + 1] += right * m;
         }
-        for (moved, weight) in moved.iter_mut().zip(&self.weights) {
+        for (moved, weight) in moved.iter_mut().zip(self.weights) {
             *moved *= penalty / weight;
         }
         let values = y.iter().zip(&moved).map(|(y, moved)| y - moved).collect();
-        let removed: f64 = moved.iter().zip(&self.weights).map(|(x, w)| w * x * x).sum();
+        let removed: f64 = moved.iter().zip(self.weights).map(|(x, w)| w * x * x).sum();
         let trace = penalty * trace_of_product(&factor, &self.filter);
         // The last one, f'' = 0.
         second.push(0.0);
@@ -184,6 +176,14 @@ impl<'a> Rows<'a> {
             })
             .collect()
     }
+}
+
+/// The width of the cell of every radius: from the middle between it and one neighbour to the middle on the other side.
+/// The cell of the first reaches to the axis.
+pub fn widths(radii: &[f64]) -> Vec<f64> {
+    let half = |i: usize| 0.5 * (radii[i + 1] - radii[i]);
+    let inner = |i: usize| if i == 0 { radii[0] } else { half(i - 1) };
+    (0..radii.len()).map(|i| inner(i) + if i + 1 < radii.len() { half(i) } else { 0.0 }).collect()
 }
 
 /// L and D of `LDLᵀ` as (Dᵢ, Lᵢ₊₁,ᵢ, Lᵢ₊₂,ᵢ).
@@ -278,7 +278,8 @@ mod tests {
         for first in [0.0, 0.004] {
             let radii = uneven(200, first);
             let values: Vec<f64> = radii.iter().map(|r| (9.0 * r).cos()).collect();
-            let rows = Rows::new(&radii, &values);
+            let weights = widths(&radii);
+            let rows = Rows::new(&radii, &values, &weights);
             let fit = rows.fit(0.0).unwrap();
             assert_eq!(fit.values, values);
             let pieces = rows.pieces(&fit);
@@ -301,7 +302,7 @@ mod tests {
         for (wavelength, cutoff) in [(0.05, 0.05), (0.05, 0.025), (0.02, 0.04), (0.25, 0.25)] {
             let wave = |r: f64| (TAU * r / wavelength).cos();
             let values: Vec<f64> = radii.iter().map(|&r| wave(r)).collect();
-            let fit = Rows::new(&radii, &values).fit(cutoff).unwrap();
+            let fit = Rows::new(&radii, &values, &widths(&radii)).fit(cutoff).unwrap();
             let share = 1.0 / (1.0 + (cutoff / wavelength).powi(4));
             for i in (0..2000).step_by(7) {
                 let (ours, exact) = (fit.values[i], share * wave(radii[i]));
@@ -313,8 +314,8 @@ mod tests {
     #[test]
     fn the_trace_is_that_of_the_whole_matrix() {
         let radii = uneven(12, 0.01);
-        let zeros = vec![0.0; 12];
-        let rows = Rows::new(&radii, &zeros);
+        let (zeros, weights) = (vec![0.0; 12], widths(&radii));
+        let rows = Rows::new(&radii, &zeros, &weights);
         let cutoff = 0.4;
         let penalty = (cutoff / TAU).powi(4);
         let matrix: Bands = rows
@@ -329,7 +330,7 @@ mod tests {
             .map(|i| {
                 let mut unit = zeros.clone();
                 unit[i] = 1.0;
-                1.0 - Rows::new(&radii, &unit).fit(cutoff).unwrap().values[i]
+                1.0 - Rows::new(&radii, &unit, &weights).fit(cutoff).unwrap().values[i]
             })
             .sum();
         assert!((trace / whole - 1.0).abs() < 1e-12, "{trace} {whole}");
@@ -344,7 +345,8 @@ mod tests {
         let noise = 0.1 * 6.0_f64.sqrt();
         let values: Vec<f64> =
             radii.iter().map(|&r| wave(r) + noise * (random.unit() + random.unit() - 1.0)).collect();
-        let rows = Rows::new(&radii, &values);
+        let weights = widths(&radii);
+        let rows = Rows::new(&radii, &values, &weights);
         let cutoff = rows.cutoff(1e-3, 0.5);
         let fit = rows.fit(cutoff).unwrap();
         let error = radii.iter().zip(&fit.values).map(|(&r, g)| (g - wave(r)).powi(2)).sum::<f64>() / 2000.0;
