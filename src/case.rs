@@ -3,20 +3,25 @@
 //! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
 //! they all see the same numbers.
 
+use crate::contact::gap::Scaled;
 use crate::contact::groups::LARGE_TABOR;
+use crate::contact::panels::Refused;
 use crate::contact::{Control, Gap, Groups, Problem, Reduced, Shape, Start, Units};
-use crate::preset::{BasisSpec, Functions, Material, Preset};
-use crate::quasistatic::admissible::falls;
-use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
+use crate::continuation::Branch;
+use crate::disc::table::Kept;
+use crate::disc::{Basis, Exact, Table, TableError};
+use crate::preset::{BasisSpec, Material, Preset};
+use crate::quasistatic::admissible::{Judge, falls};
+use crate::quasistatic::equilibrium::unknown;
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
-use crate::quasistatic::{Curve, Losses, Unloading};
+use crate::quasistatic::{Curve, CurveStop, Losses, Unloading};
 use crate::ritz::parallel::Progress;
-use crate::ritz::{Basis, BasisError, Rings, RingsError, Spectral};
+use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Points of an arc-length trace before it stops.
 pub const TRACE_POINTS: usize = 20_000;
@@ -30,8 +35,8 @@ pub struct Case {
     pub reduced: Reduced,
     /// The discretization.
     pub basis: Arc<dyn Basis>,
-    /// Whether the number of functions follows from the contact.
-    pub automatic: bool,
+    /// The table of the gap.
+    pub table: Arc<Table>,
     /// What is controlled, in reduced units.
     pub control: Control,
     /// The contact radius at the start, reduced.
@@ -47,9 +52,17 @@ pub struct Case {
 /// Why a preset could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CaseError {
-    /// The basis could not be made.
+    /// The rings could not be made.
     #[error(transparent)]
-    Basis(#[from] BasisError),
+    Basis(RingsError),
+    /// The gap cannot be tabulated.
+    #[error("{}", words_of_table(error, shown))]
+    Table {
+        /// Why, in the user's units.
+        error: TableError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
     /// The start state does not exist.
     #[error("{}", error.words(shown))]
     Start {
@@ -108,7 +121,24 @@ impl Case {
             Start::Force(p) => Start::Force(p / units.force),
         };
         let shown = preset.units.clone();
-        let (basis, start) = start(&reduced, preset.basis, wanted, progress, &shown)?;
+        let reach = reach(&reduced, wanted);
+        let table = table(&preset.gap, &reduced, reach, &shown, progress)?;
+        let mut basis: Arc<dyn Basis> = match preset.basis {
+            BasisSpec::Rings { rings, grading } => {
+                Rings::shared_with(rings, grading, progress).map_err(|error| match error {
+                    RingsError::Cancelled => CaseError::Cancelled,
+                    error => CaseError::Basis(error),
+                })?
+            }
+            BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
+        };
+        let mut go_on = || progress(1.0);
+        let start = contact_radius(&reduced, &*basis, wanted, &mut go_on)
+            .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
+        if preset.basis == BasisSpec::Exact {
+            // From here on the start decides how far it reaches, however it was given.
+            basis = Arc::new(Exact::new(Arc::clone(&table), start));
+        }
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
             let (end, start) = (end * units.length, start * units.length);
@@ -116,8 +146,7 @@ impl Case {
         }
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
-        let automatic = matches!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
-        Ok(Self { problem, reduced, basis, automatic, control, start, end, tabor, shown })
+        Ok(Self { problem, reduced, basis, table, control, start, end, tabor, shown })
     }
 
     /// The factors to the user's units.
@@ -139,29 +168,14 @@ impl Case {
         controls
     }
 
-    /// The curve from start to end by arc-length continuation.
-    ///
-    /// # Errors
-    /// [`CaseError::Start`] when there is no equilibrium at the start.
-    pub fn trace(&self) -> Result<Curve, CaseError> {
-        Curve::traced(
-            self.reduced.clone(),
-            Arc::clone(&self.basis),
-            self.start,
-            self.end,
-            |settings| settings.points = TRACE_POINTS,
-            || true,
-        )
-        .ok_or_else(|| self.no_start())
-    }
-
-    /// The curve from start to end through the explicit root; `go_on` is asked between points.
+    /// The curve from start to end.
     ///
     /// # Errors
     /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn sweep(&self, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+    pub fn curve(&self, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
         let mut wanted = true;
-        let curve = Curve::swept(self.reduced.clone(), Arc::clone(&self.basis), self.start, self.end, || {
+        let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
+        let curve = Curve::new(self.reduced.clone(), basis, table, self.start, self.end, || {
             wanted = wanted && go_on();
             wanted
         });
@@ -171,17 +185,19 @@ impl Case {
         curve.ok_or_else(|| self.no_start())
     }
 
-    /// The points of [`Case::sweep`], where there is an equilibrium at each.
-    pub fn sweep_points(&self) -> usize {
-        radii(self.start, self.end, self.reduced.gap.feature_length(), SWEEP_STEPS_PER_WAVE).len()
+    /// The same stretch of `curve` by arc-length continuation, and why it ends.
+    ///
+    /// # Errors
+    /// [`CaseError::Start`] when there is no equilibrium at the start.
+    pub fn trace(&self, curve: &Curve) -> Result<(Branch<{ unknown::COUNT }>, CurveStop), CaseError> {
+        curve.traced(|settings| settings.points = TRACE_POINTS, || true).ok_or_else(|| self.no_start())
     }
 
-    /// The quasi-static unloading along `curve`, which is extended where a landing needs it, and made anew where an
-    /// automatic number of functions does not resolve how far an unstable start runs outward.
+    /// The quasi-static unloading along `curve`.
     ///
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
-    pub fn unload(&self, curve: &mut Curve, control: Control) -> Result<Unloading, CaseError> {
+    pub fn unload(&self, curve: &Curve, control: Control) -> Result<Unloading, CaseError> {
         self.unload_while(curve, control, Losses::Twice, || true)
     }
 
@@ -191,35 +207,37 @@ impl Case {
     /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
     pub fn unload_while(
         &self,
-        curve: &mut Curve,
+        curve: &Curve,
         control: Control,
         losses: Losses,
-        mut go_on: impl FnMut() -> bool,
+        go_on: impl FnMut() -> bool,
     ) -> Result<Unloading, CaseError> {
-        loop {
-            let unloading = unload_while(curve, control, losses, &mut go_on).map_err(|e| match e {
-                UnloadError::Cancelled => CaseError::Cancelled,
-                other @ UnloadError::UnstableStart { .. } => CaseError::Unload {
-                    error: other.in_units(self.units()),
-                    shown: Box::new(self.shown.clone()),
-                },
-            })?;
-            let Some(finer) = self.finer(curve, &unloading)? else { return Ok(unloading) };
-            *curve = Self { basis: finer, ..self.clone() }.sweep(&mut go_on)?;
-        }
+        unload_while(curve, control, losses, go_on).map_err(|e| match e {
+            UnloadError::Cancelled => CaseError::Cancelled,
+            other @ UnloadError::UnstableStart { .. } => {
+                CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
+            }
+        })
     }
 
-    /// The basis for a path whose start ran outward beyond the wave more that an automatic number of functions allows for;
-    /// none where that of `curve` will do.
-    fn finer(&self, curve: &Curve, unloading: &Unloading) -> Result<Option<Arc<dyn Basis>>, CaseError> {
-        let largest = unloading.start.contact_radius;
-        let allowed = self.start + self.reduced.gap.feature_length().unwrap_or(0.0);
-        if !self.automatic || largest <= allowed {
-            return Ok(None);
-        }
-        let finer = Spectral::resolving(&self.reduced, largest).map_err(BasisError::from)?;
-        // The second time its size is the same: where the path starts has moved by rounding at most.
-        Ok((finer.size() > curve.equilibrium.basis.size()).then(|| Arc::new(finer) as Arc<dyn Basis>))
+    /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
+    /// twice as wide others are found. `None` where they are the same, or the gap is no profile of averaged rows.
+    pub fn unsettled(&self, unloading: &Unloading) -> Option<String> {
+        let Shape::Profile(measured) = &self.problem.shape else { return None };
+        let profile = measured.coarser()?;
+        let gap: Arc<dyn Gap> = Arc::new(Scaled::new(profile, self.units().length));
+        let problem = Reduced { gap, ..self.reduced.clone() };
+        let basis = Arc::new(Exact::of(&problem, self.start).ok()?);
+        let curve = Curve::of(problem, basis, self.start, self.end)?;
+        let coarser = unload_while(&curve, unloading.control, Losses::Once, || true).ok();
+        let count = coarser.map_or(0, |path| path.events.len());
+        (count != unloading.events.len()).then(|| {
+            format!(
+                "the events depend on how finely the rows are averaged: {} here, {count} with cells twice as wide; a longer \
+                 gap.smoothing leaves less of the noise in the gap",
+                unloading.events.len()
+            )
+        })
     }
 
     /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
@@ -236,10 +254,7 @@ impl Case {
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
         let mut warnings = self.problem.shape.notes(&self.shown);
-        // An automatic number of functions follows the contact.
-        if !self.automatic {
-            warnings.extend(self.basis.cautions(&self.reduced, largest).iter().map(ToString::to_string));
-        }
+        warnings.extend(self.basis.cautions(&self.reduced, largest));
         if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
             warnings.push(format!(
                 "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \
@@ -259,7 +274,15 @@ impl Case {
             "the gap falls within the contact, and there is no adhesion: of a connected disc it is checked that the bodies \
              stay apart outside it and that nothing pulls inside it"
         };
-        falls(&self.reduced.gap, largest).then(|| text.to_owned()).into_iter().collect()
+        let mut notes = self.problem.shape.remarks(&self.shown);
+        notes.extend(falls(&self.reduced.gap, largest).then(|| text.to_owned()));
+        if let Some(radius) = Judge::new(&self.reduced, &self.table).unknown_beyond(largest) {
+            let radius = said(&self.shown, Quantity::Length, radius * self.units().length);
+            notes.push(format!(
+                "whether the bodies stay apart outside the disc is known up to r = {radius}, and unknown beyond"
+            ));
+        }
+        notes
     }
 
     fn no_start(&self) -> CaseError {
@@ -283,57 +306,43 @@ pub fn critical_force(preset: &Preset) -> Option<f64> {
     pull_off_force(smooth(effective_modulus, work_of_adhesion, &preset.gap))
 }
 
-/// The basis and the contact radius at the start, reduced.
-///
-/// An automatic number of functions follows from the largest contact, the start; where the start is an approach or
-/// a force, the two are found in turn.
-fn start(
+/// The tables of the last gaps, by shape and unit of length.
+static TABLES: Kept<(Shape, u64)> = Mutex::new(Vec::new());
+
+/// How far the table of a gap reaches to begin with.
+fn reach(reduced: &Reduced, wanted: Start) -> f64 {
+    // Twice the paraboloid of R = 1 with its adhesion: as far as a start is looked for first.
+    let unit = |elastic: f64| 2.0 * elastic.max(reduced.work_of_adhesion.cbrt());
+    match wanted {
+        Start::ContactRadius(s) => s,
+        Start::Approach(delta) => unit(delta.abs().sqrt()),
+        Start::Force(p) => unit(p.abs().cbrt()),
+    }
+}
+
+/// The table of the gap, shared by all problems with the same gap: adhesion, modulus, device and start are no part of it.
+fn table(
+    shape: &Shape,
     reduced: &Reduced,
-    spec: BasisSpec,
-    wanted: Start,
-    progress: Progress<'_>,
+    reach: f64,
     shown: &UnitSystem,
-) -> Result<(Arc<dyn Basis>, f64), CaseError> {
-    let radius = |basis: &Arc<dyn Basis>| {
-        contact_radius(reduced, basis, wanted).map_err(|e| CaseError::Start {
-            error: e.in_units(&reduced.units),
-            shown: Box::new(shown.clone()),
-        })
-    };
-    let basis: Arc<dyn Basis> = match spec {
-        BasisSpec::Rings { rings, grading } => {
-            Rings::shared_with(rings, grading, progress).map_err(|error| match error {
-                RingsError::Cancelled => CaseError::Cancelled,
-                error => BasisError::from(error).into(),
-            })?
+    progress: Progress<'_>,
+) -> Result<Arc<Table>, CaseError> {
+    let key = (shape.clone(), reduced.units.length.to_bits());
+    Table::shared(&TABLES, &key, &reduced.gap, reach, &mut || progress(0.0)).map_err(|error| match error {
+        TableError::Cancelled => CaseError::Cancelled,
+        TableError::TooFine(refused) => {
+            let length = reduced.units.length;
+            let (radius, largest) = (refused.radius * length, refused.largest * length);
+            let error = TableError::TooFine(Refused { radius, largest });
+            CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
-        BasisSpec::Spectral { functions: Functions::Count(n) } => {
-            Arc::new(Spectral::new(n).map_err(BasisError::from)?)
-        }
-        BasisSpec::Spectral { functions: Functions::Auto } => {
-            let resolving = |s| Spectral::resolving(reduced, s).map_err(BasisError::from);
-            // Twice the paraboloid of R = 1 with its adhesion: as far as the search for a start looks first.
-            let unit = |elastic: f64| 2.0 * elastic.max(reduced.work_of_adhesion.cbrt());
-            let mut largest = match wanted {
-                Start::ContactRadius(s) => s,
-                Start::Approach(delta) => unit(delta.abs().sqrt()),
-                Start::Force(p) => unit(p.abs().cbrt()),
-            };
-            let most = reduced.largest_contact();
-            loop {
-                largest = largest.min(most.max(match wanted {
-                    Start::ContactRadius(s) => s,
-                    Start::Approach(_) | Start::Force(_) => 0.0,
-                }));
-                let found = radius(&(Arc::new(resolving(largest)?) as Arc<dyn Basis>))?;
-                if found <= largest {
-                    return Ok((Arc::new(resolving(found)?), found));
-                }
-                // A little more, so that rounding cannot ask for another round.
-                largest = 1.01 * found;
-            }
-        }
-    };
-    let found = radius(&basis)?;
-    Ok((basis, found))
+    })
+}
+
+fn words_of_table(error: &TableError, shown: &UnitSystem) -> String {
+    match error {
+        TableError::TooFine(refused) => refused.words(shown),
+        TableError::Cancelled => error.to_string(),
+    }
 }

@@ -21,11 +21,13 @@
 //! | 4 | [`report`] | the one serializable form of a trace, an unloading and a verification: JSON, CSV, table |
 //! | 4 | [`verify`] | our numbers against theory: convergence, extreme values, instabilities, losses, work |
 //! | 4 | [`sweep`] | one preset over many values, on all cores, into one CSV file: specs, quantities, shards |
+//! | 4 | [`mend`] | which faults the person can mend, and which are failures |
 //! | 3 | [`case`] | a preset made ready for the engine |
 //! | 3 | [`preset`] | the TOML schema, the shipped library, the atomic store |
 //! | 2 | [`quasistatic`] | controls, stability, limit points, jumps, losses, the unloading; profiles, landscapes, admissibility |
 //! | 2 | [`continuation`] | generic: arc length, tangents, events, location; knows no contact |
-//! | 2 | [`ritz`] | Kalker's functional in a basis: kernel, rings, eigenfunctions, Newton-Raphson |
+//! | 2 | [`disc`] | one disc, exactly: the table of the gap's transform, the equilibria over all radii, the gap outside |
+//! | 2 | [`ritz`] | Kalker's functional in ring elements: kernel, rings, Newton-Raphson |
 //! | 2 | [`theory`] | exact solutions: Hertz, JKR, Guduru, Sneddon for any gap; the envelope of Kesari and Lew |
 //! | 1 | [`units`] | dimensions, unit names, values with units read and shown |
 //! | 1 | [`contact`] | the problem: E*, γ, the gap, the control; reduced units, dimensionless groups |
@@ -39,6 +41,7 @@
 //! | (1), (2) functional, (16) its discretization, (19) stationarity | [`ritz::functional`], [`ritz::newton`] |
 //! | (10), (17) coefficients B | [`ritz::kernel`], [`ritz::rings`] |
 //! | (11), (18) coefficients W, (13)-(15) the scaled mesh | [`ritz::rings`] |
+//! | one disc of any gap, exactly | [`disc::table`], [`disc::solution`], [`disc::outside`] |
 //! | (20), (23) gaps; further ones, each in its file | [`contact::shape`], [`contact::shapes`] |
 //! | (21) Hertz, (22) JKR | [`theory::hertz`], [`theory::jkr`] |
 //! | the exact solution for (23) and any other gap | [`theory::guduru`], [`theory::sneddon`], [`theory::disc`], [`theory::unloading`] |
@@ -54,8 +57,8 @@
 //!
 //! let preset = read("wavy-sphere", shipped::find("wavy-sphere").expect("shipped").text)?;
 //! let case = Case::new(&preset)?;
-//! let mut curve = case.sweep(|| true)?;
-//! let unloading = case.unload(&mut curve, case.control)?;
+//! let curve = case.curve(|| true)?;
+//! let unloading = case.unload(&curve, case.control)?;
 //! assert_eq!(unloading.events.len(), 6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -65,10 +68,12 @@ pub mod cli;
 pub mod config;
 pub mod contact;
 pub mod continuation;
+pub mod disc;
 pub mod explorer;
 pub mod expression;
 mod fault;
 pub mod figure;
+pub mod mend;
 pub mod plot;
 pub mod preset;
 pub mod print;

@@ -13,8 +13,7 @@
 //! | [`step_size`] | the turning of a step and the length of the next |
 //! | [`step`] | one step: predict, correct, judge, retry |
 //! | [`trace`] | steps until the end value, and why it stopped |
-//! | [`sweep`] | the same branch from an explicit curve, where the problem offers one |
-//! | [`branch`] | points with tangents: what both tracers make |
+//! | [`branch`] | points with tangents |
 //! | [`events`] | where a control turns: sign changes and grazing pairs |
 //! | [`locate`] | guarded Newton on a limit point, or on a control value |
 //!
@@ -29,7 +28,6 @@ pub mod locate;
 pub mod settings;
 pub mod step;
 pub mod step_size;
-pub mod sweep;
 pub mod system;
 pub mod tangent;
 pub mod trace;

@@ -1,25 +1,25 @@
-//! The equilibrium curve between two contact radii, by either tracer, and its limit points.
+//! The equilibrium curve between two contact radii: its states to draw, its limit points, and the arc-length tracer.
 
-use super::equilibrium::{Equilibrium, Point, Scales, inward, unknown};
+use super::equilibrium::{Equilibrium, Point, Scales, Stability, State, unknown};
+use super::monotone::{Limit, Monotone};
 use crate::contact::{Control, Gap, Reduced, Units};
-use crate::continuation::sweep::sweep;
 use crate::continuation::trace::trace;
-use crate::continuation::{Branch, End, Settings, Stop, Work, events, locate};
-use crate::ritz::{Basis, Evaluation, Order};
+use crate::continuation::{Branch, End, Settings, Stop, step_size};
+use crate::disc::exact::outer_side;
+use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
-use std::ops::Range;
 use std::sync::Arc;
 
-/// Steps of a sweep per wave of the gap: a wave drawn or searched with fewer loses its shape.
-pub const SWEEP_STEPS_PER_WAVE: f64 = 40.0;
-/// Largest step of a sweep relative to the radius: the curve behaves like √s towards s = 0.
-pub const SWEEP_RATIO: f64 = 0.025;
-/// The same beyond the inner end, where only landings are looked for: smaller discs are ever more alike.
-const INWARD_RATIO: f64 = 0.1;
-/// Points of a sweep: 500 waves at the full density.
-pub const SWEEP_POINTS: usize = 20_000;
+/// States drawn on each panel of the solution, which is half a wave wide.
+const STATES_PER_PANEL: f64 = 20.0;
+/// Largest step between states relative to the radius: the curve behaves like √s towards s = 0.
+const RATIO: f64 = 0.025;
+/// Most states of a curve.
+pub const MOST_STATES: f64 = 20_000.0;
+/// A trace this near to a corner, in units of the ranges of δ, P and s, goes straight to it.
+const CORNER_STEP: f64 = 0.02;
 /// The edge moves at most this share of a wave per arc-length step: without it traces go astray.
 pub const WAVE_SHARE: f64 = 1.0 / 12.0;
 
@@ -64,68 +64,32 @@ impl CurveStop {
     }
 }
 
-/// Whether the control is smallest or largest at a limit point, along the contact radius.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turn {
-    /// A minimum over s: the edge runs inward from here (unloading).
-    Minimum,
-    /// A maximum over s: the edge runs outward from here (loading).
-    Maximum,
+/// One state of the curve, without its energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The slopes of the curve.
+    pub slopes: Stability,
 }
 
-/// A limit point of a control on a curve.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Limit {
-    /// The control that turns here.
-    pub control: Control,
-    /// Which way it turns.
-    pub turn: Turn,
-    /// The index of the curve point before it.
-    pub index: usize,
-    /// The located point.
-    pub point: Point,
-}
-
-/// The equilibrium curve, its points from the largest contact radius to the smallest.
+/// The equilibrium curve, its states from the largest contact radius to the smallest.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// The equations it solves, with its scales.
     pub equilibrium: Equilibrium,
-    /// Its points, running inward.
-    pub branch: Branch<{ unknown::COUNT }>,
+    /// The equilibria over all radii, from the axis to the outer end of the curve or further.
+    pub solution: Arc<dyn Solution>,
+    /// Its states, running inward.
+    pub samples: Vec<Sample>,
     /// Why it ends.
     pub stop: CurveStop,
-    /// The limit points held, by control: those of all its points.
-    held: Vec<(Control, Vec<Limit>)>,
-}
-
-/// The radii of a sweep from `from` to `to`, both included, in that order.
-pub fn radii(from: f64, to: f64, feature_length: Option<f64>, steps_per_wave: f64) -> Vec<f64> {
-    radii_by(SWEEP_RATIO, from, to, feature_length, steps_per_wave)
-}
-
-/// As [`radii`], with this largest step relative to the radius.
-fn radii_by(ratio: f64, from: f64, to: f64, feature_length: Option<f64>, steps_per_wave: f64) -> Vec<f64> {
-    let (lo, hi) = (from.min(to), from.max(to));
-    let by_wave = feature_length.map_or(f64::INFINITY, |wave| wave / steps_per_wave);
-    // With more waves than the budget allows the steps grow, so that the sweep still ends at `to`.
-    let by_budget = (hi - lo) / SWEEP_POINTS as f64 * 2.0;
-    let mut down = vec![hi];
-    let mut s = hi;
-    while down.len() < SWEEP_POINTS {
-        s -= (ratio * s).min(by_wave.max(by_budget));
-        if s <= lo {
-            break;
-        }
-        down.push(s);
-    }
-    if lo < hi {
-        down.push(lo);
-    }
-    if from < to {
-        down.reverse();
-    }
-    down
+    /// The stretches held, by control: those of the whole solution.
+    held: Vec<Arc<Monotone>>,
 }
 
 /// The settings of the arc-length tracer for a gap with this feature length.
@@ -138,178 +102,230 @@ pub fn settings(equilibrium: &Equilibrium) -> Settings {
     settings
 }
 
+/// Radii from `from` inward to `to`, both included, in steps of at most `ratio` of themselves and `step`.
+pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
+    // With more steps than there may be they grow, so that the last still is at `to`.
+    let step = step.max(2.0 * (from - to) / MOST_STATES);
+    let inner = std::iter::successors(Some(from), |s| Some(s - (ratio * s).min(step)));
+    let mut radii: Vec<f64> = inner.take_while(|s| *s > to).collect();
+    radii.push(to);
+    radii
+}
+
+/// The places of a curve's states from the radius `from` inward to `to`: every panel of the solution with as many, the
+/// borders at which it has a corner from both sides.
+fn places(solution: &dyn Solution, from: f64, to: f64) -> Vec<Place> {
+    let [first, last] = [from, to].map(|s| solution.place(s));
+    let Some(first) = first else { return Vec::new() };
+    let last = last.map_or(0, |place| place.panel);
+    let per_panel = (MOST_STATES / (first.panel + 1 - last) as f64).clamp(1.0, STATES_PER_PANEL);
+    let mut places = vec![first];
+    for panel in (last..=first.panel).rev() {
+        let span = solution.span(panel);
+        let (outer, inner) = (span.hi.min(from), span.lo.max(to));
+        let steps = radii(outer, inner, RATIO, (span.hi - span.lo) / per_panel);
+        let inside = steps.iter().skip(1).take(steps.len().saturating_sub(2));
+        places.extend(inside.map(|s| Place { panel, x: span.place(*s) }));
+        // The outer side of a border that is a corner, and then the border itself.
+        let corner = solution.at(Place { panel, x: -1.0 }).stretch == 0.0;
+        if inner > to && corner {
+            places.push(Place { panel, x: -1.0 });
+        }
+        if inner > to && panel > last {
+            places.push(Place { panel: panel - 1, x: 1.0 });
+        } else if inner <= to {
+            places.push(Place { panel, x: span.place(to) });
+        }
+    }
+    places
+}
+
 impl Curve {
-    /// The curve from `from` down to `to` through the explicit root at every radius.
+    /// The curve from the contact radius `from` down to `to`.
     ///
-    /// `None` when there is no equilibrium at `from`, or `go_on` said no before the first point.
-    pub fn swept(
+    /// `None` when there is no equilibrium at `from`, or `go_on` said no.
+    pub fn new(
         problem: Reduced,
         basis: Arc<dyn Basis>,
+        table: Arc<Table>,
         from: f64,
         to: f64,
         mut go_on: impl FnMut() -> bool,
     ) -> Option<Self> {
-        let steps = radii(from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let wanted = steps.len();
-        let mut evaluations = basis.equilibria(&problem, &steps, Order::Curvature, &mut go_on);
-        evaluations.retain(|e| e.approach.is_finite() && e.force.is_finite());
-        let reached = evaluations.last()?.contact_radius;
-        let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
-        let branch = branch_through(&equilibrium, &evaluations);
-        if branch.points.is_empty() {
-            return None;
+        let solution = basis.solution(&problem, to, from, &mut go_on)?;
+        let sample = |at: Local| {
+            let Local { contact_radius, approach, force, .. } = at;
+            Sample { contact_radius, approach, force, slopes: at.stability() }
+        };
+        // As far as it is connected.
+        let mut samples: Vec<Sample> = Vec::new();
+        let mut stop = CurveStop::End;
+        for on_panel in places(&*solution, from, to).chunk_by(|a, b| a.panel == b.panel) {
+            let panel = on_panel[0].panel;
+            if !samples.is_empty() && !solution.is_joined(panel) {
+                stop = CurveStop::NoEquilibrium(samples.last().map_or(from, |s| s.contact_radius));
+                break;
+            }
+            for some in on_panel.chunks(4) {
+                let x = std::array::from_fn(|i| some[i.min(some.len() - 1)].x);
+                samples.extend(solution.at_four(panel, x).into_iter().take(some.len()).map(sample));
+            }
         }
-        let complete = branch.points.len() == wanted;
-        let stop = if complete { CurveStop::End } else { CurveStop::NoEquilibrium(reached) };
-        Some(Self { equilibrium, branch, stop, held: Vec::new() })
+        let reached = samples.last()?.contact_radius;
+        if stop == CurveStop::End && reached > to * (1.0 + 1e-9) {
+            stop = CurveStop::NoEquilibrium(reached);
+        }
+        let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
+        let equilibrium = Equilibrium { problem, basis, table, scales };
+        Some(Self { equilibrium, solution, samples, stop, held: Vec::new() })
     }
 
-    /// The curve from `from` down to `to` by spherical arc-length continuation, landing exactly on `to`.
-    ///
-    /// `adjust` may change the settings of the tracer. The scales of the arc length are the ranges of δ, P and s over a coarse explicit curve.
-    /// `None` when there is no equilibrium at `from`.
-    pub fn traced(
-        problem: Reduced,
-        basis: Arc<dyn Basis>,
-        from: f64,
-        to: f64,
-        adjust: impl FnOnce(&mut Settings),
-        mut go_on: impl FnMut() -> bool,
-    ) -> Option<Self> {
-        /// Coarse sampling for the ranges only.
-        const STEPS_PER_WAVE: f64 = 8.0;
-        let steps = radii(from, to, problem.gap.feature_length(), STEPS_PER_WAVE);
-        let evaluations = basis.equilibria(&problem, &steps, Order::State, &mut go_on);
-        let equilibrium = Equilibrium { problem, basis, scales: Scales::of(&evaluations) };
-        let start = equilibrium.explicit(from)?;
-        let mut settings = settings(&equilibrium);
-        adjust(&mut settings);
-        let value = to / equilibrium.scales.contact_radius;
-        let end = End { unknown: unknown::CONTACT_RADIUS, value };
-        let (branch, stop) = trace(&equilibrium, start, end, &settings, |_| go_on());
-        let stop = if stop == Stop::End { CurveStop::End } else { CurveStop::Tracer(stop) };
-        Some(Self { equilibrium, branch, stop, held: Vec::new() })
+    /// The same with a table of the gap of its own.
+    pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
+        let table = Table::new(Arc::clone(&problem.gap), from, &mut || true).ok()?;
+        Self::new(problem, basis, Arc::new(table), from, to, || true)
     }
 
     /// The largest contact radius of the curve.
     pub fn outermost(&self) -> f64 {
-        self.branch.points.first().map_or(0.0, |p| self.equilibrium.contact_radius(p))
+        self.samples.first().map_or(0.0, |at| at.contact_radius)
     }
 
     /// The smallest contact radius of the curve.
     pub fn innermost(&self) -> f64 {
-        self.branch.points.last().map_or(0.0, |p| self.equilibrium.contact_radius(p))
+        self.samples.last().map_or(0.0, |at| at.contact_radius)
     }
 
-    /// Continues the curve inward or outward to the radius `to`, as far as the gap is known, and the limit points it holds
-    /// with it; false when nothing could be added.
-    pub fn extend(&mut self, to: f64) -> bool {
+    /// The same curve on a solution that reaches further out, to `to` or as far as the gap is known; false when nothing
+    /// could be added.
+    pub fn reach(&mut self, to: f64) -> bool {
         let to = to.min(self.equilibrium.problem.largest_contact());
-        if (self.innermost()..=self.outermost()).contains(&to) {
+        if to <= self.solution.reach() {
             return false;
         }
-        let inward = to < self.innermost();
-        let from = if inward { self.innermost() } else { self.outermost() };
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
-        let ratio = if inward { INWARD_RATIO } else { SWEEP_RATIO };
-        let steps = radii_by(ratio, from, to, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let new = steps.get(1..).unwrap_or_default();
-        let mut evaluations = basis.equilibria(problem, new, Order::Curvature, &mut || true);
-        if !inward {
-            evaluations.reverse();
-        }
-        let added = branch_through(&self.equilibrium, &evaluations);
-        let (before, count) = (self.branch.points.len(), added.points.len());
-        self.branch.work += added.work;
-        if inward {
-            self.branch.points.extend(added.points);
-        } else {
-            self.branch.points.splice(0..0, added.points);
-        }
-        // The new pieces: the one that joins them to the old points is among them.
-        let new = if inward { before - 1..before + count } else { 0..count + 1 };
-        let mut held = std::mem::take(&mut self.held);
-        for (control, limits) in &mut held {
-            let found = self.limits_among(new.clone(), *control, &settings(&self.equilibrium));
-            if inward {
-                limits.extend(found);
-            } else {
-                for limit in limits.iter_mut() {
-                    limit.index += count;
-                }
-                limits.splice(0..0, found);
-            }
-        }
-        self.held = held;
-        count > 0
+        let Some(solution) = basis.solution(problem, self.innermost(), to, &mut || true) else {
+            return false;
+        };
+        let further = solution.reach() > self.solution.reach();
+        self.solution = solution;
+        self.held =
+            self.held.iter().map(|held| Arc::new(Monotone::of(&*self.solution, held.control))).collect();
+        further
     }
 
-    /// Lets the curve begin with `point`, which lies on it: what is further out is forgotten.
-    pub fn begin_at(&mut self, point: Point) {
-        let s = self.equilibrium.contact_radius(&point);
-        let outside =
-            self.branch.points.iter().take_while(|p| self.equilibrium.contact_radius(p) >= s).count();
-        self.branch.points.splice(..outside, [point]);
-        for (_, limits) in &mut self.held {
-            limits.retain(|limit| self.equilibrium.contact_radius(&limit.point) < s);
-            for limit in limits {
-                limit.index = (limit.index + 1).saturating_sub(outside);
-            }
-        }
+    /// The stretches of `control` over the whole solution.
+    pub fn monotone(&self, control: Control) -> Arc<Monotone> {
+        let held = self.held.iter().find(|held| held.control == control);
+        held.map_or_else(|| Arc::new(Monotone::of(&*self.solution, control)), Arc::clone)
     }
 
-    /// The limit points of `control` on the curve, located to rounding, from the start inward: those held, if they are.
-    pub fn limit_points(&self, control: Control) -> Vec<Limit> {
-        let held = self.held.iter().find(|(held, _)| *held == control);
-        held.map_or_else(|| self.limits_with(control, &|_| {}), |(_, limits)| limits.clone())
-    }
-
-    /// Holds the limit points of `control` from now on: they are located once.
+    /// Holds the stretches of `control` from now on: they are found once.
     pub fn hold(&mut self, control: Control) {
-        if self.held.iter().all(|(held, _)| *held != control) {
-            self.held.push((control, self.limit_points(control)));
+        if self.held.iter().all(|held| held.control != control) {
+            self.held.push(self.monotone(control));
         }
     }
 
-    /// The limit points of `control` as [`Curve::limit_points`], with changed settings: for measuring them.
-    pub fn limits_with(&self, control: Control, adjust: &dyn Fn(&mut Settings)) -> Vec<Limit> {
-        let mut settings = settings(&self.equilibrium);
-        adjust(&mut settings);
-        self.limits_among(0..self.branch.points.len(), control, &settings)
+    /// The limit points of `control` on the curve, to rounding, from the start inward.
+    pub fn limit_points(&self, control: Control) -> Vec<Limit> {
+        let (lo, hi) = (self.innermost(), self.outermost());
+        let monotone = self.monotone(control);
+        let on_curve =
+            monotone.limits.iter().rev().filter(|at| lo <= at.contact_radius && at.contact_radius <= hi);
+        on_curve.copied().collect()
     }
 
-    /// The limit points of `control` among these of the points.
-    fn limits_among(&self, points: Range<usize>, control: Control, settings: &Settings) -> Vec<Limit> {
-        let first = points.start;
-        let row = self.equilibrium.control_row(control);
-        let mut work = Work::default();
-        events::brackets(&self.equilibrium, &self.branch.points[points], &row, settings, &mut work)
-            .into_iter()
-            .filter_map(|bracket| {
-                // Rows differ by many orders between units: the location wants a unit row.
-                let unit = row.normalize();
-                let located = locate::limit_point(&self.equilibrium, &bracket, &unit, settings, &mut work);
-                let (point, bend) = if let Some(found) = located {
-                    (found.point, found.bend)
-                } else {
-                    let (from, to) = (&bracket.from, &bracket.to);
-                    let point = self.equilibrium.bisect(from, to, |p| p.slope(&unit))?;
-                    // The slope grows through a minimum.
-                    (point, to.slope(&unit) - from.slope(&unit))
-                };
-                let turn = if bend > 0.0 { Turn::Minimum } else { Turn::Maximum };
-                Some(Limit { control, turn, index: first + bracket.index, point })
-            })
+    /// The radii of the corners of the curve, where the slope of the gap jumps, ascending.
+    pub fn corners(&self) -> Vec<f64> {
+        let outer = |panel| self.solution.at(Place { panel, x: -1.0 });
+        (1..self.solution.len())
+            .map(outer)
+            .filter(|at| at.stretch == 0.0 && at.slopes[0] != 0.0)
+            .map(|at| at.contact_radius)
             .collect()
     }
-}
 
-/// A branch through explicit solutions in the order given, running inward.
-fn branch_through(equilibrium: &Equilibrium, evaluations: &[Evaluation]) -> Branch<{ unknown::COUNT }> {
-    sweep(
-        evaluations,
-        |e| Some((equilibrium.unknowns_of(e), equilibrium.linearization(e, e.force))),
-        &inward(),
-        |_| true,
-    )
+    /// The state at a place, with its energy.
+    pub fn state(&self, place: Place) -> State {
+        let Local { contact_radius, approach, force, .. } = self.solution.at(place);
+        State { contact_radius, approach, force, energy: self.solution.energy(place) }
+    }
+
+    /// The first point of a walk outward from the corner at the radius `s`: at the distance `length`, in units of the scales, or at
+    /// the end of the panel. `None` where there is no corner.
+    ///
+    /// Just outside a corner the curve is vertical, which no tangent by s can say.
+    pub fn beyond_corner(&self, s: f64, length: f64) -> Option<Point> {
+        let place = self.solution.place(s)?;
+        let Place { panel, .. } = outer_side(&*self.solution, place);
+        if panel == place.panel {
+            return None;
+        }
+        let corner = self.equilibrium.explicit(s)?;
+        let span = self.solution.span(panel);
+        let distance = |x: f64| {
+            let point = self.equilibrium.explicit(span.radius(x));
+            point.map_or(f64::INFINITY, |point| (point.y - corner.y).norm())
+        };
+        let (mut near, mut far) = (-1.0, 1.0);
+        if distance(far) > length {
+            for _ in 0..60 {
+                let middle = 0.5 * (near + far);
+                if distance(middle) > length { far = middle } else { near = middle }
+            }
+        }
+        self.equilibrium.explicit(span.radius(far))
+    }
+
+    /// The same stretch of curve by spherical arc-length continuation, landing exactly on its end and on each corner on
+    /// the way, from which it goes on with the tangent of the other side.
+    ///
+    /// `adjust` may change the settings of the tracer. The scales of the arc length are the ranges of δ, P and s.
+    pub fn traced(
+        &self,
+        adjust: impl FnOnce(&mut Settings),
+        mut go_on: impl FnMut() -> bool,
+    ) -> Option<(Branch<{ unknown::COUNT }>, CurveStop)> {
+        let mut settings = settings(&self.equilibrium);
+        adjust(&mut settings);
+        let (from, to) = (self.outermost(), self.innermost());
+        let ends: Vec<f64> =
+            self.corners().into_iter().rev().filter(|s| to < *s && *s < from).chain([to]).collect();
+        let mut branch = Branch::default();
+        let mut start = self.equilibrium.explicit(from)?;
+        for end in ends {
+            let last = self.equilibrium.explicit(end)?;
+            let corner = end > to;
+            let value = end / self.equilibrium.scales.contact_radius;
+            // Next to a corner the curve is vertical, and what Newton's method knows of it ends at the corner.
+            let is_near = |branch: &Branch<{ unknown::COUNT }>| {
+                let near = |point: &Point| (point.y - last.y).norm() <= CORNER_STEP;
+                corner && branch.points.last().is_some_and(near)
+            };
+            let mut wanted = true;
+            let aim = End { unknown: unknown::CONTACT_RADIUS, value };
+            let (mut piece, stop) = trace(&self.equilibrium, start, aim, &settings, |branch| {
+                wanted = wanted && go_on();
+                wanted && !is_near(branch)
+            });
+            branch.work += piece.work;
+            let landed = wanted && stop != Stop::End && is_near(&piece);
+            if landed {
+                let mut point = last.clone();
+                if let Some(before) = piece.points.last() {
+                    point.length = (point.y - before.y).norm();
+                    point.turning = step_size::turning(before, &point);
+                }
+                piece.points.push(point);
+            }
+            let joint = usize::from(!branch.points.is_empty());
+            branch.points.extend(piece.points.into_iter().skip(joint));
+            if stop != Stop::End && !landed {
+                return Some((branch, CurveStop::Tracer(stop)));
+            }
+            start = last;
+        }
+        Some((branch, self.stop))
+    }
 }

@@ -19,11 +19,11 @@
 //! −k < dP/dδ < P_δ
 //! ```
 
-use super::admissible::Admissibility;
+use super::admissible::{Admissibility, Judge};
 use crate::contact::{Control, Gap, Reduced, Units};
 use crate::continuation::system::{Matrix, Vector};
 use crate::continuation::{self, Linearization, System};
-use crate::ritz::{Basis, Evaluation};
+use crate::disc::{Basis, Evaluation, Table};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -39,14 +39,14 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The ranges over `evaluations`, as powers of two; a quantity that does not vary is scaled by its size.
+    /// The ranges over states (δ, P, s), as powers of two; a quantity that does not vary is scaled by its size.
     ///
     /// Powers of two cost no digit: a state comes back from the unknowns as it went in.
-    pub fn of<'a>(evaluations: impl IntoIterator<Item = &'a Evaluation>) -> Self {
+    pub fn of(states: impl IntoIterator<Item = [f64; 3]>) -> Self {
         let empty = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
         let mut ranges = [empty; 3];
-        for e in evaluations {
-            for (range, x) in ranges.iter_mut().zip([e.approach, e.force, e.contact_radius]) {
+        for state in states {
+            for (range, x) in ranges.iter_mut().zip(state) {
                 *range = [range[0].min(x), range[1].max(x), range[2].max(x.abs())];
             }
         }
@@ -120,9 +120,10 @@ impl Stability {
 pub struct Stiffness {
     /// `P_δ` = ∂P/∂δ at a contact radius held fast: the stiffness of the contact itself.
     pub contact: f64,
-    /// dP/dδ along the curve; infinite at a limit point of the approach, its sign that of the side the rounding left.
+    /// dP/dδ along the curve; infinite at a limit point of the approach, its sign that of the side the rounding left; not a number
+    /// at a corner of the curve, where it has two.
     pub tangent: f64,
-    /// dA/dδ along the curve, A = πs² the contact area; infinite where `tangent` is.
+    /// dA/dδ along the curve, A = πs² the contact area; infinite, or not a number, where `tangent` is.
     pub area_slope: f64,
 }
 
@@ -152,6 +153,8 @@ pub struct Equilibrium {
     pub problem: Reduced,
     /// The discretization.
     pub basis: Arc<dyn Basis>,
+    /// The table of the gap, by which states are judged.
+    pub table: Arc<Table>,
     /// The unit of each unknown.
     pub scales: Scales,
 }
@@ -204,14 +207,19 @@ impl Equilibrium {
     /// The state at a point, its energy evaluated there.
     pub fn state(&self, point: &Point) -> State {
         let [delta, force, s] = self.quantities(&point.y);
-        let energy = self.basis.energy(&self.problem, s, delta);
+        let energy = self.basis.evaluate(&self.problem, s, delta).energy;
         State { contact_radius: s, approach: delta, force, energy }
+    }
+
+    /// What says whether a state is admissible.
+    pub fn judge(&self) -> Judge {
+        Judge::new(&self.problem, &self.table)
     }
 
     /// Whether the state of a point is admissible.
     pub fn admissibility(&self, point: &Point) -> Admissibility {
         let [delta, _, s] = self.quantities(&point.y);
-        Admissibility::of(&self.problem, self.basis.as_ref(), s, delta)
+        self.judge().judge(s, delta)
     }
 
     /// The slopes of the curve at a point.
@@ -226,7 +234,11 @@ impl Equilibrium {
         let [delta, _, s] = self.quantities(&point.y);
         let [along_delta, along_force, along_s] = self.quantities(&point.frame.tangent);
         let turns = point.frame.tangent[unknown::APPROACH].abs() <= ROUNDING;
+        let corner = self.table.has_corner(s);
         let per_approach = |slope: f64| {
+            if corner {
+                return f64::NAN;
+            }
             let ratio = slope / along_delta;
             if turns { f64::INFINITY.copysign(ratio) } else { ratio }
         };
@@ -245,26 +257,6 @@ impl Equilibrium {
     /// The wave index of an edge, where the gap has one wave alone.
     pub fn wave(&self, s: f64) -> Option<u64> {
         wave_index(s, self.problem.gap.wavelength())
-    }
-
-    /// Where `miss` changes its sign between two points of the curve, by halving in s through the explicit root.
-    ///
-    /// Slow and certain: for where a located Newton fails. `None` only where the basis has no equilibrium.
-    pub fn bisect(&self, from: &Point, to: &Point, miss: impl Fn(&Point) -> f64) -> Option<Point> {
-        let side = miss(from) > 0.0;
-        let (mut a, mut b) = (self.contact_radius(from), self.contact_radius(to));
-        loop {
-            let middle = 0.5 * (a + b);
-            let point = self.explicit(middle)?;
-            if middle <= a.min(b) || middle >= a.max(b) {
-                return Some(point);
-            }
-            if (miss(&point) > 0.0) == side {
-                a = middle;
-            } else {
-                b = middle;
-            }
-        }
     }
 
     /// The point of an evaluated equilibrium, its tangent running inward; `None` where the curve is singular.
@@ -320,17 +312,19 @@ mod tests {
     use crate::preset::{read, shipped};
     use crate::quasistatic::Curve;
 
-    /// Fig. 9 by eigenfunctions, whose energy has the digits that second differences need.
+    /// Fig. 9 in the exact basis, whose energy has the digits that second differences need.
     fn swept() -> Curve {
         let mut preset = read("t", shipped::find("fig-9").unwrap().text).unwrap();
-        preset.set("basis.kind", "spectral".into()).unwrap();
-        Case::new(&preset).unwrap().sweep(|| true).unwrap()
+        preset.set("basis.kind", "exact".into()).unwrap();
+        Case::new(&preset).unwrap().curve(|| true).unwrap()
     }
 
     /// `U_ss`, `U_sδ` and `U_δδ` by central differences.
     fn hessian(equilibrium: &Equilibrium, s: f64, delta: f64) -> [f64; 3] {
         let (h, d) = (1e-4 * s, 1e-4 * s);
-        let u = |i: f64, j: f64| equilibrium.basis.energy(&equilibrium.problem, s + i * h, delta + j * d);
+        let u = |i: f64, j: f64| {
+            equilibrium.basis.evaluate(&equilibrium.problem, s + i * h, delta + j * d).energy
+        };
         let ss = (u(1.0, 0.0) - 2.0 * u(0.0, 0.0) + u(-1.0, 0.0)) / (h * h);
         let sd = (u(1.0, 1.0) - u(1.0, -1.0) - u(-1.0, 1.0) + u(-1.0, -1.0)) / (4.0 * h * d);
         let dd = (u(0.0, 1.0) - 2.0 * u(0.0, 0.0) + u(0.0, -1.0)) / (d * d);
@@ -342,8 +336,9 @@ mod tests {
         let curve = swept();
         let equilibrium = &curve.equilibrium;
         let mut judged = [0, 0];
-        for point in curve.branch.points.iter().step_by(7) {
-            let [delta, _, s] = equilibrium.quantities(&point.y);
+        for at in curve.samples.iter().step_by(7) {
+            let (delta, s) = (at.approach, at.contact_radius);
+            let point = &equilibrium.explicit(s).unwrap();
             let [ss, sd, dd] = hessian(equilibrium, s, delta);
             let stiffness = equilibrium.stiffness(point);
             assert!((stiffness.contact / dd - 1.0).abs() < 1e-5, "{} {dd}", stiffness.contact);
@@ -381,7 +376,7 @@ mod tests {
         let limits = curve.limit_points(Control::Displacement);
         assert!(limits.len() > 10);
         for limit in limits {
-            let stiffness = equilibrium.stiffness(&limit.point);
+            let stiffness = equilibrium.stiffness(&equilibrium.explicit(limit.contact_radius).unwrap());
             assert!(stiffness.tangent.is_infinite() && stiffness.area_slope.is_infinite(), "{stiffness:?}");
             assert!(stiffness.contact.is_finite());
         }

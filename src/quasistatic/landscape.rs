@@ -17,15 +17,40 @@
 //! With tension at the edge `x < −P_s/P_sδ`. Beyond, the edge is pressed: the bodies overlap just outside, and the
 //! potential is that of an impossible state. Such samples are marked.
 
-use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
+use super::curve::Curve;
 use super::energy::potential;
 use super::equilibrium::{Equilibrium, State};
-use super::jump::{Nodes, Run};
-use crate::contact::{Control, Gap};
-use crate::ritz::{Evaluation, Order};
+use super::jump::Run;
+use super::monotone::Monotone;
+use crate::contact::Control;
+use crate::disc::{Evaluation, Order, Solution};
 
 /// Samples of a landscape at least: a short range is drawn with as many steps as this.
 const SAMPLES: f64 = 100.0;
+
+/// Samples on each panel of the solution at least, and the largest step relative to the radius.
+const SAMPLES_PER_PANEL: f64 = 20.0;
+const RATIO: f64 = 0.025;
+
+/// The radii of a landscape from `lo` out to `hi`, the borders of the panels among them.
+fn grid(solution: &dyn Solution, lo: f64, hi: f64) -> Vec<f64> {
+    let mut grid = vec![lo];
+    for panel in 0..solution.len() {
+        let span = solution.span(panel);
+        let (from, to) = (span.lo.max(lo), span.hi.min(hi));
+        if from >= to {
+            continue;
+        }
+        let steps = (SAMPLES_PER_PANEL * (to - from) / (span.hi - span.lo))
+            .max(SAMPLES * (to - from) / (hi - lo))
+            .max((to / from.max(f64::MIN_POSITIVE)).ln().min(10.0) / RATIO)
+            .ceil();
+        let inner = std::iter::successors(Some(1.0), |j| Some(j + 1.0)).take_while(|j| *j < steps);
+        grid.extend(inner.map(|j| from + (to - from) * (j / steps)));
+        grid.push(to);
+    }
+    grid
+}
 
 /// Lobatto's inner nodes on (−1, 1) at ±1/√5; weights 1/6, 5/6, 5/6, 1/6 of the step.
 const INNER: f64 = 0.447_213_595_499_958;
@@ -70,26 +95,27 @@ pub struct Landscape {
 }
 
 impl Landscape {
-    /// The potential from `from` to `to` as seen from the radius `present` between them, the control of `nodes` at `value`.
+    /// The potential from `from` to `to` as seen from the radius `present` between them, `control` at `value`.
     ///
-    /// `nodes` are those of `curve`; the range is cut to the curve. `None` where that leaves nothing, or where the basis
-    /// has no equilibrium on the way.
-    pub fn of(curve: &Curve, nodes: &Nodes, value: f64, present: f64, [from, to]: [f64; 2]) -> Option<Self> {
+    /// The range is cut to the curve. `None` where that leaves nothing, or where the basis has no equilibrium on the way.
+    pub fn of(
+        curve: &Curve,
+        control: Control,
+        value: f64,
+        present: f64,
+        [from, to]: [f64; 2],
+    ) -> Option<Self> {
         let equilibrium = &curve.equilibrium;
         let (from, to) = (from.max(curve.innermost()), to.min(curve.outermost()));
         // A NaN is in no range either.
         if !(from < to && (from..=to).contains(&present)) {
             return None;
         }
-        let wave = equilibrium.problem.gap.feature_length();
-        let shortest = SWEEP_STEPS_PER_WAVE * (to - from) / SAMPLES;
-        let shortest = wave.map_or(shortest, |wave| wave.min(shortest));
-        let mut grid = radii(from, to, Some(shortest), SWEEP_STEPS_PER_WAVE);
-        let crossings = nodes.crossings(curve, value);
-        let found = crossings.iter().map(|point| {
-            let stable = equilibrium.stability(point).under(nodes.control);
-            (equilibrium.contact_radius(point), stable)
-        });
+        let mut grid = grid(&*curve.solution, from, to);
+        let monotone = curve.monotone(control);
+        let held = Held { equilibrium, control, value };
+        let crossings = held.crossings(curve, &monotone);
+        let found = crossings.into_iter();
         let mut found: Vec<(f64, bool)> = found.filter(|(s, _)| (from..=to).contains(s)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         grid.extend(found.iter().map(|(s, _)| *s));
@@ -97,7 +123,6 @@ impl Landscape {
         grid.sort_by(f64::total_cmp);
         grid.dedup();
 
-        let held = Held { equilibrium, control: nodes.control, value };
         let mut points = held.integrate(&grid)?;
         let here = points.iter().find(|p| p.contact_radius >= present)?.potential;
         for point in &mut points {
@@ -111,7 +136,7 @@ impl Landscape {
             })
             .collect();
         let level = held.level(present)?;
-        Some(Self { control: nodes.control, value, present, level, points, stationary })
+        Some(Self { control, value, present, level, points, stationary })
     }
 
     /// How much higher than the present minimum the next maximum is when the edge runs that way.
@@ -140,12 +165,10 @@ const RISE: f64 = 1e-6;
 /// positive. Outward x > 0, and it falls only while `x < −2 P_s/P_sδ`: with weak adhesion, and always without, the
 /// edge is soon pressed so much that the potential rises again, and the next equilibrium may lie higher than the first.
 /// `false` also where the basis has no equilibrium on the way.
-pub fn falls(equilibrium: &Equilibrium, control: Control, value: f64, from: f64, to: f64) -> bool {
+pub fn falls(curve: &Curve, control: Control, value: f64, from: f64, to: f64) -> bool {
+    let equilibrium = &curve.equilibrium;
     let (lo, hi) = (from.min(to), from.max(to));
-    let shortest = SWEEP_STEPS_PER_WAVE * (hi - lo) / SAMPLES;
-    let wave = equilibrium.problem.gap.feature_length();
-    let mut grid =
-        radii(lo, hi, Some(wave.map_or(shortest, |wave| wave.min(shortest))), SWEEP_STEPS_PER_WAVE);
+    let mut grid = grid(&*curve.solution, lo, hi);
     grid.dedup();
     let Some(mut samples) = (Held { equilibrium, control, value }).integrate(&grid) else { return false };
     if from > to {
@@ -168,6 +191,21 @@ struct Held<'a> {
 }
 
 impl Held<'_> {
+    /// The equilibria of the solution at the held value, with their stability.
+    fn crossings(&self, curve: &Curve, monotone: &Monotone) -> Vec<(f64, bool)> {
+        let value = match self.control {
+            Control::Displacement | Control::Force => self.value,
+            // As the stretches have it, whatever the stiffness.
+            Control::Stiffness(k) => self.value * (k / (1.0 + k)),
+        };
+        let radius = |place| curve.solution.at(place).contact_radius;
+        monotone
+            .crossings(&*curve.solution, value)
+            .into_iter()
+            .map(|(place, stable)| (radius(place), stable))
+            .collect()
+    }
+
     /// x = δ − δₑ of the held control at the radius of `e`.
     fn distance(&self, e: &Evaluation) -> f64 {
         let miss = self.value - self.control.value(e.approach, e.force);
@@ -214,7 +252,7 @@ impl Held<'_> {
         let Equilibrium { problem, basis, .. } = self.equilibrium;
         let e = basis.equilibrium(problem, s)?;
         let approach = e.approach + self.distance(&e);
-        let energy = basis.energy(problem, s, approach);
+        let energy = basis.evaluate(problem, s, approach).energy;
         let force = e.force + e.force_gradient[0] * (approach - e.approach);
         Some(potential(self.control, self.value, &State { contact_radius: s, approach, force, energy }))
     }
@@ -224,8 +262,9 @@ impl Held<'_> {
 mod tests {
     use super::*;
     use crate::contact::{Problem, Reduced, Shape};
-    use crate::quasistatic::curve::Turn;
-    use crate::ritz::{Basis, Rings, Spectral};
+    use crate::disc::{Basis, Exact, Table};
+    use crate::quasistatic::Turn;
+    use crate::ritz::Rings;
     use std::f64::consts::PI;
     use std::sync::Arc;
 
@@ -236,30 +275,35 @@ mod tests {
         Problem { effective_modulus: 1.0, work_of_adhesion: 0.004, shape }.reduced()
     }
 
-    fn curve(problem: &Reduced, basis: Arc<dyn Basis>) -> Curve {
-        Curve::swept(problem.clone(), basis, 0.5, 0.02, || true).unwrap()
+    fn curve(problem: &Reduced, rings: Option<usize>) -> Curve {
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let basis: Arc<dyn Basis> = match rings {
+            Some(rings) => Rings::shared(rings).unwrap(),
+            None => Arc::new(Exact::new(Arc::clone(&table), 0.5)),
+        };
+        Curve::new(problem.clone(), basis, table, 0.5, 0.02, || true).unwrap()
     }
 
-    fn spectral(problem: &Reduced) -> Arc<dyn Basis> {
-        Arc::new(Spectral::resolving(problem, 0.5).unwrap())
-    }
-
-    fn nodes(curve: &Curve, control: Control) -> Nodes {
-        Nodes::new(curve, control, &curve.limit_points(control))
+    /// The radii at which `control` takes `value` on the curve, descending, with their stability.
+    fn crossings(curve: &Curve, control: Control, value: f64) -> Vec<(f64, bool)> {
+        let held = Held { equilibrium: &curve.equilibrium, control, value };
+        let mut found = held.crossings(curve, &curve.monotone(control));
+        found.retain(|(s, _)| (0.02..=0.5).contains(s));
+        found.reverse();
+        found
     }
 
     #[test]
     fn of_a_smooth_sphere_it_is_the_closed_form() {
         let (gamma, problem) = (0.004, problem(0.0));
-        let curve = curve(&problem, spectral(&problem));
+        let curve = curve(&problem, None);
         // U = ∫₀^s (δ − a²)² da − πγs².
         let delta = 0.01;
         let energy =
             |s: f64| s * delta * delta - 2.0 / 3.0 * delta * s.powi(3) + s.powi(5) / 5.0 - PI * gamma * s * s;
         let control = Control::Displacement;
-        let nodes = nodes(&curve, control);
-        let present = curve.equilibrium.contact_radius(&nodes.crossings(&curve, delta)[0]);
-        let seen = Landscape::of(&curve, &nodes, delta, present, [0.0, 1.0]).unwrap();
+        let present = crossings(&curve, control, delta)[0].0;
+        let seen = Landscape::of(&curve, control, delta, present, [0.0, 1.0]).unwrap();
         assert!((seen.level / energy(present) - 1.0).abs() < 1e-12);
         for at in &seen.points {
             let exact = energy(at.contact_radius) - energy(present);
@@ -274,15 +318,13 @@ mod tests {
     #[test]
     fn its_extremes_are_the_equilibria_and_its_differences_those_of_the_potential() {
         let problem = problem(0.0025);
-        for basis in [spectral(&problem), Rings::shared(100).unwrap()] {
-            let curve = curve(&problem, basis);
+        for rings in [None, Some(100)] {
+            let curve = curve(&problem, rings);
             for control in CONTROLS {
-                let nodes = nodes(&curve, control);
-                let row = curve.equilibrium.control_row(control);
                 for index in [60, 101, 150, 190] {
-                    let point = &curve.branch.points[index];
-                    let (present, value) = (curve.equilibrium.contact_radius(point), row.dot(&point.y));
-                    let seen = Landscape::of(&curve, &nodes, value, present, [0.03, 0.5]).unwrap();
+                    let at = &curve.samples[index];
+                    let (present, value) = (at.contact_radius, control.value(at.approach, at.force));
+                    let seen = Landscape::of(&curve, control, value, present, [0.03, 0.5]).unwrap();
                     let held = Held { equilibrium: &curve.equilibrium, control, value };
                     assert!(seen.stationary.iter().any(|at| (at.contact_radius - present).abs() < 1e-9));
                     let deepest = seen.points.iter().fold(0.0_f64, |most, p| most.max(p.potential.abs()));
@@ -323,24 +365,21 @@ mod tests {
     #[test]
     fn the_barrier_vanishes_towards_a_limit_point() {
         let problem = problem(0.0025);
-        let curve = curve(&problem, spectral(&problem));
+        let curve = curve(&problem, None);
         for control in CONTROLS {
             let limits = curve.limit_points(control);
-            let nodes = Nodes::new(&curve, control, &limits);
-            let row = curve.equilibrium.control_row(control);
             let limit = limits.iter().find(|limit| limit.turn == Turn::Minimum).unwrap();
-            let (at, value) = (curve.equilibrium.contact_radius(&limit.point), row.dot(&limit.point.y));
+            let (at, value) = (limit.contact_radius, control.value(limit.approach, limit.force));
             let size = value.abs();
             let barrier = |above: f64| {
                 let value = value + above * size;
                 // The stable state outward of the limit point.
-                let present = nodes
-                    .crossings(&curve, value)
+                let present = crossings(&curve, control, value)
                     .iter()
-                    .map(|p| curve.equilibrium.contact_radius(p))
+                    .map(|(s, _)| *s)
                     .filter(|s| *s >= at)
                     .fold(f64::INFINITY, f64::min);
-                Landscape::of(&curve, &nodes, value, present.min(0.5), [at - 0.03, at + 0.03])?
+                Landscape::of(&curve, control, value, present.min(0.5), [at - 0.03, at + 0.03])?
                     .barrier(Run::Inward)
             };
             let [high, low, least] = [1e-4, 1e-6, 1e-8].map(|above| barrier(above).unwrap());
@@ -356,9 +395,8 @@ mod tests {
     #[test]
     fn outside_the_curve_there_is_nothing() {
         let problem = problem(0.0);
-        let curve = curve(&problem, spectral(&problem));
-        let nodes = nodes(&curve, Control::Displacement);
-        let seen = |present, range| Landscape::of(&curve, &nodes, 0.0, present, range);
+        let curve = curve(&problem, None);
+        let seen = |present, range| Landscape::of(&curve, Control::Displacement, 0.0, present, range);
         assert!(seen(0.6, [0.1, 0.7]).is_none() && seen(0.2, [0.3, 0.4]).is_none());
         assert!(seen(0.2, [0.2, 0.2]).is_none() && seen(f64::NAN, [0.1, 0.4]).is_none());
         assert!(seen(0.2, [0.1, 9.0]).is_some());

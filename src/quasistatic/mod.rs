@@ -3,7 +3,8 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`equilibrium`] | the contact as a system of two equations in (δ, P, s); states, stability, controls |
-//! | [`curve`] | the equilibrium curve by either tracer, its limit points under any control |
+//! | [`curve`] | the equilibrium curve between two radii, its limit points, the arc-length tracer |
+//! | [`monotone`] | the stretches on which a control is monotone, the limit points between them |
 //! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
 //! | [`jump`] | where the edge lands when it runs at constant control |
 //! | [`energy`] | what a jump dissipates, computed twice |
@@ -21,15 +22,17 @@ pub mod energy;
 pub mod equilibrium;
 pub mod jump;
 pub mod landscape;
+pub mod monotone;
 pub mod overlap;
 pub mod profile;
 pub mod start;
 pub mod unload;
 
 pub use admissible::Admissibility;
-pub use curve::{Curve, CurveStop, Limit, Turn};
+pub use curve::{Curve, CurveStop, Sample};
 pub use equilibrium::{Equilibrium, Point, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
+pub use monotone::{Limit, Monotone, Turn};
 pub use overlap::Overlap;
 pub use profile::Profile;
 pub use start::StartError;

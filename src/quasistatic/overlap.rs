@@ -1,27 +1,31 @@
 //! Where a curve or a path passes states that are not admissible, and at which crest.
 //!
-//! Every state is looked at, the ends of an interval are located on the curve to about 1e-6 by halving and false
-//! position on the gap at the crest. An interval that fits between two states is not seen.
+//! Where the state is stable under displacement control the gap at every radius outside falls as the disc grows,
+//!
+//! ```text
+//! d gap(r)/ds = −(2/π)[√(2πγs)/√(r² − s²) + (dδ/ds) arccos(s/r)] < 0   where dδ/ds ≥ 0,
+//! ```
+//!
+//! so on such a stretch the verdict can change once: its two ends tell, and one root in between. Elsewhere, and without
+//! adhesion, where the pressure has a say, every state of the curve is looked at.
 
-use super::admissible::{Admissibility, Crest};
-use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
-use super::equilibrium::Equilibrium;
-use crate::contact::Gap;
-use crate::ritz::Order;
+use super::admissible::{Admissibility, Crest, Judge};
+use super::curve::Curve;
+use super::monotone::Monotone;
+use crate::contact::Control;
+use std::sync::Arc;
 
-/// Rounds for the ends of an interval, in which halving alone comes to 1e-6 of a step; false position needs a third.
-const ROUNDS: usize = 20;
 /// An end is located when its bracket is this small relative to it.
-const LOCATED: f64 = 2e-7;
+const LOCATED: f64 = 1e-9;
 
-/// Neighbouring states of a curve that are not admissible, for one reason: a crest, or the pressure.
+/// Neighbouring states of a curve that are not admissible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
     /// The largest contact radius.
     pub from: f64,
     /// The smallest contact radius.
     pub to: f64,
-    /// The crest that overlaps most among the points of the curve; `None` where only the pressure is at fault.
+    /// The crest that overlaps most among the states looked at; `None` where only the pressure is at fault.
     pub crest: Option<Crest>,
 }
 
@@ -39,11 +43,7 @@ pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
 
 /// The same; `go_on` is asked before each state, `None` when it said no.
 pub fn overlaps_while(curve: &Curve, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Overlap>> {
-    let state = |point| {
-        let [delta, _, s] = curve.equilibrium.quantities(point);
-        (s, delta)
-    };
-    along(&curve.equilibrium, curve.branch.points.iter().map(|point| state(&point.y)), go_on)
+    passed_while(curve, &[[curve.outermost(), curve.innermost()]], go_on)
 }
 
 /// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
@@ -51,105 +51,151 @@ pub fn overlaps_while(curve: &Curve, go_on: &mut dyn FnMut() -> bool) -> Option<
 ///
 /// `go_on` is asked before each state, `None` when it said no.
 pub fn passed_while(
-    equilibrium: &Equilibrium,
+    curve: &Curve,
     pieces: &[[f64; 2]],
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Vec<Overlap>> {
-    let Equilibrium { problem, basis, .. } = equilibrium;
-    let mut wanted = true;
-    let mut go_on = || {
-        wanted = wanted && go_on();
-        wanted
+    let mut curve = curve.clone();
+    curve.reach(pieces.iter().map(|[from, _]| *from).fold(0.0, f64::max));
+    let mut search = Search {
+        judge: curve.equilibrium.judge(),
+        stretches: curve.monotone(Control::Displacement),
+        curve: &curve,
+        go_on,
+        found: Vec::new(),
+        open: None,
     };
-    let mut found = Vec::new();
-    for &[outer, inner] in pieces {
-        let steps = radii(outer, inner, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let states = basis.equilibria(problem, &steps, Order::State, &mut go_on);
-        found.extend(along(equilibrium, states.iter().map(|e| (e.contact_radius, e.approach)), &mut go_on)?);
+    for &[from, to] in pieces {
+        search.piece(from, to)?;
+        search.open = None;
     }
-    wanted.then_some(found)
+    Some(search.found)
 }
 
-/// The inadmissible ones of neighbouring states (s, δ), running inward.
-fn along(
-    equilibrium: &Equilibrium,
-    states: impl Iterator<Item = (f64, f64)>,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<Vec<Overlap>> {
-    let (problem, basis) = (&equilibrium.problem, equilibrium.basis.as_ref());
-    let mut found: Vec<Overlap> = Vec::new();
-    let mut open = false;
-    let mut last: Option<f64> = None;
-    for (s, delta) in states {
-        if !go_on() {
+/// Why a state is not admissible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cause {
+    /// A crest overlaps; its number, where it has one.
+    Crest(Option<u64>),
+    /// The disc would have to pull.
+    Pressure,
+}
+
+struct Search<'a> {
+    curve: &'a Curve,
+    judge: Judge,
+    stretches: Arc<Monotone>,
+    go_on: &'a mut dyn FnMut() -> bool,
+    found: Vec<Overlap>,
+    /// The fault of the interval that is still open.
+    open: Option<Cause>,
+}
+
+impl Search<'_> {
+    /// The state of radius `s`; `None` when it is no longer wanted.
+    fn state(&mut self, s: f64) -> Option<Admissibility> {
+        if !(self.go_on)() {
             return None;
         }
-        let here = Admissibility::of(problem, basis, s, delta);
-        let fault = |crest: Option<Crest>| crest.map(|crest| crest.wave);
-        match (here.holds, found.last_mut().filter(|_| open)) {
-            // At another crest, or for the pressure: an interval of its own, which begins where this one ends.
-            (false, Some(overlap)) if fault(here.overlapping()) != fault(overlap.crest) => {
-                overlap.to = s;
-                found.push(Overlap { from: s, to: s, crest: here.overlapping() });
+        let place = self.curve.solution.place(s)?;
+        Some(self.judge.verdict(s, self.curve.solution.at(place).approach))
+    }
+
+    /// One piece, from `from` inward to `to`.
+    fn piece(&mut self, from: f64, to: f64) -> Option<()> {
+        let monotone = Arc::clone(&self.stretches);
+        let adhesive = self.curve.equilibrium.problem.work_of_adhesion > 0.0;
+        for stretch in monotone.stretches.iter().rev() {
+            let (outer, inner) = (stretch.radii[1].min(from), stretch.radii[0].max(to));
+            if inner > outer || (inner >= outer && from > to) {
+                continue;
             }
-            (true, Some(overlap)) => overlap.to = end(equilibrium, s, overlap.to),
-            (false, Some(overlap)) => {
-                overlap.to = s;
+            if stretch.rising && adhesive {
+                self.once(outer, inner)?;
+            } else {
+                self.each(outer, inner)?;
+            }
+        }
+        Some(())
+    }
+
+    /// A stretch on which the verdict can change once, from inadmissible outside to admissible inside.
+    fn once(&mut self, outer: f64, inner: f64) -> Option<()> {
+        let outside = self.state(outer)?;
+        if outside.holds {
+            self.open = None;
+            return Some(());
+        }
+        let inside = self.state(inner)?;
+        let end = if inside.holds { self.end(outer, inner)? } else { inner };
+        self.add(outer, end, &outside);
+        if inside.holds {
+            self.open = None;
+        }
+        Some(())
+    }
+
+    /// A stretch whose states are looked at one by one.
+    fn each(&mut self, outer: f64, inner: f64) -> Option<()> {
+        let curve = self.curve;
+        let between = curve.samples.iter().map(|at| at.contact_radius).filter(|s| inner < *s && *s < outer);
+        let mut last: Option<(f64, bool)> = None;
+        for s in std::iter::once(outer).chain(between).chain([inner]) {
+            let here = self.state(s)?;
+            match last {
+                Some((good, true)) if !here.holds => {
+                    let from = self.end(s, good)?;
+                    self.add(from, s, &here);
+                }
+                Some((bad, false)) if here.holds => {
+                    let to = self.end(bad, s)?;
+                    if let Some(overlap) = self.found.last_mut() {
+                        overlap.to = to;
+                    }
+                    self.open = None;
+                }
+                _ if !here.holds => self.add(s, s, &here),
+                _ => self.open = None,
+            }
+            last = Some((s, here.holds));
+        }
+        Some(())
+    }
+
+    /// Adds the states from `from` inward to `to`, at fault as `state`, to the interval that is open, or begins one: at another
+    /// crest, or for the pressure, an interval is one of its own.
+    fn add(&mut self, from: f64, to: f64, state: &Admissibility) {
+        let crest = state.overlapping();
+        let cause = crest.map_or(Cause::Pressure, |crest| Cause::Crest(crest.wave));
+        match self.found.last_mut() {
+            Some(overlap) if self.open == Some(cause) => {
+                overlap.to = to;
                 let gap = |crest: Option<Crest>| crest.map_or(f64::INFINITY, |crest| crest.gap);
-                if gap(here.overlapping()) < gap(overlap.crest) {
-                    overlap.crest = here.overlapping();
+                if gap(crest) < gap(overlap.crest) {
+                    overlap.crest = crest;
                 }
             }
-            (false, None) => {
-                let from = last.map_or(s, |good| end(equilibrium, good, s));
-                found.push(Overlap { from, to: s, crest: here.overlapping() });
-            }
-            (true, None) => {}
+            _ => self.found.push(Overlap { from, to, crest }),
         }
-        open = !here.holds;
-        last = Some(s);
+        self.open = Some(cause);
     }
-    Some(found)
-}
 
-/// The end of an interval between an admissible radius and one that is not: the last that is not.
-fn end(equilibrium: &Equilibrium, mut good: f64, mut bad: f64) -> f64 {
-    let Equilibrium { problem, basis, .. } = equilibrium;
-    // The nearest gap by the straight line between its values on both sides, where it has them.
-    let mut gaps = [None; 2];
-    for round in 0..ROUNDS {
-        if (good - bad).abs() <= LOCATED * bad {
-            break;
+    /// The last radius that is not admissible between one that is not and one that is, by halving.
+    fn end(&mut self, mut bad: f64, mut good: f64) -> Option<f64> {
+        while (good - bad).abs() > LOCATED * bad {
+            let middle = 0.5 * (good + bad);
+            if self.state(middle)?.holds { good = middle } else { bad = middle }
         }
-        let share = match gaps {
-            // Every third round halves, so that neither side can stay.
-            [Some(above), Some(below)] if round % 3 != 2 && above > below => {
-                // A little beyond the zero closes the bracket from the other side.
-                let zero: f64 = above / (above - below);
-                (zero + if zero < 0.5 { 1e-4 } else { -1e-4 }).clamp(1e-4, 1.0 - 1e-4)
-            }
-            _ => 0.5,
-        };
-        let middle = good + share * (bad - good);
-        let found = basis
-            .equilibrium(problem, middle)
-            .map(|e| Admissibility::of(problem, basis.as_ref(), middle, e.approach));
-        let gap = found.and_then(|found| found.nearest).map(|crest| crest.gap);
-        if found.is_some_and(|found| found.holds) {
-            (good, gaps[0]) = (middle, gap);
-        } else {
-            (bad, gaps[1]) = (middle, gap);
-        }
+        Some(bad)
     }
-    bad
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Control, Problem, Reduced, Shape};
+    use crate::contact::{Problem, Reduced, Shape};
+    use crate::disc::{Exact, Table};
     use crate::quasistatic::unload::unload;
-    use crate::ritz::{Basis, Spectral};
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
@@ -158,40 +204,45 @@ mod tests {
         Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced()
     }
 
-    fn holds(problem: &Reduced, basis: &dyn Basis, s: f64) -> bool {
-        Admissibility::of(problem, basis, s, basis.equilibrium(problem, s).unwrap().approach).holds
+    fn curve(problem: &Reduced, to: f64) -> Curve {
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let basis = Arc::new(Exact::new(Arc::clone(&table), 0.5));
+        Curve::new(problem.clone(), basis, table, 0.5, to, || true).unwrap()
+    }
+
+    fn holds(curve: &Curve, s: f64) -> bool {
+        let equilibrium = &curve.equilibrium;
+        let at = equilibrium.basis.equilibrium(&equilibrium.problem, s).unwrap();
+        equilibrium.judge().judge(s, at.approach).holds
     }
 
     #[test]
     fn a_curve_says_where_it_is_inadmissible_and_at_which_crest() {
         let problem = wavy(0.0025, 0.05, 1e-4);
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, 0.5).unwrap());
-        let curve = Curve::swept(problem.clone(), Arc::clone(&basis), 0.5, 0.04, || true).unwrap();
+        let curve = curve(&problem, 0.04);
         let found = overlaps(&curve);
         // One below each crest from the tenth to the second: the edge is between it and the last trough.
         let crests: Vec<u64> = found.iter().filter_map(|overlap| overlap.crest?.wave).collect();
         assert_eq!(crests, [10, 9, 8, 7, 6, 5, 4, 3, 2]);
         for overlap in &found {
-            let holds = |s: f64| holds(&problem, basis.as_ref(), s);
+            let holds = |s: f64| holds(&curve, s);
             let (out, inward) = (1.0 + 2e-6, 1.0 - 2e-6);
             assert!(holds(overlap.from * out) && !holds(overlap.from * inward), "{overlap:?}");
             assert!(!holds(overlap.to * out) && holds(overlap.to * inward), "{overlap:?}");
         }
         // Every state of the figures of the paper is possible.
         let problem = wavy(0.0025, 0.05, 0.025 / TAU);
-        let curve = Curve::swept(problem, basis, 0.5, 0.02, || true).unwrap();
-        assert_eq!(overlaps(&curve), []);
+        assert_eq!(overlaps(&super::tests::curve(&problem, 0.02)), []);
     }
 
     #[test]
     fn a_path_passes_what_is_on_its_stable_pieces_alone() {
         let problem = wavy(0.0025, 0.05, 1e-4);
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, 0.5).unwrap());
-        let whole = Curve::swept(problem, basis, 0.5, 0.04, || true).unwrap();
+        let whole = curve(&problem, 0.04);
         let on_curve = overlaps(&whole);
         for control in [Control::Displacement, Control::Force] {
-            let path = unload(&mut whole.clone(), control).unwrap();
-            let passed = passed_while(&whole.equilibrium, &path.pieces, &mut || true).unwrap();
+            let path = unload(&whole, control).unwrap();
+            let passed = passed_while(&whole, &path.pieces, &mut || true).unwrap();
             let on_path = |s: f64| path.pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
             for overlap in &passed {
@@ -210,7 +261,7 @@ mod tests {
                 left -= 1;
                 left >= 0
             };
-            assert_eq!(passed_while(&whole.equilibrium, &path.pieces, &mut go_on), None);
+            assert_eq!(passed_while(&whole, &path.pieces, &mut go_on), None);
         }
         assert_eq!(overlaps_while(&whole, &mut || false), None);
     }

@@ -8,9 +8,9 @@
 //! The gap opens like √(r − s) at an adhesive edge and like (r − s)^{3/2} without adhesion, so its points follow
 //! r = s√(1 + ζ²) with even steps in ζ near the edge and steps by the wave further out.
 
-use super::admissible::{self, Crest};
+use super::admissible::{Crest, Judge};
 use crate::contact::{Gap, Reduced};
-use crate::ritz::Basis;
+use crate::disc::Basis;
 
 /// Points of the gap per wave.
 const POINTS_PER_WAVE: f64 = 20.0;
@@ -57,8 +57,8 @@ pub struct Profile {
 
 impl Profile {
     /// The profile of the bodies of `problem` at (s, δ), which need not be an equilibrium.
-    pub fn of(problem: &Reduced, basis: &dyn Basis, s: f64, delta: f64) -> Self {
-        let pressure = basis.pressure_profile(problem, s, delta);
+    pub fn of(problem: &Reduced, basis: &dyn Basis, judge: &Judge, s: f64, delta: f64) -> Self {
+        let pressure = basis.pressure(problem, s, delta);
         let inside = pressure.into_iter().map(|(radius, pressure)| Inside { radius, pressure }).collect();
         let known = |r: f64| (r, problem.gap.jet(r).value);
         // A measured gap ends, and is no number beyond.
@@ -67,12 +67,11 @@ impl Profile {
             .map(known)
             .take_while(|(_, undeformed)| undeformed.is_finite())
             .unzip();
-        let displacement = basis.outside_displacement(problem, s, delta, &radii);
-        let outside = radii.iter().zip(gap).zip(displacement);
-        let outside = outside
-            .map(|((&radius, undeformed), u)| Outside { radius, gap: undeformed - delta + u, undeformed })
-            .collect();
-        let nearest = admissible::nearest_crest(problem, basis, s, delta);
+        let deformed = basis.gap_outside(problem, s, delta, &radii);
+        let outside = radii.iter().zip(gap).zip(deformed).filter(|(_, gap)| gap.is_finite());
+        let outside =
+            outside.map(|((&radius, undeformed), gap)| Outside { radius, gap, undeformed }).collect();
+        let nearest = judge.nearest_crest(s, delta);
         Self { contact_radius: s, approach: delta, inside, outside, nearest }
     }
 }
@@ -94,21 +93,29 @@ fn radii(s: f64, wave: Option<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::contact::{Problem, Shape};
-    use crate::ritz::{Rings, Spectral};
+    use crate::disc::{Exact, Table};
+    use crate::ritz::Rings;
     use std::f64::consts::PI;
+    use std::sync::Arc;
 
     fn problem(amplitude: f64, gamma: f64) -> Reduced {
         let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength: 0.05 };
         Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced()
     }
 
+    fn exact(problem: &Reduced) -> (Exact, Judge) {
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let judge = Judge::new(problem, &table);
+        (Exact::new(table, 0.5), judge)
+    }
+
     #[test]
     fn of_a_smooth_sphere_it_is_hertz_and_jkr() {
         for gamma in [0.0, 0.004] {
             let (problem, s) = (problem(0.0, gamma), 0.2_f64);
-            let basis = Spectral::new(8).unwrap();
+            let (basis, judge) = exact(&problem);
             let at = basis.equilibrium(&problem, s).unwrap();
-            let profile = Profile::of(&problem, &basis, s, at.approach);
+            let profile = Profile::of(&problem, &basis, &judge, s, at.approach);
             let tension = (2.0 * PI * gamma * s).sqrt();
             for at in &profile.inside {
                 let t = (s * s - at.radius * at.radius).sqrt();
@@ -132,11 +139,11 @@ mod tests {
     #[test]
     fn points_are_finite_in_order_and_dense_at_the_edge() {
         let (problem, s) = (problem(0.0025, 1e-4), 0.37);
-        let spectral = Spectral::resolving(&problem, 0.5).unwrap();
+        let (exact, judge) = exact(&problem);
         let rings = Rings::shared(50).unwrap();
-        for basis in [&spectral as &dyn Basis, rings.as_ref()] {
+        for basis in [&exact as &dyn Basis, rings.as_ref()] {
             let at = basis.equilibrium(&problem, s).unwrap();
-            let profile = Profile::of(&problem, basis, s, at.approach);
+            let profile = Profile::of(&problem, basis, &judge, s, at.approach);
             assert!(profile.inside.iter().all(|at| at.pressure.is_finite() && at.radius < s));
             assert!(profile.inside.windows(2).all(|pair| pair[0].radius < pair[1].radius));
             assert!(profile.outside.windows(2).all(|pair| pair[0].radius < pair[1].radius));
@@ -148,9 +155,9 @@ mod tests {
             let least = drawn.map(|g| g[1].gap).fold(f64::INFINITY, f64::min);
             assert!((least - nearest.gap).abs() < 2e-4 && least >= nearest.gap - 1e-9, "{least} {nearest:?}");
         }
-        let profile = Profile::of(&problem, &spectral, s, 0.1);
+        let profile = Profile::of(&problem, &exact, &judge, s, 0.1);
         let [last, before] = [1, 2].map(|k| profile.inside[profile.inside.len() - k].radius);
         assert!(last - before < 1e-3 * s && s - last < 1e-3 * s);
-        assert_eq!(Profile::of(&problem, rings.as_ref(), s, 0.1).inside.len(), 50);
+        assert_eq!(Profile::of(&problem, rings.as_ref(), &judge, s, 0.1).inside.len(), 50);
     }
 }

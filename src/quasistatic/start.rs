@@ -1,13 +1,11 @@
 //! The state a path starts from.
 
-use super::curve::{Curve, SWEEP_STEPS_PER_WAVE, radii};
-use super::jump::Nodes;
+use super::monotone::Monotone;
 use crate::contact::{Control, Gap, Reduced, Start, Units};
-use crate::ritz::Basis;
+use crate::disc::Basis;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
-use std::sync::Arc;
 
 /// Why a start state was not found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -102,15 +100,29 @@ impl StartError {
     }
 }
 
+/// How far out a start is looked for, as a multiple of the radius where a paraboloid of the reference length takes the value.
+const FARTHEST: f64 = 1e12;
+
+/// A search ends when it takes more panels than this.
+const MOST_PANELS: usize = 100_000;
+
+/// A curve above the value over so many times its radius is not looked at further out.
+const ABOVE: f64 = 2.0;
+
 /// The contact radius of the start state.
 ///
-/// For an approach or a preload the curve is swept further and further out until it stays above the value over a
-/// factor of two in radius; the outermost crossing, where the control grows with s, is the start. Where the gap is known
-/// up to a radius only, the outermost crossing within it is.
+/// For an approach or a preload the curve is looked at further and further out, until it stays above the value over a
+/// factor of two in radius; the outermost state that takes it, stable under the control, is the start. Where the gap is
+/// known up to a radius only, the outermost within it is.
 ///
 /// # Errors
 /// [`StartError`] when there is none.
-pub fn contact_radius(problem: &Reduced, basis: &Arc<dyn Basis>, start: Start) -> Result<f64, StartError> {
+pub fn contact_radius(
+    problem: &Reduced,
+    basis: &dyn Basis,
+    start: Start,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<f64, StartError> {
     let (control, value, name) = match start {
         Start::ContactRadius(s) => {
             return basis.equilibrium(problem, s).map(|_| s).ok_or(StartError::NoEquilibrium(s));
@@ -122,58 +134,44 @@ pub fn contact_radius(problem: &Reduced, basis: &Arc<dyn Basis>, start: Start) -
     let elastic = if control == Control::Force { value.abs().cbrt() } else { value.abs().sqrt() };
     let adhesive = problem.work_of_adhesion.cbrt();
     let unit = elastic.max(adhesive).max(f64::MIN_POSITIVE);
-    let largest = 1e3 * unit;
+    let largest = FARTHEST * unit;
     let most = problem.largest_contact();
     let from = 1e-3 * unit.min(most);
     let mut reach = (2.0 * unit).min(most);
     loop {
-        let pieces: Vec<(Curve, Nodes)> = pieces(problem, basis, reach, from)
-            .map(|curve| {
-                let nodes = Nodes::new(&curve, control, &curve.limit_points(control));
-                (curve, nodes)
-            })
-            .collect();
-        let values = || {
-            pieces.iter().flat_map(|(curve, nodes)| {
-                nodes
-                    .points()
-                    .iter()
-                    .enumerate()
-                    .map(|(i, p)| (curve.equilibrium.contact_radius(p), nodes.value(i)))
-            })
-        };
-        // Above the value over the outer half: no wave further out comes down to it again. Where no more is known, above
-        // it at the end must do.
-        let outer = if reach < most { 0.5 * reach } else { reach * (1.0 - 1e-9) };
-        if values().take_while(|(s, _)| *s >= outer).all(|(_, v)| v > value) {
-            let smallest = values().map(|(_, v)| v).fold(f64::INFINITY, f64::min);
-            let found =
-                pieces.iter().find_map(|(curve, nodes)| Some((curve, nodes.outermost(curve, value)?)));
-            let (curve, start) = found.ok_or(StartError::OutOfReach { name, value, smallest })?;
-            return Ok(curve.equilibrium.contact_radius(&start));
+        let solution = basis.solution(problem, from, reach, go_on);
+        if let Some(solution) = &solution {
+            let monotone = Monotone::of(&**solution, control);
+            let stretches = &monotone.stretches;
+            let last = stretches.iter().rposition(|stretch| stretch.rising && stretch.takes(value));
+            // What lies further out is above the value: over a factor of two, or to where the gap ends.
+            let outer = if reach < most { reach / ABOVE } else { reach * (1.0 - 1e-9) };
+            let above = stretches.iter().all(|stretch| {
+                let lowest = stretch.values[0].min(stretch.values[1]);
+                let inside = stretch.radii[1] <= outer || Some(stretch) == last.map(|at| &stretches[at]);
+                inside || lowest > value || stretch.radii[0] < outer && !stretch.takes(value)
+            });
+            // Where it still falls it may reach the value further out.
+            let ends = stretches.last().is_some_and(|stretch| stretch.rising && stretch.values[1] > value);
+            let found = last.map(|at| {
+                let place = monotone.solve(&**solution, &stretches[at], value);
+                solution.at(place).contact_radius
+            });
+            let known = found.is_some() && reach >= most;
+            if known || ends && above && found.is_none_or(|s| s <= outer) {
+                let smallest =
+                    stretches.iter().flat_map(|stretch| stretch.values).fold(f64::INFINITY, f64::min);
+                return found.ok_or(StartError::OutOfReach { name, value, smallest });
+            }
         }
         if reach >= most {
             let known = problem.gap.largest_radius().unwrap_or(most);
             return Err(StartError::NotKnown { name, value, searched: reach, known });
         }
-        if reach >= largest {
-            return Err(StartError::NotReached { name, value, largest });
+        let panels = solution.map_or(usize::MAX, |solution| solution.len());
+        if reach >= largest || panels > MOST_PANELS {
+            return Err(StartError::NotReached { name, value, largest: reach });
         }
         reach = (2.0 * reach).min(most);
     }
-}
-
-/// The equilibrium curve from `reach` down to `from` in its connected pieces, the outermost first: rings too coarse
-/// for the waves have radii without an equilibrium.
-fn pieces(problem: &Reduced, basis: &Arc<dyn Basis>, reach: f64, from: f64) -> impl Iterator<Item = Curve> {
-    /// Just below the last radius of a piece.
-    const BELOW: f64 = 1.0 - 1e-6;
-    let mut outer = Some(reach);
-    std::iter::from_fn(move || {
-        let steps = radii(outer?, from, problem.gap.feature_length(), SWEEP_STEPS_PER_WAVE);
-        let first = steps.into_iter().find(|s| basis.equilibrium(problem, *s).is_some())?;
-        let curve = Curve::swept(problem.clone(), Arc::clone(basis), first, from, || true)?;
-        outer = Some(curve.innermost() * BELOW).filter(|s| *s > from);
-        Some(curve)
-    })
 }

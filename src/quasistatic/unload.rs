@@ -2,10 +2,12 @@
 
 use super::curve::{Curve, CurveStop};
 use super::energy;
-use super::equilibrium::{Equilibrium, Point, State};
-use super::jump::{Landing, Nodes, Run};
+use super::equilibrium::State;
+use super::jump::{self, Landing, Run};
 use super::landscape;
+use super::monotone::weighted;
 use crate::contact::{Control, Units};
+use crate::disc::{Local, Place};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -46,28 +48,26 @@ pub struct Event {
 }
 
 impl Event {
-    /// The event of a jump at the control value `value` from `before` to `landing`, with its losses; a pull-off
-    /// where there is no landing.
+    /// The event of a jump on `curve` from `before` to `landing`, with its losses; a pull-off where there is no landing.
     #[must_use]
     pub fn new(
-        equilibrium: &Equilibrium,
+        curve: &Curve,
         control: Control,
-        value: f64,
-        before: State,
-        landing: Option<&Point>,
+        before: Place,
+        landing: Option<Place>,
         losses: Losses,
     ) -> Self {
-        let after = landing.map(|point| equilibrium.state(point));
-        let radii = (before.contact_radius, after.map(|a| a.contact_radius));
+        let after = landing.map(|place| curve.state(place));
+        let state = curve.state(before);
         Self {
             kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
-            control_value: value,
-            before,
+            control_value: control.value(state.approach, state.force),
+            before: state,
             after,
-            dissipated: energy::loss(control, value, &before, after.as_ref()),
+            dissipated: energy::loss(control, &state, after.as_ref()),
             dissipated_by_area: match losses {
                 Losses::Once => None,
-                Losses::Twice => energy::area(equilibrium, control, value, radii.0, radii.1),
+                Losses::Twice => energy::area(&*curve.solution, control, before, landing),
             },
         }
     }
@@ -199,9 +199,13 @@ impl UnloadError {
 
 /// How far outward a stable state is looked for, as a multiple of the start radius.
 const OUTWARD_REACH: f64 = 1000.0;
-/// How far inward a landing is looked for, as a share of the radius of the last limit point: the curve
-/// is smooth and monotone towards s = 0 long before.
-pub const INWARD_REACH: f64 = 1e-4;
+
+/// A start this near to a limit point, relative to its radius, is at its control value to rounding: comparing values decides
+/// nothing there.
+const AT_LIMIT: f64 = 3e-8;
+
+/// An end this near to a landing is the landing.
+const AT_END: f64 = 1e-12;
 
 impl Unloading {
     /// The sum of the losses that are defined.
@@ -210,13 +214,11 @@ impl Unloading {
     }
 }
 
-/// Unloads under `control` along `curve`, from its outermost point down to its innermost.
-///
-/// The curve is extended where a landing lies beyond it: `curve` keeps the longer branch.
+/// Unloads under `control` along `curve`, from its outermost state down to its innermost.
 ///
 /// # Errors
 /// [`UnloadError`] when the start is unstable and no stable state lies outward.
-pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadError> {
+pub fn unload(curve: &Curve, control: Control) -> Result<Unloading, UnloadError> {
     unload_while(curve, control, Losses::Twice, || true)
 }
 
@@ -225,171 +227,160 @@ pub fn unload(curve: &mut Curve, control: Control) -> Result<Unloading, UnloadEr
 /// # Errors
 /// [`UnloadError::Cancelled`] when `go_on` said no, and as [`unload`].
 pub fn unload_while(
-    curve: &mut Curve,
+    curve: &Curve,
     control: Control,
     losses: Losses,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Unloading, UnloadError> {
-    let asked_radius = curve.outermost();
-    let end_radius = curve.innermost();
-    let asked_state = curve.branch.points.first().map(|p| curve.equilibrium.state(p));
-    let stable = |curve: &Curve, point: &Point| curve.equilibrium.stability(point).under(control);
-
-    // Its own limit points make the events, the others' may be the smallest force or approach of the path.
-    for control in [control, Control::Force, Control::Displacement] {
-        curve.hold(control);
-    }
-    let unstable_start = curve.branch.points.first().is_some_and(|p| !stable(curve, p));
-    if unstable_start {
-        run_outward(curve, control, asked_radius)?;
-    }
-    let Descent { path, events, pieces, stop } = descend(curve, control, losses, end_radius, &mut go_on)?;
-    let start = curve.equilibrium.state(&path[0]);
-    let least = |of| least(curve, &path, &events, of).map_or(start, |point| curve.equilibrium.state(&point));
+    let (from, to) = (curve.outermost(), curve.innermost());
+    let mut longer = None;
+    let asked = curve.solution.place(from).map(|place| curve.state(place));
+    let here = if let Some(start) = stable_start(curve, control, from) {
+        start
+    } else {
+        run_outward(longer.insert(curve.clone()), control, from)?
+    };
+    let curve = longer.as_ref().unwrap_or(curve);
+    let start = curve.state(here.place);
+    let Descent { events, pieces, stop } = descend(curve, control, losses, here, to, &mut go_on)?;
+    let least = |of| least(curve, &pieces, of).unwrap_or(start);
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
-    let asked = asked_state.filter(|_| unstable_start).map(|state| {
+    let asked = asked.filter(|_| start.contact_radius > from).map(|state| {
         let value = control.value(state.approach, state.force);
-        let falls = landscape::falls(&curve.equilibrium, control, value, asked_radius, start.contact_radius);
+        let falls = landscape::falls(curve, control, value, from, start.contact_radius);
         Asked { state, falls }
     });
+    let pieces =
+        pieces.iter().map(|piece| piece.map(|place| curve.solution.at(place).contact_radius)).collect();
     Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
+}
+
+/// The start at the radius `s`, or at the limit point that it is at to rounding; `None` where it is not stable.
+fn stable_start(curve: &Curve, control: Control, s: f64) -> Option<Landing> {
+    let monotone = curve.monotone(control);
+    let at = monotone.stretch_of(s);
+    let stretch = monotone.stretches.get(at)?;
+    if stretch.rising {
+        let place = if s <= stretch.radii[0] { stretch.inner } else { curve.solution.place(s)? };
+        return Some(Landing { place, stretch: at });
+    }
+    // Just outside a maximum the state is that of the limit point.
+    let [maximum, limit] = stretch.radii;
+    if stretch.joined && s - maximum <= AT_LIMIT * maximum {
+        let inner = at.checked_sub(1)?;
+        return Some(Landing { place: monotone.stretches[inner].outer, stretch: inner });
+    }
+    // Just inside a minimum the next stable state is as far outside of it.
+    let outer = monotone.stretches.get(at + 1).filter(|next| next.rising && next.joined)?;
+    if limit - s > AT_LIMIT * limit {
+        return None;
+    }
+    let mirrored = (2.0 * limit - s).min(outer.radii[1]);
+    let place = if mirrored <= limit { outer.inner } else { curve.solution.place(mirrored)? };
+    Some(Landing { place, stretch: at + 1 })
 }
 
 /// The way down a curve.
 struct Descent {
-    /// Its states, the first one and the landings among them.
-    path: Vec<Point>,
     events: Vec<Event>,
-    pieces: Vec<[f64; 2]>,
+    /// The stable pieces it follows, each from its outer end to its inner.
+    pieces: Vec<[Place; 2]>,
     stop: PathStop,
 }
 
-/// From the first point of `curve`, stable, down to `end_radius`: along the curve to the next minimum of the control,
-/// from there to where the edge lands, and on.
+/// From the stable state `here` down to the radius `to`: along the curve to the next minimum of the control, from there to
+/// where the edge lands, and on.
 fn descend(
-    curve: &mut Curve,
+    curve: &Curve,
     control: Control,
     losses: Losses,
-    end_radius: f64,
+    mut here: Landing,
+    to: f64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Descent, UnloadError> {
-    let mut nodes = Nodes::new(curve, control, &curve.limit_points(control));
-    let mut here = Landing { point: nodes.points()[0].clone(), node: 0 };
-
-    let mut path = Vec::new();
-    let mut events = Vec::new();
-    let mut pieces = Vec::new();
-    let stop = loop {
-        let minimum = nodes.next_minimum(here.node + 1);
-        let last = minimum.unwrap_or(nodes.points().len() - 1);
-        path.push(here.point.clone());
-        path.extend(
-            nodes.points()[here.node + 1..=last.max(here.node)]
-                .iter()
-                .take_while(|p| curve.equilibrium.contact_radius(p) >= end_radius * (1.0 - 1e-12))
-                .cloned(),
-        );
-        let radius = |point: &Point| curve.equilibrium.contact_radius(point);
-        pieces.push([radius(&here.point), path.last().map_or(0.0, radius)]);
-        let Some(limit) =
-            minimum.filter(|&at| curve.equilibrium.contact_radius(&nodes.points()[at]) >= end_radius)
-        else {
-            break match curve.stop {
-                CurveStop::End => PathStop::End,
-                stop => PathStop::Curve(stop),
-            };
-        };
+    let monotone = curve.monotone(control);
+    let mut descent = Descent { events: Vec::new(), pieces: Vec::new(), stop: PathStop::End };
+    loop {
+        let stretch = &monotone.stretches[here.stretch];
+        let [inner, _] = stretch.radii;
+        if inner < to {
+            let end = curve.solution.place(to).unwrap_or(stretch.inner);
+            descent.pieces.push([here.place, end]);
+            return Ok(descent);
+        }
+        descent.pieces.push([here.place, stretch.inner]);
+        if !stretch.joined {
+            // Without adhesion the disc shrinks to nothing; rings may have no equilibrium further in.
+            if inner > 0.0 {
+                descent.stop = PathStop::Curve(CurveStop::NoEquilibrium(inner));
+            }
+            return Ok(descent);
+        }
         if !go_on() {
             return Err(UnloadError::Cancelled);
         }
-        let value = nodes.value(limit);
-        let before_point = nodes.points()[limit].clone();
-        let landing = landing_inward(curve, &mut nodes, limit);
-        let before = curve.equilibrium.state(&before_point);
-        if landing.is_none() && curve.innermost() > INWARD_REACH * before.contact_radius * (1.0 + 1e-9) {
-            // The basis has no equilibrium further in: where the edge would land is not known, so this is no pull-off.
-            break PathStop::Curve(CurveStop::NoEquilibrium(curve.innermost()));
-        }
-        events.push(Event::new(
-            &curve.equilibrium,
-            control,
-            value,
-            before,
-            landing.as_ref().map(|l| &l.point),
-            losses,
-        ));
-        match landing {
-            None => break PathStop::PullOff,
-            Some(landing) if curve.equilibrium.contact_radius(&landing.point) < end_radius => {
-                let s = curve.equilibrium.contact_radius(&landing.point);
-                pieces.push([s, s]);
-                path.push(landing.point);
-                break PathStop::End;
+        let landing = match jump::run(curve, &monotone, here.stretch, stretch.values[0], Run::Inward) {
+            Ok(landing) => landing,
+            Err(hole) => {
+                descent.stop = PathStop::Curve(CurveStop::NoEquilibrium(hole));
+                return Ok(descent);
             }
-            Some(landing) => here = landing,
+        };
+        let before = limit_before(&monotone, here.stretch).unwrap_or(stretch.inner);
+        descent.events.push(Event::new(curve, control, before, landing.map(|l| l.place), losses));
+        let Some(landing) = landing else {
+            descent.stop = PathStop::PullOff;
+            return Ok(descent);
+        };
+        if curve.solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
+            descent.pieces.push([landing.place; 2]);
+            return Ok(descent);
         }
-    };
-    Ok(Descent { path, events, pieces, stop })
-}
-
-/// Where the edge lands when it runs inward from the limit point at node `limit`; the curve is extended, and the
-/// nodes with it, where nothing is found on it.
-fn landing_inward(curve: &mut Curve, nodes: &mut Nodes, limit: usize) -> Option<Landing> {
-    let value = nodes.value(limit);
-    let landing = nodes.run(curve, limit, value, Run::Inward);
-    let reach = INWARD_REACH * curve.equilibrium.contact_radius(&nodes.points()[limit]);
-    if landing.is_some() || reach >= curve.innermost() || !curve.extend(reach) {
-        return landing;
+        here = landing;
     }
-    // Indices before the extension stay true: it only adds points at the end.
-    *nodes = Nodes::new(curve, nodes.control, &curve.limit_points(nodes.control));
-    nodes.run(curve, limit, value, Run::Inward)
 }
 
-/// The point of a path at which the quantity that `of` controls is smallest: one of its own, or a limit point of
-/// that quantity between them.
-fn least(curve: &Curve, path: &[Point], events: &[Event], of: Control) -> Option<Point> {
-    let row = curve.equilibrium.control_row(of);
-    let limits = curve.limit_points(of);
-    let between = limits.iter().map(|l| &l.point).filter(|p| is_on(&curve.equilibrium, path, events, p));
-    path.iter().chain(between).min_by(|a, b| row.dot(&a.y).total_cmp(&row.dot(&b.y))).cloned()
+/// The limit point at which a stretch begins: at a corner that of the side further in.
+fn limit_before(monotone: &super::Monotone, stretch: usize) -> Option<Place> {
+    stretch.checked_sub(1).map(|inner| monotone.stretches[inner].outer)
 }
 
-/// Whether `point` lies on the stable pieces of a path: between its outermost and innermost point, and not
-/// inside a jump.
-fn is_on(equilibrium: &Equilibrium, path: &[Point], events: &[Event], point: &Point) -> bool {
-    let s = equilibrium.contact_radius(point);
-    let radius = |p: Option<&Point>| p.map_or(0.0, |p| equilibrium.contact_radius(p));
-    let inside = s <= radius(path.first()) && s >= radius(path.last());
-    inside
-        && events.iter().all(|event| {
-            let after = event.after.map_or(0.0, |a| a.contact_radius);
-            s >= event.before.contact_radius || s <= after
-        })
+/// The state of smallest value of `of` on the stable pieces: at one of their ends, or at a limit point between them.
+fn least(curve: &Curve, pieces: &[[Place; 2]], of: Control) -> Option<State> {
+    let monotone = curve.monotone(of);
+    let ends: Vec<[Local; 2]> =
+        pieces.iter().map(|piece| piece.map(|place| curve.solution.at(place))).collect();
+    let on_path =
+        |s: f64| ends.iter().any(|[outer, inner]| inner.contact_radius <= s && s <= outer.contact_radius);
+    let between = monotone.limits.iter().filter(|limit| on_path(limit.contact_radius));
+    let between = between.map(|limit| (limit.place, weighted(of, limit.approach, limit.force)));
+    let at_ends = pieces.iter().flatten().zip(ends.as_flattened());
+    at_ends
+        .map(|(place, at)| (*place, monotone.value(at)))
+        .chain(between)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(place, _)| curve.state(place))
 }
 
-/// From an unstable start outward, at constant control, to the next stable state, which becomes the first
-/// point of the curve.
-fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<(), UnloadError> {
-    let row = curve.equilibrium.control_row(control);
-    let value = curve.branch.points.first().map_or(0.0, |p| row.dot(&p.y));
+/// From an unstable start outward, at constant control, to the next stable state; `curve` reaches there then.
+fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing, UnloadError> {
     let limit = (OUTWARD_REACH * from).min(curve.equilibrium.problem.largest_contact().max(from));
     let mut reach = from;
     loop {
         reach = (1.5 * reach).min(limit);
-        let grew = curve.extend(reach);
-        let nodes = Nodes::new(curve, control, &curve.limit_points(control));
-        let start = nodes
-            .points()
-            .iter()
-            .position(|p| curve.equilibrium.contact_radius(p) <= from * (1.0 + 1e-12))
-            .unwrap_or(0);
-        if let Some(landing) = nodes.run(curve, start, value, Run::Outward) {
-            // The path starts at the landing: what lies outward of it is not on it.
-            curve.begin_at(landing.point);
-            return Ok(());
+        curve.reach(reach);
+        // A start at a limit point that lies beyond the curve as it was.
+        if let Some(start) = stable_start(curve, control, from) {
+            return Ok(start);
         }
-        if !grew || reach >= limit {
+        let monotone = curve.monotone(control);
+        let stretch = monotone.stretch_of(from);
+        let value =
+            curve.solution.place(from).map_or(f64::NAN, |place| monotone.value(&curve.solution.at(place)));
+        if let Ok(Some(landing)) = jump::run(curve, &monotone, stretch, value, Run::Outward) {
+            return Ok(landing);
+        }
+        if reach >= limit {
             return Err(UnloadError::UnstableStart { contact_radius: from, control, searched: reach });
         }
     }

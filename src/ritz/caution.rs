@@ -1,11 +1,10 @@
-//! What to be careful about in the answers of a basis.
+//! What to be careful about in the answers of rings.
 
 use super::mesh::Grading;
 use super::rings::{RINGS_PER_WAVE, WEAK_ADHESION};
-use super::spectral::{DIGITS_WANTED, FUNCTION_RANGE};
 use std::fmt;
 
-/// A reason to trust the answers of a basis less than one would; its text says what to do.
+/// A reason to trust the answers of rings less than one would; its text says what to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Caution {
     /// Too few rings for the waves of the gap.
@@ -19,15 +18,6 @@ pub enum Caution {
     },
     /// The error of ring elements exceeds the adhesion; γ in reduced units.
     WeakAdhesion(f64),
-    /// Too few eigenfunctions for the waves of the gap.
-    FewFunctions {
-        /// Their number.
-        functions: usize,
-        /// Decimal digits they can be trusted for.
-        digits: f64,
-        /// A number that is enough, where there is one.
-        wanted: Option<usize>,
-    },
 }
 
 impl fmt::Display for Caution {
@@ -46,18 +36,6 @@ impl fmt::Display for Caution {
                     write!(f, "even {most} graded rings are too few, set basis.grading to \"uniform\"")
                 } else {
                     write!(f, "even {most} rings are too few, start from a smaller contact")
-                }
-            }
-            Self::FewFunctions { functions, digits, wanted } => {
-                write!(
-                    f,
-                    "{functions} functions are good for {digits:.1} digits in the largest contact; {DIGITS_WANTED} or more \
-                     are needed: "
-                )?;
-                let most = FUNCTION_RANGE.end();
-                match wanted {
-                    Some(wanted) => write!(f, "set basis.functions to {wanted} or \"auto\""),
-                    None => write!(f, "even {most} functions are too few, start from a smaller contact"),
                 }
             }
             Self::WeakAdhesion(gamma) => write!(

@@ -1,7 +1,7 @@
 //! What the tests of every basis share.
 
-use super::{Basis, Evaluation};
 use crate::contact::{Problem, Reduced, Shape};
+use crate::disc::{Basis, Evaluation};
 
 /// The wavy sphere of the paper's Fig. 9 with another work of adhesion.
 pub fn wavy(gamma: f64) -> Reduced {
@@ -22,7 +22,7 @@ pub fn check_derivatives(basis: &dyn Basis, problem: &Reduced, s: f64, delta: f6
     let (s0, s1, d0, d1) = (at(s - es, delta), at(s + es, delta), at(s, delta - ed), at(s, delta + ed));
     let by_s = |f: &dyn Fn(&Evaluation) -> f64| (f(&s1) - f(&s0)) / (2.0 * es);
     let by_d = |f: &dyn Fn(&Evaluation) -> f64| (f(&d1) - f(&d0)) / (2.0 * ed);
-    let energy = |s: f64, d: f64| basis.energy(problem, s, d);
+    let energy = |s: f64, d: f64| basis.evaluate(problem, s, d).energy;
     let energy_by_approach = (energy(s, delta + ed) - energy(s, delta - ed)) / (2.0 * ed);
     let pairs = [
         (by_d(&|e| e.residual), here.residual_gradient[0]),

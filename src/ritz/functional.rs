@@ -13,6 +13,7 @@
 //! linear in s and converges in a handful of rounds from a threefold radius, and F at γ = 0, where the
 //! root form is degenerate.
 
+use crate::disc::Evaluation;
 use std::f64::consts::PI;
 
 /// The bilinear forms uᵀKv of the sampled gap at one contact radius.
@@ -44,41 +45,6 @@ pub struct Forms {
     pub f12: f64,
 }
 
-/// What a basis answers at one (s, δ): value, gradient and second derivatives.
-///
-/// Gradients are `[∂/∂δ, ∂/∂s]`, second derivatives `[∂²/∂δ², ∂²/∂δ∂s, ∂²/∂s²]`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evaluation {
-    /// s.
-    pub contact_radius: f64,
-    /// δ.
-    pub approach: f64,
-    /// The equilibrium residual (see the module header); not a number where it does not exist.
-    pub residual: f64,
-    /// The size against which the residual is judged: its unit, or its rounding level where that is larger.
-    pub residual_scale: f64,
-    /// Gradient of the residual.
-    pub residual_gradient: [f64; 2],
-    /// Second derivatives of the residual.
-    pub residual_second: [f64; 3],
-    /// P.
-    pub force: f64,
-    /// The size against which a force difference is judged.
-    pub force_scale: f64,
-    /// Gradient of the force.
-    pub force_gradient: [f64; 2],
-    /// Second derivatives of the force.
-    pub force_second: [f64; 3],
-}
-
-impl Evaluation {
-    /// dδ/ds and dP/ds along the equilibrium curve.
-    pub fn slopes(&self) -> [f64; 2] {
-        let approach = -self.residual_gradient[1] / self.residual_gradient[0];
-        [approach, self.force_gradient[0] * approach + self.force_gradient[1]]
-    }
-}
-
 /// Rounding of the forms, relative to their size, with room for the sums over some thousand nodes.
 const FORM_ROUNDING: f64 = 1e-4;
 
@@ -95,11 +61,6 @@ impl Forms {
         let root = discriminant.sqrt();
         // The form without cancellation, whichever the sign of b.
         Some(if b > 0.0 && root > 0.0 { 2.0 * c / (b + root) } else { (b - root) / self.cc })
-    }
-
-    /// U = −Φ at (s, δ) for the work of adhesion `gamma`: elastic energy minus the adhesion gained.
-    pub fn energy(&self, s: f64, delta: f64, gamma: f64) -> f64 {
-        0.5 * s * self.ww(delta) - PI * gamma * s * s
     }
 
     /// wᵀKw.
@@ -161,6 +122,7 @@ impl Forms {
             force_scale: s * (self.ch.abs() + (delta * self.cc).abs()),
             force_gradient: [s * self.cc, -cw - s * self.c1],
             force_second: [0.0, self.cc, -2.0 * self.c1 - s * self.c2],
+            energy: 0.5 * s * ww - PI * gamma * s * s,
         }
     }
 }

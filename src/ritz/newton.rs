@@ -6,11 +6,11 @@
 //! δ + P(s, δ)/k = Δ   ⇒   dδ/ds|_Δ = −P_s/(P_δ + k)
 //! ```
 //!
-//! and the second line of (19), in its root form (see [`super::functional`], [`super::spectral`]), is one equation in s. From a
+//! and the second line of (19), in its root form (see [`super::functional`], [`crate::disc::exact`]), is one equation in s. From a
 //! contact radius three times too large it takes the 5-6 rounds that the paper reports.
 
-use super::{Basis, Evaluation};
 use crate::contact::{Control, Reduced};
+use crate::disc::{Basis, Evaluation};
 
 /// When Newton-Raphson stops.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -19,13 +19,14 @@
 
 use super::caution::Caution;
 use super::cholesky::{BLOCK, Factor, NoFactor};
-use super::functional::{Evaluation, Forms};
+use super::functional::Forms;
 use super::kernel::disc_interaction;
 use super::mesh::Grading;
 use super::outside;
 use super::parallel::{self, Progress};
-use super::{Basis, Order};
 use crate::contact::{Gap, Reduced};
+use crate::disc::sampled::Sampled;
+use crate::disc::{Basis, Evaluation, Order, Solution};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -44,6 +45,9 @@ const TOGETHER: usize = 32;
 
 /// Fewer rings than this do not repay a thread.
 const RINGS_PER_THREAD: usize = 100;
+
+/// How far inward of a path's end its landings are looked for, as a share of it.
+const INWARD_REACH: f64 = 1e-4;
 
 /// Samples of the gap at a node: h, h1, h2 and h3 of [`super::functional`].
 const SAMPLES: usize = 4;
@@ -291,13 +295,6 @@ impl Basis for Rings {
         self.forms(problem.gap.as_ref(), s).evaluate(s, delta, problem.work_of_adhesion)
     }
 
-    fn energy(&self, problem: &Reduced, s: f64, delta: f64) -> f64 {
-        let h = self.reduced::<1>(problem.gap.as_ref(), &[s]);
-        let forms =
-            Forms { cc: self.cc, ch: self.ones.dot(&h.column(0)), hh: h.norm_squared(), ..Forms::default() };
-        forms.energy(s, delta, problem.work_of_adhesion)
-    }
-
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation> {
         equilibrium_of(&self.forms(problem.gap.as_ref(), s), s, problem.work_of_adhesion)
     }
@@ -336,22 +333,33 @@ impl Basis for Rings {
         found
     }
 
+    fn solution(
+        &self,
+        problem: &Reduced,
+        from: f64,
+        to: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<Arc<dyn Solution>> {
+        // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
+        let range = [INWARD_REACH * from, to.min(problem.largest_contact().max(from))];
+        Some(Arc::new(Sampled::new(self, problem, range, go_on)?))
+    }
+
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
         let pressures = self.ring_pressures(problem.gap.as_ref(), s, delta);
         let middles = self.nodes.windows(2).map(|edge| 0.5 * s * (edge[0] + edge[1]));
         middles.zip(pressures.iter().copied()).collect()
     }
 
-    fn outside_displacement(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
+    fn gap_outside(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
         let pressures = self.ring_pressures(problem.gap.as_ref(), s, delta);
         // A ring's pressure up to its outer edge, less what the next one has.
         let inward = |j: usize| pressures[j] - pressures.get(j + 1).copied().unwrap_or(0.0);
         let discs: Vec<(f64, f64)> =
             self.nodes[1..].iter().enumerate().map(|(j, edge)| (s * edge, inward(j))).collect();
-        radii
-            .iter()
-            .map(|&r| discs.iter().map(|&(edge, step)| step * outside::by_disc(edge.min(r), r)).sum())
-            .collect()
+        let displacement =
+            |r: f64| discs.iter().map(|&(edge, step)| step * outside::by_disc(edge.min(r), r)).sum::<f64>();
+        radii.iter().map(|&r| problem.gap.jet(r).value - delta + displacement(r)).collect()
     }
 
     fn size(&self) -> usize {
@@ -370,19 +378,19 @@ impl Basis for Rings {
         -error.log10()
     }
 
-    fn cautions(&self, problem: &Reduced, s: f64) -> Vec<Caution> {
+    fn cautions(&self, problem: &Reduced, s: f64) -> Vec<String> {
         let mut cautions = Vec::new();
         if let Some(wave) = problem.gap.feature_length() {
             // By the widest ring: waves are everywhere.
             let per_wave = wave / (s * self.grading.widest(self.size()));
             if per_wave < RINGS_PER_WAVE {
                 let wanted = (self.size() as f64 * RINGS_PER_WAVE / per_wave).ceil();
-                cautions.push(Caution::FewRings { per_wave, wanted, grading: self.grading });
+                cautions.push(Caution::FewRings { per_wave, wanted, grading: self.grading }.to_string());
             }
         }
         let gamma = problem.work_of_adhesion;
         if gamma > 0.0 && gamma < WEAK_ADHESION {
-            cautions.push(Caution::WeakAdhesion(gamma));
+            cautions.push(Caution::WeakAdhesion(gamma).to_string());
         }
         cautions
     }

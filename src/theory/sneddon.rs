@@ -87,7 +87,26 @@ impl Sneddon {
             });
             from = to;
         }
+        sums.values[1] += self.jumps(a);
         sums
+    }
+
+    /// What the jumps J of h' at knots q < a add to g': Σ J q/√(a² − q²).
+    fn jumps(&self, a: f64) -> f64 {
+        let knots = self.breaks().between(0.0, a).iter();
+        knots
+            .map(|&q| {
+                let [outer, inner] =
+                    [1.0, -1.0].map(|side| self.gap.jet(q * (1.0 + 4.0 * side * f64::EPSILON)).first);
+                // What is left of a slope that does not jump is rounding.
+                let jump = if (outer - inner).abs() > 1e-10 * (outer.abs() + inner.abs()) {
+                    outer - inner
+                } else {
+                    0.0
+                };
+                if jump == 0.0 { 0.0 } else { jump * q / ((a - q) * (a + q)).sqrt() }
+            })
+            .sum()
     }
 
     /// The same over a gap that is a cubic between its knots.

@@ -18,8 +18,9 @@ use crate::quasistatic::curve::radii;
 use crate::quasistatic::{Curve, Equilibrium, State, Unloading};
 use gauss_quad::GaussLegendre;
 
-/// Steps per wave of the Gauss rule, eight nodes each: far finer than the bound needs.
+/// Steps per wave of the Gauss rule, eight nodes each, and the largest relative to the radius: far finer than the bound needs.
 const STEPS_PER_WAVE: f64 = 10.0;
+const RATIO: f64 = 0.025;
 
 /// Nodes of each step.
 const NODES: usize = 8;
@@ -27,10 +28,15 @@ const NODES: usize = 8;
 /// The largest share of the energy turned over that may be missing.
 const BOUND: f64 = 1e-9;
 
+/// By what the differences of two numbers of ours are divided: the loss, the energy turned over.
+pub const OWN_MEASURE: &str = "relative";
+
 /// Work against storage and loss along `ours`, the unloading of `curve`.
 pub fn row(curve: &Curve, ours: &Unloading) -> Row {
     const WHAT: &str = "device's work against stored and lost";
-    let Some(work) = work(&curve.equilibrium, ours) else { return Row::worst(WHAT, [], 1.0, BOUND) };
+    let Some(work) = work(&curve.equilibrium, ours) else {
+        return Row::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND);
+    };
     let lost = ours.total_dissipated();
     let at_start = stored(ours.control, &ours.start);
     let at_end = match ours.events.last() {
@@ -39,7 +45,7 @@ pub fn row(curve: &Curve, ours: &Unloading) -> Row {
         None => at_start,
     };
     let turned = work.abs().max(lost).max(at_start.abs()).max(at_end.abs());
-    Row::new(WHAT, work, at_end - at_start + lost, turned, BOUND)
+    Row::own(WHAT, work, at_end - at_start + lost, turned, BOUND)
 }
 
 /// The energy of the bodies and of the spring.
@@ -68,7 +74,8 @@ fn work(equilibrium: &Equilibrium, ours: &Unloading) -> Option<f64> {
 /// ∫ P dx along the curve from one radius inward to another; `None` where the basis has no equilibrium between.
 fn along(equilibrium: &Equilibrium, control: Control, from: f64, to: f64) -> Option<f64> {
     let rule = GaussLegendre::new(NODES.try_into().ok()?);
-    let steps = radii(from, to, equilibrium.problem.gap.feature_length(), STEPS_PER_WAVE);
+    let wave = equilibrium.problem.gap.feature_length();
+    let steps = radii(from, to, RATIO, wave.map_or(f64::INFINITY, |wave| wave / STEPS_PER_WAVE));
     let mut solvable = true;
     let mut work = 0.0;
     for pair in steps.windows(2) {

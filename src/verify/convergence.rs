@@ -12,9 +12,10 @@
 
 use super::cases::{smooth, sphere};
 use super::row::{Group, Row};
-use super::settings::Settings;
+use super::settings::{Settings, VerifyError};
 use crate::contact::Control;
-use crate::ritz::{Basis, BasisError, Grading, NewtonSettings, Rings, solve};
+use crate::disc::Basis;
+use crate::ritz::{Grading, NewtonSettings, Rings, solve};
 use crate::theory::jkr::Jkr;
 use crate::theory::root::halved;
 
@@ -81,12 +82,12 @@ pub fn radius_at(exact: &Jkr, delta: f64) -> f64 {
 /// Both spheres on every kind of mesh, from a quarter of the rings of `settings`.
 ///
 /// # Errors
-/// [`BasisError`] when a basis cannot be made.
-pub fn groups(settings: &Settings) -> Result<Vec<Group>, BasisError> {
+/// [`VerifyError`] when a basis cannot be made.
+pub fn groups(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
     STUDIES.iter().map(|study| group(study, settings.rings)).collect()
 }
 
-fn group(study: &Study, finest: usize) -> Result<Group, BasisError> {
+fn group(study: &Study, finest: usize) -> Result<Group, VerifyError> {
     let exact = smooth(study.work_of_adhesion);
     let radius = radius_at(&exact, APPROACH);
     let force = exact.force(radius);

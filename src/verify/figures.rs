@@ -17,10 +17,7 @@ use std::sync::Arc;
 /// s and the control at the limit point of `control` where it is smallest.
 fn ours(curve: &Curve, control: Control) -> Option<(f64, f64)> {
     let states = curve.limit_points(control).into_iter().filter(|limit| limit.turn == Turn::Minimum);
-    let values = states.map(|limit| {
-        let [approach, force, s] = curve.equilibrium.quantities(&limit.point.y);
-        (s, control.value(approach, force))
-    });
+    let values = states.map(|limit| (limit.contact_radius, control.value(limit.approach, limit.force)));
     values.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

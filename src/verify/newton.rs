@@ -6,9 +6,10 @@
 use super::cases::{smooth, sphere};
 use super::convergence::radius_at;
 use super::row::{Group, Row};
-use super::settings::Settings;
+use super::settings::{Settings, VerifyError, exact as exact_basis};
 use crate::contact::Control;
-use crate::ritz::{Basis, BasisError, NewtonSettings, Rings, solve};
+use crate::disc::Basis;
+use crate::ritz::{NewtonSettings, Rings, solve};
 use std::sync::Arc;
 
 /// γ/(E*R).
@@ -20,15 +21,15 @@ const ROUNDS: (f64, f64) = (5.0, 1.0);
 /// The rounds at several approaches, in both bases.
 ///
 /// # Errors
-/// [`BasisError`] when a basis cannot be made.
-pub fn group(settings: &Settings) -> Result<Group, BasisError> {
+/// [`VerifyError`] when a basis cannot be made.
+pub fn group(settings: &Settings) -> Result<Group, VerifyError> {
     let (problem, exact) = (sphere(WORK_OF_ADHESION), smooth(WORK_OF_ADHESION));
     let smallest = exact.approach(exact.fixed_grips_radius());
     let rings: Arc<dyn Basis> = Rings::shared(settings.rings)?;
-    let spectral = settings.spectral(&problem, 0.5)?;
+    let exact_basis = exact_basis(&problem, 0.5)?;
     let problem = problem.reduced();
     let mut rows = Vec::new();
-    for (name, basis) in [("eigenfunctions", spectral), ("rings", rings)] {
+    for (name, basis) in [("exact", exact_basis), ("rings", rings)] {
         for (place, delta) in [("0.9 delta_min", 0.9 * smallest), ("0", 0.0), ("0.1 R", 0.1), ("0.5 R", 0.5)]
         {
             let from = 3.0 * radius_at(&exact, delta);

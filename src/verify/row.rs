@@ -1,15 +1,17 @@
-//! One comparison: a number of ours beside the exact one.
+//! One comparison: a number of ours beside the exact one, or two of ours that theory says are the same.
 
-/// One number against theory.
+/// One number against theory, or against another of ours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// What the number is.
     pub what: String,
     /// The engine's; not a number where it could not be computed.
     pub ours: f64,
-    /// The exact one.
+    /// The exact one; not a number where ours stands beside another of ours.
     pub exact: f64,
-    /// (ours − exact)/scale, the scale being what the group says.
+    /// The other of ours, where it is compared with that.
+    pub other: Option<f64>,
+    /// (ours − exact)/scale or (ours − other)/scale, the scale being what the group says.
     pub difference: f64,
     /// The largest difference, without its sign, that passes.
     pub bound: f64,
@@ -26,10 +28,28 @@ pub struct Group {
     pub rows: Vec<Row>,
 }
 
+impl Group {
+    /// The rows against theory, and those that compare two numbers of ours under a heading that says so, with the
+    /// differences of these divided as `own_measure` says.
+    #[must_use]
+    pub fn apart(self, own_measure: &'static str) -> [Self; 2] {
+        let Self { title, measure, rows } = self;
+        let (own, exact) = rows.into_iter().partition(|row| row.other.is_some());
+        let own_title = format!("Two of our own numbers: {title}");
+        [Self { title, measure, rows: exact }, Self { title: own_title, measure: own_measure, rows: own }]
+    }
+}
+
 impl Row {
     /// `ours` beside `exact`, the difference divided by `scale > 0`.
     pub fn new(what: impl Into<String>, ours: f64, exact: f64, scale: f64, bound: f64) -> Self {
-        Self { what: what.into(), ours, exact, difference: (ours - exact) / scale, bound }
+        Self { what: what.into(), ours, exact, other: None, difference: (ours - exact) / scale, bound }
+    }
+
+    /// `ours` beside another number of ours that theory says is the same, the difference divided by `scale > 0`.
+    pub fn own(what: impl Into<String>, ours: f64, other: f64, scale: f64, bound: f64) -> Self {
+        let row = Self::new(what, ours, other, scale, bound);
+        Self { exact: f64::NAN, other: Some(other), ..row }
     }
 
     /// `ours` beside `exact`, the difference divided by the exact number.
@@ -59,7 +79,7 @@ impl Row {
 
 #[cfg(test)]
 mod tests {
-    use super::Row;
+    use super::{Group, Row};
 
     #[test]
     fn within_the_bound_passes_and_what_is_no_number_fails() {
@@ -73,5 +93,20 @@ mod tests {
             (worst.ours - 3.0).abs() < 1e-15 && (worst.difference - 0.1).abs() < 1e-15 && !worst.passes()
         );
         assert!(!Row::worst("", [(1.0, 1.0), (f64::NAN, 2.0)], 1.0, 1.0).passes());
+    }
+
+    #[test]
+    fn two_numbers_of_ours_are_never_called_exact() {
+        let own = Row::own("area", 1.02, 1.0, 1.0, 0.05);
+        assert!(own.exact.is_nan() && own.other == Some(1.0) && own.passes());
+        assert!(!Row::own("area", f64::NAN, f64::NAN, 1.0, 0.05).passes());
+        let group = Group {
+            title: "A".to_owned(),
+            measure: "relative",
+            rows: vec![own, Row::relative("", 1.0, 1.0, 0.0)],
+        };
+        let [exact, own] = group.apart("over all");
+        assert_eq!((&*exact.title, exact.rows.len()), ("A", 1));
+        assert_eq!((&*own.title, own.measure, own.rows.len()), ("Two of our own numbers: A", "over all", 1));
     }
 }

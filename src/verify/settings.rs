@@ -1,26 +1,36 @@
 //! The bases that are verified, and what each is held to.
 //!
 //! The bounds of the rings are for 200 of them, the default number: what a user may expect, up to twice what is
-//! measured. Those of the eigenfunctions leave rounding some room.
+//! measured. Those of the exact basis leave rounding some room.
 
 use super::cases::Figure;
 use crate::contact::Problem;
-use crate::ritz::{Basis, BasisError, Rings, Spectral};
+use crate::disc::{Basis, Exact, TableError};
+use crate::ritz::{Rings, RingsError};
 use std::sync::Arc;
 
-/// The numbers of trial functions that are verified.
+/// Why a basis could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum VerifyError {
+    /// Ring elements.
+    #[error(transparent)]
+    Rings(#[from] RingsError),
+    /// The table of a gap.
+    #[error(transparent)]
+    Table(#[from] TableError),
+}
+
+/// What is verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settings {
     /// N of the ring elements, 200 by default: the bounds are for it. Orders of convergence are observed from a
     /// quarter of it.
     pub rings: usize,
-    /// n of the eigenfunctions; by default as many as resolve the waves.
-    pub functions: Option<usize>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rings: 200, functions: None }
+        Self { rings: 200 }
     }
 }
 
@@ -39,7 +49,7 @@ pub struct Bounds {
 const RINGS: Bounds = Bounds { state: 1e-3, extreme: 2e-3, loss: 1e-2 };
 
 /// Rounding; losses are small differences of energies.
-const SPECTRAL: Bounds = Bounds { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
+const EXACT: Bounds = Bounds { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
 
 /// A basis on trial.
 #[derive(Debug, Clone)]
@@ -52,34 +62,26 @@ pub struct Candidate {
     pub bounds: Bounds,
 }
 
-impl Settings {
-    /// The eigenfunctions for `problem` in a largest contact of radius `s`.
-    ///
-    /// # Errors
-    /// [`BasisError`] when there are too few or too many.
-    pub fn spectral(&self, problem: &Problem, s: f64) -> Result<Arc<dyn Basis>, BasisError> {
-        let basis = match self.functions {
-            Some(functions) => Spectral::new(functions)?,
-            None => Spectral::resolving(&problem.reduced(), s)?,
-        };
-        Ok(Arc::new(basis))
-    }
+/// The exact basis for `problem` in a largest contact of radius `s`.
+///
+/// # Errors
+/// [`VerifyError::Table`].
+pub fn exact(problem: &Problem, s: f64) -> Result<Arc<dyn Basis>, VerifyError> {
+    Ok(Arc::new(Exact::of(&problem.reduced(), s)?))
+}
 
+impl Settings {
     /// Both bases for the paths of `figure`.
     ///
     /// # Errors
-    /// [`BasisError`] when one cannot be made.
-    pub fn candidates(&self, figure: &Figure) -> Result<Vec<Candidate>, BasisError> {
-        let spectral = self.spectral(&figure.problem, figure.start)?;
+    /// [`VerifyError`] when one cannot be made.
+    pub fn candidates(&self, figure: &Figure) -> Result<Vec<Candidate>, VerifyError> {
+        let exact = exact(&figure.problem, figure.start)?;
         Ok(vec![
-            Candidate {
-                name: format!("{} eigenfunctions", spectral.size()),
-                basis: spectral,
-                bounds: SPECTRAL,
-            },
+            Candidate { name: "exact basis".to_owned(), basis: exact, bounds: EXACT },
             Candidate {
                 name: format!("{} rings", self.rings),
-                basis: Rings::shared(self.rings)?,
+                basis: Rings::shared(self.rings).map_err(VerifyError::Rings)?,
                 bounds: RINGS,
             },
         ])

@@ -10,9 +10,9 @@ use super::cases::Figure;
 use super::row::{Group, Row};
 use super::settings::Candidate;
 use crate::contact::Control;
+use crate::disc::Basis;
 use crate::quasistatic::unload::unload;
 use crate::quasistatic::{Curve, Event, State, Unloading};
-use crate::ritz::Basis;
 use crate::theory::unloading::{self, INWARD_REACH, Jump, limit_points};
 use crate::theory::{Disc, Equilibrium, Exact};
 use std::sync::Arc;
@@ -23,9 +23,9 @@ const END: f64 = 0.004;
 /// The drop of the potential and the area agree to this share of the loss.
 const TWO_LOSSES: f64 = 1e-6;
 
-/// The curve of `figure` in `basis` through the explicit root.
+/// The curve of `figure` in `basis`.
 pub fn swept(figure: &Figure, basis: &Arc<dyn Basis>) -> Option<Curve> {
-    Curve::swept(figure.problem.reduced(), Arc::clone(basis), figure.start, END * figure.start, || true)
+    Curve::of(figure.problem.reduced(), Arc::clone(basis), figure.start, END * figure.start)
 }
 
 /// s, δ and P as they are compared.
@@ -62,14 +62,13 @@ fn rows(
     let Some((curve, path)) = curve.zip(unloading::unload(exact, control, figure.start)) else {
         return vec![Row::worst("equilibrium curve", [], 1.0, 0.0)];
     };
-    let mut curve = curve.clone();
     let ranges = ranges(exact, figure);
-    let mut rows = limits(exact, figure, candidate, &curve, control, ranges);
-    match unload(&mut curve, control) {
+    let mut rows = limits(exact, figure, candidate, curve, control, ranges);
+    match unload(curve, control) {
         Ok(ours) => {
             rows.extend(states(&ours, &path.jumps, candidate, ranges));
             rows.extend(losses(&ours, &path.jumps, candidate));
-            rows.push(balance::row(&curve, &ours));
+            rows.push(balance::row(curve, &ours));
         }
         Err(_) => rows.push(Row::worst("unloading", [], 1.0, 0.0)),
     }
@@ -99,8 +98,7 @@ fn limits(
     control: Control,
     ranges: [f64; 3],
 ) -> Vec<Row> {
-    let ours: Vec<f64> =
-        curve.limit_points(control).iter().map(|l| curve.equilibrium.contact_radius(&l.point)).collect();
+    let ours: Vec<f64> = curve.limit_points(control).iter().map(|limit| limit.contact_radius).collect();
     let exact: Vec<f64> = limit_points(exact, control, figure.start, INWARD_REACH * figure.start)
         .iter()
         .map(|limit| limit.state.contact_radius)
@@ -146,7 +144,13 @@ fn losses(ours: &Unloading, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
         let kind = if jump.after.is_some() { "snap" } else { "pull-off" };
         let number = number + 1;
         rows.push(Row::relative(format!("{number} {kind}: loss"), drop, exact, candidate.bounds.loss));
-        rows.push(Row::relative(format!("{number} {kind}: area against drop"), area, drop, TWO_LOSSES));
+        rows.push(Row::own(
+            format!("{number} {kind}: area against drop"),
+            area,
+            drop,
+            drop.abs(),
+            TWO_LOSSES,
+        ));
     }
     rows
 }
