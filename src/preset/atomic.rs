@@ -8,6 +8,8 @@
 use super::file::{Fingerprint, kind_of, read_bytes};
 use super::temporary;
 use super::text::show_path;
+use rustix::fs::{Access, access};
+use rustix::io::Errno;
 use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::MetadataExt;
@@ -45,8 +47,8 @@ pub enum WriteError {
         /// The file.
         path: String,
     },
-    /// The file is marked read-only.
-    #[error("{path}: is marked read-only")]
+    /// The file is read-only: its owner does not want it changed, or it is not ours to change.
+    #[error("{path}: is read-only, and is not replaced")]
     ReadOnly {
         /// The file.
         path: String,
@@ -85,6 +87,17 @@ pub enum WriteError {
     },
 }
 
+/// What the system says of a write, where its own words are too few.
+#[must_use]
+pub fn explained(cause: io::Error) -> io::Error {
+    match cause.kind() {
+        kind @ io::ErrorKind::FileTooLarge => {
+            io::Error::new(kind, "over the limit on the size of files (ulimit -f)")
+        }
+        _ => cause,
+    }
+}
+
 /// Writes `bytes` to `path` whole or not at all, and says how to recognise the file written.
 ///
 /// # Errors
@@ -104,7 +117,8 @@ pub fn write_verified(
     overwrite: Overwrite,
     verify: impl FnOnce(&[u8]) -> Result<(), String>,
 ) -> Result<Fingerprint, WriteError> {
-    let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+    let failed =
+        |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause: explained(cause) };
     let mut begun = Begun::new(path, overwrite)?;
     let temporary = begun.temporary.as_file_mut();
     temporary.write_all(bytes).map_err(failed("write"))?;
@@ -132,7 +146,8 @@ pub fn write_filled<E: From<WriteError>>(
     overwrite: Overwrite,
     fill: impl FnOnce(&mut File) -> Result<(), E>,
 ) -> Result<(), E> {
-    let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+    let failed =
+        |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause: explained(cause) };
     let mut begun = Begun::new(path, overwrite)?;
     fill(begun.temporary.as_file_mut())?;
     begun.temporary.as_file().sync_all().map_err(failed("write"))?;
@@ -239,11 +254,34 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
         }
         Overwrite::Always => {}
     }
-    // A rename would go through all the same, against what the owner wants.
-    if metadata.mode() & 0o222 == 0 && overwrite != Overwrite::Always {
-        return Err(WriteError::ReadOnly { path: shown() });
-    }
+    writable(path, target, &metadata)?;
     Ok(Some(metadata))
+}
+
+/// Refuses a file that is read-only: a rename would go through all the same, against what its owner wants.
+fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), WriteError> {
+    // Nothing is forbidden to root, and its owner may want it unchanged all the same.
+    let is_marked = metadata.mode() & 0o222 == 0;
+    if is_marked || access(target, Access::WRITE_OK) == Err(Errno::ACCESS) {
+        return Err(WriteError::ReadOnly { path: show_path(path) });
+    }
+    Ok(())
+}
+
+/// Refuses what can be no file of results that grows in its place: a folder, a device, a file that is read-only.
+///
+/// # Errors
+/// As said; the system says no.
+pub fn check_growing(path: &Path) -> Result<(), WriteError> {
+    let metadata = match path.metadata() {
+        Ok(metadata) => metadata,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(cause) => return Err(WriteError::Io { path: show_path(path), doing: "look at it", cause }),
+    };
+    if !metadata.is_file() {
+        return Err(WriteError::NotRegular { path: show_path(path), what: kind_of(&metadata) });
+    }
+    writable(path, path, &metadata)
 }
 
 /// Makes the rename last. File systems that cannot sync a folder have their own ways.
@@ -340,6 +378,8 @@ mod tests {
         let print = read_bytes(&path, 100).unwrap().1;
         let marked = write_atomically(&path, b"six", Overwrite::IfUnchanged(print)).unwrap_err();
         assert!(matches!(marked, WriteError::ReadOnly { .. }), "{marked}");
+        let asked = write_atomically(&path, b"six", Overwrite::Always).unwrap_err();
+        assert_eq!(asked.to_string(), format!("{}: is read-only, and is not replaced", show_path(&path)));
         assert_eq!(
             (fs::read(&path).unwrap(), names(folder.path())),
             (b"five".to_vec(), vec!["a".to_owned()])

@@ -1,7 +1,7 @@
 //! The data of a profile copied beside a preset, so that both can be handed on together.
 
 use super::atomic::{Overwrite, WriteError, write_atomically};
-use super::file::read_bytes;
+use super::file::{FileError, read_bytes};
 use super::measured::{self, SHIPPED_DATA};
 use super::model::Preset;
 use super::profile::LARGEST;
@@ -10,13 +10,34 @@ use crate::contact::Shape;
 use crate::contact::shapes::Measured;
 use std::path::Path;
 use std::sync::Arc;
+use thiserror::Error;
+
+/// Why the data cannot be copied.
+#[derive(Debug, Error)]
+pub enum DataError {
+    /// They cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// They cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// They are gone or others than those in the preset, in words.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl From<String> for DataError {
+    fn from(words: String) -> Self {
+        Self::Other(words)
+    }
+}
 
 /// `preset` with its data in `folder`, where they are copied under their own name. Data there already stay if they are the
 /// same; another file is never replaced. Presets without a file of their own are as they were.
 ///
 /// # Errors
-/// Why the data cannot be copied, in words: they are gone, others than those in the preset, or another file has the name.
-pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
+/// They are gone, others than those in the preset, or another file has the name.
+pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> {
     let mut copy = preset.clone();
     let Shape::Profile(measured) = &preset.gap else { return Ok(copy) };
     let rows = measured.rows();
@@ -26,19 +47,19 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, String> {
     let from = rows.path();
     let shown = show_path(&from);
     let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
-        return Err(format!("{shown}: is no name of a file"));
+        return Err(format!("{shown}: is no name of a file").into());
     };
     let now = Arc::new(measured::load(rows.folder.as_deref(), &rows.name)?).held_in(&preset.units);
     if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
-        return Err(format!("{shown}: holds other rows than were read; choose the file again first"));
+        return Err(format!("{shown}: holds other rows than were read; choose the file again first").into());
     }
-    let (bytes, _) = read_bytes(&from, LARGEST).map_err(|error| error.to_string())?;
+    let (bytes, _) = read_bytes(&from, LARGEST)?;
     let to = folder.join(name);
     match write_atomically(&to, &bytes, Overwrite::Never) {
         Ok(_) => {}
         Err(WriteError::Exists { .. }) if read_bytes(&to, LARGEST).is_ok_and(|(there, _)| there == bytes) => {
         }
-        Err(error) => return Err(error.to_string()),
+        Err(error) => return Err(error.into()),
     }
     let copied = Arc::new(measured::load(Some(folder), name)?).held_in(&preset.units);
     let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
@@ -65,29 +86,29 @@ mod tests {
         let shipped = store.load(&source, &[] as &[&str]).unwrap().preset;
         let mut preset = shipped.clone();
         preset.set("gap.file", at("data/scan.dat").to_str().unwrap().into()).unwrap();
-        let (source, _, saved) = store.save_with_data("mine", &preset, Overwrite::Never).unwrap();
+        let (source, _, saved) = store.save_with_data("mine", &preset, None, Overwrite::Never).unwrap();
         assert_eq!(fs::read_to_string(at("presets/scan.dat")).unwrap(), rows);
         assert_eq!(saved.get("gap.file").unwrap().to_string(), "scan.dat");
         // Without the data it came from it is the same preset.
         fs::rename(at("data"), at("gone")).unwrap();
         assert_eq!(store.load(&source, &[] as &[&str]).unwrap().preset, saved);
-        let error = store.save_with_data("other", &preset, Overwrite::Never).unwrap_err().to_string();
+        let error = store.save_with_data("other", &preset, None, Overwrite::Never).unwrap_err().to_string();
         assert!(error.contains("cannot read"), "{error}");
         // The same data may be there already, others may not, nor may they have changed meanwhile.
         fs::rename(at("gone"), at("data")).unwrap();
-        store.save_with_data("other", &preset, Overwrite::Never).unwrap();
-        let taken = store.save_with_data("mine", &preset, Overwrite::Never).unwrap_err().to_string();
+        store.save_with_data("other", &preset, None, Overwrite::Never).unwrap();
+        let taken = store.save_with_data("mine", &preset, None, Overwrite::Never).unwrap_err().to_string();
         assert!(taken.contains("exists"), "{taken}");
         fs::write(at("presets/scan.dat"), "mine").unwrap();
-        let error = store.save_with_data("third", &preset, Overwrite::Always).unwrap_err().to_string();
+        let error = store.save_with_data("third", &preset, None, Overwrite::Always).unwrap_err().to_string();
         assert!(error.contains("scan.dat"), "{error}");
         assert_eq!(fs::read_to_string(at("presets/scan.dat")).unwrap(), "mine");
         assert!(!at("presets/third.toml").exists());
         fs::write(at("data/scan.dat"), rows.replace("8 0.032", "8 0.033")).unwrap();
-        let error = store.save_with_data("third", &preset, Overwrite::Never).unwrap_err().to_string();
+        let error = store.save_with_data("third", &preset, None, Overwrite::Never).unwrap_err().to_string();
         assert!(error.contains("other rows"), "{error}");
         // Data of the program need no copy.
-        let (_, _, saved) = store.save_with_data("fourth", &shipped, Overwrite::Never).unwrap();
+        let (_, _, saved) = store.save_with_data("fourth", &shipped, None, Overwrite::Never).unwrap();
         assert_eq!(saved, shipped);
     }
 
@@ -107,7 +128,7 @@ mod tests {
         let store = Store::at(at("presets"), &[]);
         let source = store.resolve(at("si.toml").as_os_str()).unwrap();
         let preset = store.load(&source, &[] as &[&str]).unwrap().preset;
-        let (source, _, saved) = store.save_with_data("mine", &preset, Overwrite::Never).unwrap();
+        let (source, _, saved) = store.save_with_data("mine", &preset, None, Overwrite::Never).unwrap();
         let radius = |preset: &Preset| preset.gap.radius_of_curvature().unwrap();
         assert!((radius(&preset) / 1e-3 - 1.0).abs() < 1e-2, "{}", radius(&preset));
         assert_eq!(radius(&saved).to_bits(), radius(&preset).to_bits());

@@ -3,12 +3,13 @@
 //! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
 
 use super::invalid::Invalid;
-use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
+use super::model::{BasisSpec, Material, PathSpec, Preset};
 use super::resolve::{quantity, resolved, shown, system, told};
 use super::schema::{
-    Applies, CHOOSERS, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE,
-    parameter, table_of,
+    Applies, CHOOSERS, EXACT, Fallback, Key, PARAMETERS, RADIUS_OVER_CURVATURE, START_KEYS,
+    START_OVER_CURVATURE, parameter, table_of,
 };
+use super::shape;
 use super::value::Value;
 use crate::contact::Start;
 use crate::contact::{Control, Gap};
@@ -74,6 +75,7 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     let known = preset.gap.largest_radius();
     let mut faults = Vec::new();
     let length = |x| shown(&preset.units, Quantity::Length, x);
+    faults.extend(shape::falls_throughout(preset));
     let end = preset.path.end_contact_radius;
     let start = match preset.path.start {
         Start::ContactRadius(s) => Some(s),
@@ -106,7 +108,7 @@ fn across(preset: &Preset) -> Vec<Invalid> {
 /// The word of a choice, given or by default; `None` where it is missing or no word of the choice.
 ///
 /// Where the choice has a default and is not given, a key that belongs to one word alone gives it: a file with
-/// nothing but `basis.rings` means rings.
+/// nothing but `basis.rings` means rings. Units are never guessed: every number of the file would count in others.
 pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
     let row = parameter(chooser)?;
     let implied = || {
@@ -117,6 +119,7 @@ pub(super) fn chosen(values: &Values, chooser: &str) -> Option<String> {
     };
     let word = match (values.get(chooser), row.fallback) {
         (Some(value), _) => value.clone(),
+        (None, Fallback::Text(word)) if chooser == CHOOSERS[2] => word.into(),
         (None, Fallback::Text(word)) => implied().unwrap_or(word).into(),
         (None, _) => return None,
     };
@@ -147,12 +150,15 @@ impl Given<'_> {
             let Applies::With { key: chooser, words } = row.applies else { continue };
             let Some(word) = chosen(self.values, chooser) else { continue };
             if !row.fits(chooser, &word) {
+                if chooser == CHOOSERS[2] {
+                    self.faults.push(Invalid::NoUnits { key: row.key.clone() });
+                    continue;
+                }
                 let belongs = words.join(" or ");
                 let (what, chosen) = match (chooser, &*word) {
                     ("gap.shape", "harmonics" | "random-waves") => ("gap", format!("one of {word}")),
                     ("gap.shape", "exact-sphere") => ("gap", format!("an {word}")),
                     ("gap.shape", _) => ("gap", format!("a {word}")),
-                    ("units", _) => ("unit system", word),
                     _ => ("basis", word),
                 };
                 self.faults.push(Invalid::OtherChoice { key: row.key.clone(), belongs, what, chosen });
@@ -163,12 +169,7 @@ impl Given<'_> {
     fn basis(&mut self) -> BasisSpec {
         let count = |n: i64| usize::try_from(n).unwrap_or_default();
         match chosen(self.values, CHOOSERS[1]).as_deref() {
-            Some("spectral") => BasisSpec::Spectral {
-                functions: match self.value("basis.functions") {
-                    Some(Value::Integer(n)) => Functions::Count(count(n)),
-                    _ => Functions::Auto,
-                },
-            },
+            Some(EXACT) => BasisSpec::Exact,
             // An unknown word is among the faults already.
             _ => BasisSpec::Rings {
                 rings: count(self.integer("basis.rings")),
@@ -275,7 +276,7 @@ mod tests {
             ("gap.radius_of_curvature", 3.0.into()),
         ]))
         .unwrap();
-        assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+        assert_eq!(preset.basis, BasisSpec::Exact);
         assert_eq!(preset.path.control, Control::Displacement);
         assert_eq!(preset.path.start, Start::ContactRadius(1.5));
         assert_eq!(preset.path.end_contact_radius, None);
@@ -294,8 +295,7 @@ mod tests {
         let rings = |rings| BasisSpec::Rings { rings, grading: Grading::Uniform };
         assert_eq!(with("basis.rings", 70.into()), Ok(rings(70)));
         assert_eq!(with("basis.kind", "rings".into()), Ok(rings(200)));
-        let functions = Functions::Count(48);
-        assert_eq!(with("basis.functions", 48.into()), Ok(BasisSpec::Spectral { functions }));
+        assert_eq!(with("basis.kind", "exact".into()), Ok(BasisSpec::Exact));
     }
 
     #[test]

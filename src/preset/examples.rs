@@ -1,7 +1,7 @@
 //! Presets for the tests of this floor: one that stands for many, and any at all.
 
 use super::measured;
-use super::model::{BasisSpec, Functions, Material, PathSpec, Preset};
+use super::model::{BasisSpec, Material, PathSpec, Preset};
 use super::schema::START_OVER_CURVATURE;
 use crate::contact::formula::{FormulaParameter, TypedGap};
 use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Smoothing};
@@ -39,8 +39,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
     let basis = prop_oneof![
         (4usize..=2000).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Uniform }),
         (4usize..=400).prop_map(|rings| BasisSpec::Rings { rings, grading: Grading::Edge }),
-        (4usize..=4096).prop_map(|n| BasisSpec::Spectral { functions: Functions::Count(n) }),
-        Just(BasisSpec::Spectral { functions: Functions::Auto }),
+        Just(BasisSpec::Exact),
     ];
     let control = prop_oneof![
         Just(Control::Displacement),

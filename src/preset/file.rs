@@ -71,6 +71,14 @@ pub enum FileError {
         /// The largest size.
         limit: u64,
     },
+    /// A pipe or a device that gives more than a preset can be.
+    #[error("{path}: has more than the {limit} bytes that are read")]
+    Endless {
+        /// The name, safe to show.
+        path: String,
+        /// The largest size.
+        limit: u64,
+    },
     /// Bytes that are no text.
     #[error("{path}: is not UTF-8 text (byte {at} on)")]
     NotText {
@@ -104,10 +112,15 @@ pub fn kind_of(metadata: &Metadata) -> &'static str {
 /// It cannot be read, is not regular, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<(String, Fingerprint), FileError> {
     let (bytes, fingerprint) = read_bytes(path, limit)?;
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok((text, fingerprint)),
-        Err(error) => Err(FileError::NotText { path: show_path(path), at: error.utf8_error().valid_up_to() }),
-    }
+    Ok((text(&show_path(path), bytes)?, fingerprint))
+}
+
+/// The bytes of what messages call `name` as text.
+pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        FileError::NotText { path: name.to_owned(), at }
+    })
 }
 
 /// The content of a regular file of at most `limit` bytes.

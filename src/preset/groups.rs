@@ -70,6 +70,17 @@ pub fn effect(key: &str) -> Option<[&'static str; 2]> {
     })
 }
 
+/// The keys that a group changes when it is set; none for another key.
+#[must_use]
+pub fn changed(key: &str) -> &'static [&'static str] {
+    match key {
+        "groups.amplitude_over_wavelength" => &["gap.amplitude"],
+        "groups.wavelength_over_radius" => &["gap.wavelength", "gap.amplitude"],
+        "groups.adhesion" => &["material.work_of_adhesion"],
+        _ => &[],
+    }
+}
+
 /// What a group changes when it becomes `x`, in this order.
 ///
 /// # Errors
@@ -130,10 +141,13 @@ mod tests {
             assert_eq!(preset.gap.radius_of_curvature(), old.gap.radius_of_curvature());
             assert_eq!(preset.material.effective_modulus.to_bits(), old.material.effective_modulus.to_bits());
             assert!(!write(&preset).contains("groups"));
+            for row in preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key)) {
+                assert!(changed(key).contains(&&*row.key), "{key}: {}", row.key);
+            }
             // The words name the rows that changed.
-            let [changed, _] = effect(key).unwrap();
+            let [labels, _] = effect(key).unwrap();
             let moved = preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key));
-            assert_eq!(moved.filter(|row| !changed.contains(&*row.label)).count(), 0, "{key}");
+            assert_eq!(moved.filter(|row| !labels.contains(&*row.label)).count(), 0, "{key}");
         }
     }
 

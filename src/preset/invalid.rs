@@ -16,6 +16,14 @@ pub enum Invalid {
         /// The known key most alike.
         meant: Option<Key>,
     },
+    /// A key or a word of before that has another name or none.
+    #[error("{was} {now}")]
+    Former {
+        /// What it was, as written.
+        was: &'static str,
+        /// What became of it, and what to write.
+        now: &'static str,
+    },
     /// A group that cannot be set.
     #[error("unknown key {key}; of the groups, {known} can be set")]
     UnknownGroup {
@@ -125,6 +133,14 @@ pub enum Invalid {
         /// The word chosen in this preset, with its article where it has one.
         chosen: String,
     },
+    /// A unit to show numbers in, in a preset without units.
+    #[error(
+        "{key} belongs to SI, and the unit system is reduced: numbers shown in units need units = \"SI\""
+    )]
+    NoUnits {
+        /// The key.
+        key: Key,
+    },
     /// More than one start.
     #[error("{second} and {first} both say where the path starts: give exactly one")]
     Starts {
@@ -220,6 +236,7 @@ impl Invalid {
             | Self::Unprintable { key, .. }
             | Self::Missing { key, .. }
             | Self::OtherChoice { key, .. }
+            | Self::NoUnits { key }
             | Self::Starts { second: key, .. }
             | Self::EndBeyondStart { key, .. }
             | Self::Rings { key, .. }
@@ -231,6 +248,7 @@ impl Invalid {
             | Self::Wide { key, .. } => Some(key),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }
+            | Self::Former { .. }
             | Self::UnknownGroup { .. }
             | Self::Syntax { .. }
             | Self::Assignment

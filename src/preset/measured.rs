@@ -1,9 +1,10 @@
 //! The file of a measured profile → rows of a gap.
 //!
 //! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
-//! folder of the preset. In an SI preset rows with a unit become metres; in any other radii are taken as they stand;
-//! where both columns name a unit of length, gaps are converted to the unit of the radii, so a gap in nm over µm is what it
-//! says.
+//! folder of the preset. A header names a unit of length for both columns or for none; gaps are converted to that of the
+//! radii, so a gap in nm over µm is what it says. In an SI preset rows with a unit become metres. In reduced units a unit is
+//! refused, as with any other value; only data that come with the program are then in the unit of their radii, since the
+//! shape is chosen before its units are.
 
 use super::invalid::Invalid;
 use super::profile::{TextError, parse, read_profile};
@@ -12,8 +13,7 @@ use super::shipped;
 use super::text::{is_unsafe, quote, sanitize, show_path};
 use super::value::Value;
 use crate::contact::shapes::Rows;
-use crate::units::dimension::Quantity;
-use crate::units::unit::Unit;
+use crate::units::UnitSystem;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -44,18 +44,39 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
         (read_profile(&path).map_err(|error| words(error.to_string()))?, shown)
     };
     let notes = columns.notes.iter().map(|note| format!("{shown}: {note}")).collect();
-    let radii_in = columns.units[0].clone();
-    let columns = columns
-        .in_units(|unit| ratio(unit, radii_in.as_deref()?))
-        .map_err(|error: TextError| words(format!("{shown}: {error}")))?;
+    let header = columns.header;
+    let (columns, unit) =
+        columns.in_one_unit().map_err(|error: TextError| words(format!("{shown}: {error}")))?;
     Ok(Rows {
         name: name.to_owned(),
         folder: folder.map(Path::to_path_buf),
         radii: columns.radii,
         gaps: columns.gaps,
-        unit: radii_in.and_then(|unit| Unit::parse(&unit, 0).ok()),
+        header: header.filter(|_| !name.starts_with(SHIPPED_DATA)),
+        unit,
         notes,
     })
+}
+
+/// The file of `rows` as messages name it.
+pub(super) fn shown(rows: &Rows) -> String {
+    if rows.name.starts_with(SHIPPED_DATA) { quote(&rows.name) } else { show_path(&rows.path()) }
+}
+
+/// Whether a preset in `units` takes `rows` as their header has them.
+///
+/// # Errors
+/// In reduced units their unit, in words.
+pub(super) fn in_these_units(rows: &Rows, units: &UnitSystem) -> Result<(), String> {
+    match (units, rows.header, &rows.unit) {
+        (UnitSystem::Reduced, Some(line), Some(unit)) => Err(format!(
+            "{}: line {line}: the header names a unit, {}, and the problem is in reduced units, where columns are pure \
+             numbers: write r, h without, or set units = \"SI\"",
+            shown(rows),
+            unit.ascii()
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// A value as it is kept: the name of a file stands for its rows, read here from `folder`.
@@ -67,16 +88,4 @@ pub(super) fn located(row: &Parameter, value: Value, folder: Option<&Path>) -> R
         }
         value => Ok(value),
     }
-}
-
-/// How many of the unit `of` one `unit` is; both are lengths.
-fn ratio(unit: &str, of: &str) -> Option<f64> {
-    if unit == of {
-        return Some(1.0);
-    }
-    let length = |text: &str| {
-        let unit = Unit::parse(text, 0).ok()?;
-        (unit.dimension() == Quantity::Length.dimension()).then_some(unit)
-    };
-    Some(length(of)?.from_si(length(unit)?.to_si(1.0)))
 }

@@ -34,7 +34,7 @@ pub struct Preset {
     pub material: Material,
     /// The gap between the undeformed bodies.
     pub gap: Shape,
-    /// The functions in which the contact pressure is sought.
+    /// How the contact pressure is sought.
     pub basis: BasisSpec,
     /// Where to start, what to control, where to end.
     pub path: PathSpec,
@@ -64,20 +64,8 @@ pub enum BasisSpec {
         /// How they are spaced.
         grading: Grading,
     },
-    /// Eigenfunctions of the half-space operator.
-    Spectral {
-        /// Their number.
-        functions: Functions,
-    },
-}
-
-/// A number of eigenfunctions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Functions {
-    /// Enough for the waves in the largest contact.
-    Auto,
-    /// This many, from 4 to 4096.
-    Count(usize),
+    /// No elements: exact for any gap, to rounding.
+    Exact,
 }
 
 /// The path through the equilibrium states.

@@ -8,8 +8,8 @@
 //! 0.5, 0.13                        in this order; numbers with a decimal point
 //! ```
 //!
-//! Units are handed on as they are written. Where there is no header, the last remark above the first row serves as one
-//! if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
+//! A header with a unit for one column and none for the other is refused. Where there is no header, the last remark above
+//! the first row serves as one if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
 //! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
 //!
 //! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
@@ -31,6 +31,8 @@ pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
 pub const FAULTS_SHOWN: usize = 3;
 /// The longest line, in bytes; two numbers need far less.
 pub const LONGEST_LINE: usize = 1024;
+/// A distance from the axis counts as one spacing up to this share: decimals round.
+const ROUNDED: f64 = 1e-6;
 /// The largest number, as in presets.
 pub const LARGEST_NUMBER: f64 = 1e30;
 
@@ -43,6 +45,8 @@ pub struct Columns {
     pub gaps: Vec<f64>,
     /// The units of r and h as written in the header, without their brackets.
     pub units: [Option<String>; 2],
+    /// The line of a header with units, from 1.
+    pub header: Option<usize>,
     /// What was put right, in words.
     pub notes: Vec<String>,
 }
@@ -85,6 +89,17 @@ pub enum Fault {
         "the radius {0:?} is negative: radii count from the axis, so fold a scan over the whole diameter there first"
     )]
     Negative(f64),
+    /// The first row is not at the axis.
+    #[error(
+        "the smallest radius is {first:?}, and the rows behind it are at most {spacing:?} apart: measure the centre too, or \
+         shift the radii so that they count from it"
+    )]
+    Hollow {
+        /// The smallest radius.
+        first: f64,
+        /// The largest distance of the first rows.
+        spacing: f64,
+    },
     /// A radius that an earlier line gives another gap.
     #[error("the radius {radius:?} has another gap in line {line}")]
     Twice {
@@ -143,19 +158,46 @@ pub enum TextError {
     Faults(Faults),
     /// The columns the other way round.
     #[error(
-        "the header names the gap \"{0}\" first and the radius \"{1}\" behind it: a profile has the radius first"
+        "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" behind it: a profile has \
+         the radius first"
     )]
-    Swapped(String, String),
+    Swapped {
+        /// The line of the header.
+        line: usize,
+        /// The name of the gap.
+        first: String,
+        /// The name of the radius.
+        second: String,
+    },
     /// Too few or too many rows.
     #[error("has {0} rows, and a profile has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
     Rows(usize),
-    /// A unit that is not known.
-    #[error("the unit \"{unit}\" of the {what} is not known")]
+    /// A unit that is none of length.
+    #[error("line {line}: the unit \"{unit}\" of the {what} {}", .measures.as_ref().map_or_else(|| "is not known".to_owned(), |measures| format!("is {measures}, not a length")))]
     Unit {
+        /// The line of the header.
+        line: usize,
         /// Which column.
         what: &'static str,
         /// The unit, safe to show.
         unit: String,
+        /// What is measured in it, if it is known.
+        measures: Option<String>,
+    },
+    /// A unit for one column alone.
+    #[error(
+        "line {line}: the header gives the {named} in {unit} and names no unit of the {other}: write both, as in \
+         r [um], h [nm]"
+    )]
+    OneUnit {
+        /// The line of the header.
+        line: usize,
+        /// The column with a unit.
+        named: &'static str,
+        /// Its unit.
+        unit: String,
+        /// The column without.
+        other: &'static str,
     },
 }
 
@@ -177,19 +219,44 @@ pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
 }
 
 impl Columns {
-    /// The same in the units that `factor` makes of unit names; a column without one is left as it is.
+    /// The same with the gaps in the unit of the radii, and that unit, where the header names them.
     ///
     /// # Errors
-    /// [`TextError::Unit`] when `factor` does not know a unit.
-    pub fn in_units(mut self, factor: impl Fn(&str) -> Option<f64>) -> Result<Self, TextError> {
-        for ((unit, numbers), what) in self.units.iter().zip([&mut self.radii, &mut self.gaps]).zip(COLUMNS) {
-            let Some(unit) = unit else { continue };
-            let factor = factor(unit).ok_or_else(|| TextError::Unit { what, unit: quote(unit) })?;
-            for number in numbers {
-                *number *= factor;
+    /// [`TextError::Unit`] for a unit that is none of length, [`TextError::OneUnit`] where one column has none.
+    pub fn in_one_unit(mut self) -> Result<(Self, Option<Unit>), TextError> {
+        let line = self.header.unwrap_or(1);
+        let mut units = [None, None];
+        for ((unit, text), what) in units.iter_mut().zip(&self.units).zip(COLUMNS) {
+            *unit = text.as_deref().map(|text| length(text, line, what)).transpose()?;
+        }
+        let one = |unit: &Unit, named, other| {
+            Err(TextError::OneUnit { line, named: COLUMNS[named], unit: unit.ascii(), other: COLUMNS[other] })
+        };
+        match units {
+            [None, None] => Ok((self, None)),
+            [Some(unit), None] => one(&unit, 0, 1),
+            [None, Some(unit)] => one(&unit, 1, 0),
+            [Some(radius), Some(gap)] => {
+                if radius != gap {
+                    let factor = radius.from_si(gap.to_si(1.0));
+                    for h in &mut self.gaps {
+                        *h *= factor;
+                    }
+                }
+                Ok((self, Some(radius)))
             }
         }
-        Ok(self)
+    }
+}
+
+/// The unit of length `text`, of the column `what` in the header in `line`.
+fn length(text: &str, line: usize, what: &'static str) -> Result<Unit, TextError> {
+    let unit = Unit::parse(text, 0).ok();
+    let refused = |measures| TextError::Unit { line, what, unit: quote(text), measures };
+    match unit {
+        Some(unit) if unit.dimension() == Quantity::Length.dimension() => Ok(unit),
+        Some(unit) => Err(refused(Some(unit.measures()))),
+        None => Err(refused(None)),
     }
 }
 
@@ -318,7 +385,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
         }
         if let Some(remark) = remark(text) {
             if separator.is_none() {
-                candidate = Some(remark);
+                candidate = Some((line, remark));
             }
             continue;
         }
@@ -327,7 +394,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
             continue;
         }
         if separator.is_none() && header.is_none() && is_header(text) {
-            header = Some(text);
+            header = Some((line, text));
             continue;
         }
         let separator = *separator.get_or_insert_with(|| Separator::of(text));
@@ -338,7 +405,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
     }
     let mut columns = Columns::default();
     if let Some(separator) = separator {
-        columns.units = units(header, candidate, separator)?;
+        (columns.header, columns.units) = units(header, candidate, separator)?;
     }
     gather(rows, &mut columns, &mut faults);
     if faults.total > 0 {
@@ -367,29 +434,33 @@ fn is_header(line: &str) -> bool {
         && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
 }
 
-/// The units of the header; of a remark only if it names both.
+/// The units of the header and its line, where it has any; of a remark only if it names both.
 ///
 /// # Errors
 /// [`TextError::Swapped`].
 fn units(
-    header: Option<&str>,
-    remark: Option<&str>,
+    header: Option<(usize, &str)>,
+    remark: Option<(usize, &str)>,
     separator: Separator,
-) -> Result<[Option<String>; 2], TextError> {
+) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
     // A header may be parted otherwise than the rows below it.
-    let read = |line: &str| heads(line, separator).or_else(|| heads(line, Separator::of(line)));
+    let read = |(line, text): (usize, &str)| {
+        let heads = heads(text, separator).or_else(|| heads(text, Separator::of(text)));
+        heads.map(|heads| (line, heads))
+    };
     let found = match header {
         Some(header) => read(header),
         None => remark
-            .and_then(|line| read(line.trim()))
-            .filter(|heads| heads.iter().all(|(_, unit)| unit.is_some())),
+            .and_then(|(line, text)| read((line, text.trim())))
+            .filter(|(_, heads)| heads.iter().all(|(_, unit)| unit.is_some())),
     };
-    let Some([(first, radii), (second, gaps)]) = found else { return Ok([None, None]) };
+    let Some((line, [(first, radii), (second, gaps)])) = found else { return Ok((None, [None, None])) };
     let is = |name: &str, names: &[&str]| names.contains(&name.to_lowercase().as_str());
     if is(&first, GAP_NAMES) && is(&second, RADIUS_NAMES) {
-        return Err(TextError::Swapped(quote(&first), quote(&second)));
+        return Err(TextError::Swapped { line, first: quote(&first), second: quote(&second) });
     }
-    Ok([radii, gaps])
+    let named = radii.is_some() || gaps.is_some();
+    Ok((named.then_some(line), [radii, gaps]))
 }
 
 /// The radius and the gap of a row.
@@ -418,13 +489,14 @@ fn number(text: &str, what: &'static str) -> Result<f64, Fault> {
     }
 }
 
-/// Sorts the rows and takes each radius once.
+/// Sorts the rows, takes each radius once, and looks whether they begin at the axis.
 fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
     if !rows.is_sorted_by(|a, b| a.radius <= b.radius) {
         columns.notes.push("the rows were not in the order of their radii and have been sorted".to_owned());
         // Stable: of equal radii the earlier line stays first.
         rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     }
+    let innermost = rows.first().map(|row| row.line);
     let mut last: Option<Row> = None;
     let (mut repeated, mut twice) = (0, Vec::new());
     for row in rows {
@@ -446,6 +518,15 @@ fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
     if repeated > 0 {
         let rows = if repeated == 1 { "1 row was" } else { &format!("{repeated} rows were") };
         columns.notes.push(format!("{rows} there twice and counted once"));
+    }
+    // Of uneven radii one distance says little: the widest of the first ones.
+    let inner = columns.radii.windows(2).take(*ROW_RANGE.start() - 1).map(|pair| pair[1] - pair[0]);
+    let spacing = inner.fold(0.0, f64::max);
+    if let (Some(line), Some(&first)) = (innermost, columns.radii.first())
+        && columns.radii.len() > 1
+        && first > spacing * (1.0 + ROUNDED)
+    {
+        twice.push((line, Fault::Hollow { first, spacing }));
     }
     faults.total += twice.len();
     faults.shown.append(&mut twice);

@@ -68,19 +68,21 @@ pub fn read_in<S: AsRef<str>>(
     sheet.finish()
 }
 
-/// Reads a preset whose profile, where it has one, is `rows`, whatever its file holds by now; no file is read.
+/// Reads a preset as a session holds it, and says whether it has keys or words of before, which are read as they were
+/// meant. Its profile, where it has one, is `rows`, whatever its file holds by now; no file is read.
 ///
 /// # Errors
 /// Every mistake found, with its line.
-pub fn read_holding(name: &str, text: &str, rows: Option<Arc<Rows>>) -> Result<Preset, ReadError> {
+pub fn read_holding(name: &str, text: &str, rows: Option<Arc<Rows>>) -> Result<(Preset, bool), ReadError> {
     // Without rows the file is not asked for either: a profile that has none is a mistake.
     let rows = Some(rows.unwrap_or_default());
-    let mut sheet = Sheet { name: show_name(name), rows, ..Sheet::default() };
+    let mut sheet = Sheet { name: show_name(name), rows, takes_former: true, ..Sheet::default() };
     match DeTable::parse(text) {
         Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
         Err(error) => sheet.syntax(text, &error),
     }
-    sheet.finish()
+    let was_former = sheet.was_former;
+    Ok((sheet.finish()?, was_former))
 }
 
 #[cfg(test)]

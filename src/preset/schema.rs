@@ -27,8 +27,10 @@ pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
 /// The three ways to say where a path starts; a preset has exactly one.
 pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
 
-/// The word that leaves a count to the program.
+/// The word that leaves a value to the program.
 pub const AUTO: &str = "auto";
+/// The word for the exact basis.
+pub const EXACT: &str = "exact";
 /// The word for no smoothing.
 pub const NONE: &str = "none";
 
@@ -43,13 +45,6 @@ pub enum Kind {
     Finite,
     /// A whole number from `min` to `max`.
     Integer {
-        /// The smallest accepted.
-        min: i64,
-        /// The largest accepted.
-        max: i64,
-    },
-    /// A whole number from `min` to `max`, or the word [`AUTO`].
-    Count {
         /// The smallest accepted.
         min: i64,
         /// The largest accepted.
@@ -187,12 +182,7 @@ impl Kind {
             Self::Positive | Self::NonNegative | Self::Finite | Self::Between { .. } | Self::Smoothing => {
                 true
             }
-            Self::Integer { .. }
-            | Self::Count { .. }
-            | Self::Text { .. }
-            | Self::File
-            | Self::Choice(_)
-            | Self::Control => false,
+            Self::Integer { .. } | Self::Text { .. } | Self::File | Self::Choice(_) | Self::Control => false,
         }
     }
 }
@@ -266,7 +256,6 @@ impl Parameter {
             Kind::Finite => format!("a number from -{LARGEST:?} to {LARGEST:?}"),
             Kind::Integer { min, max } if min == max => format!("the number {min}"),
             Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
-            Kind::Count { min, max } => format!("\"{AUTO}\" or a whole number from {min} to {max}"),
             Kind::Between { min, max } => format!("a number from {min:?} to {max:?}"),
             Kind::File => "the name of a file".to_owned(),
             Kind::Smoothing => format!("\"{NONE}\", \"{AUTO}\" or a number from {SMALLEST:?} to {LARGEST:?}"),

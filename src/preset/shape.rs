@@ -4,17 +4,18 @@ use super::build::{Given, Values};
 use super::family::{self, PARAMETER_KEYS, WAVE_KEYS, is_parameter, parameter_key, wave_key};
 use super::invalid::Invalid;
 use super::measured;
+use super::model::Preset;
 use super::resolve::told;
 use super::schema::{
     AUTO, COEFFICIENT, Key, Kind, LARGEST, NONE, Parameter, Row, START_KEYS, START_OVER_CURVATURE, parameter,
 };
 use super::suggest::closest;
 use super::value::Value;
-use crate::contact::Shape;
 use crate::contact::formula::typed::{MOST_PARAMETERS, RADIUS};
 use crate::contact::formula::{Formula, FormulaParameter, TypedError, TypedGap};
 use crate::contact::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Smoothing};
-use crate::units::number::short;
+use crate::contact::{Gap, Shape, Start};
+use crate::units::number::{said, short};
 use crate::units::{Quantity, Unit, UnitSystem};
 use std::sync::Arc;
 
@@ -56,6 +57,11 @@ impl Given<'_> {
     }
 
     fn harmonics(&mut self) -> Shape {
+        if self.waves_given() == 0 {
+            let allowed = "one or more tables [[gap.waves]] with amplitude and wavelength; without waves the gap is a sphere";
+            self.faults
+                .push(Invalid::Missing { key: family::WAVE_TABLE.into(), allowed: allowed.to_owned() });
+        }
         let mut waves = Vec::new();
         while waves.len() < self.waves_given() {
             let number = waves.len() + 1;
@@ -181,9 +187,16 @@ impl Given<'_> {
             },
             _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
         };
+        if let Err(cause) = measured::in_these_units(&rows, &self.units) {
+            return self.fault("gap.file", &cause);
+        }
+        let shown = measured::shown(&rows);
         match Measured::new(rows.held_in(&self.units), smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),
-            Err(error) => self.fault("gap.file", &error.words(&self.units)),
+            Err(error) => {
+                let key = if error.is_of_smoothing() { "gap.smoothing" } else { "gap.file" };
+                self.fault(key, &format!("{shown}: {}", error.words(&self.units)))
+            }
         }
     }
 
@@ -201,6 +214,52 @@ impl Given<'_> {
             }
         }
     }
+}
+
+/// How far beyond the start, or the length of the gap, a gap without an end is followed where it falls.
+const FAR: f64 = 1e12;
+/// Radii looked at where a gap falls: so many in even steps, and so many a decade.
+const FALL_STEPS: u32 = 4096;
+const FALLS_A_DECADE: i32 = 20;
+/// The decades below the start, or the length of the gap.
+const FALL_DECADES: i32 = 6;
+
+/// Says of a gap that falls from the axis outward at every radius where it is known that no disc of contact lies around
+/// the axis: an upside-down formula, or a profile of a hollow.
+pub(super) fn falls_throughout(preset: &Preset) -> Option<Invalid> {
+    let gap = &preset.gap;
+    let (key, larger) = match gap {
+        Shape::Formula(_) => ("gap.formula", "as r^2/(2*R) does"),
+        Shape::Profile(_) => ("gap.file", "as that of a rounded tip does"),
+        // The paraboloid below their waves rises.
+        _ => return None,
+    };
+    let near = match preset.path.start {
+        Start::ContactRadius(s) => s,
+        Start::Approach(_) | Start::Force(_) => gap.reference_length(),
+    };
+    let known = gap.largest_radius();
+    let end = known.unwrap_or(FAR * gap.length().map_or(near, |length| length.max(near)));
+    let even = (1..=FALL_STEPS).map(|i| f64::from(i) / f64::from(FALL_STEPS) * near.min(end));
+    let decades = (-FALL_DECADES * FALLS_A_DECADE..)
+        .map(|i| near * 10f64.powf(f64::from(i) / f64::from(FALLS_A_DECADE)))
+        .take_while(|r| *r < end);
+    // A formula may stop being finite far out without its end being known.
+    let throughout = even
+        .chain(decades)
+        .map(|r| gap.jet(r).first)
+        .take_while(|slope| !slope.is_nan())
+        .all(|slope| slope < 0.0);
+    throughout.then(|| Invalid::Gap {
+        key: key.into(),
+        cause: format!(
+            "the gap falls from the axis outward{}: no disc of contact lies around the axis; h(r) must rise, {larger}",
+            known.map_or_else(
+                || " at every radius".to_owned(),
+                |end| format!(" at every radius up to {}, where it ends", said(&preset.units, Quantity::Length, end))
+            )
+        ),
+    })
 }
 
 /// The row of a parameter, with its range and unit.

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::contact::Start;
     use crate::contact::{Control, Groups, Shape};
-    use crate::preset::model::{BasisSpec, Functions, Preset, is_of_units};
+    use crate::preset::model::{BasisSpec, Preset, is_of_units};
     use crate::preset::read::read;
     use crate::preset::schema::Row;
     use crate::preset::shape::is_range;
@@ -87,7 +87,7 @@ mod tests {
             let basis = if shipped.name.starts_with("fig-") {
                 BasisSpec::Rings { rings: 200, grading: Grading::Uniform }
             } else {
-                BasisSpec::Spectral { functions: Functions::Auto }
+                BasisSpec::Exact
             };
             assert_eq!(preset.basis, basis);
             assert!(preset.path.end_contact_radius.is_some());

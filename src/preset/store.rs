@@ -4,7 +4,8 @@
 //! never by anything else. Nothing here overwrites a file that the caller did not load or ask to replace.
 
 use super::atomic::{Overwrite, WriteError, folder_of, follow, write_verified};
-use super::beside::copy_beside;
+use super::beside::{DataError, copy_beside};
+use super::edit::onto;
 use super::file::{self, FileError, Fingerprint, read_text};
 use super::invalid::Invalid;
 use super::lock::{FolderLock, PATIENCE};
@@ -21,6 +22,7 @@ use std::fs;
 use std::io;
 use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// How many files of the folder are listed.
@@ -40,6 +42,13 @@ pub enum Source {
     },
     /// A file by its path.
     File(PathBuf),
+    /// A text that came through a pipe and cannot be read again.
+    Piped {
+        /// How messages call where it came from.
+        name: String,
+        /// The text.
+        text: Arc<str>,
+    },
 }
 
 impl Source {
@@ -48,16 +57,16 @@ impl Source {
     pub fn shown(&self) -> String {
         match self {
             Self::Shipped(shipped) => shipped.name.to_owned(),
-            Self::User { name, .. } => name.clone(),
+            Self::User { name, .. } | Self::Piped { name, .. } => name.clone(),
             Self::File(path) => show_path(path),
         }
     }
 
-    /// Its file; a shipped preset has none.
+    /// Its file; a shipped preset has none, nor has one that came through a pipe.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match self {
-            Self::Shipped(_) => None,
+            Self::Shipped(_) | Self::Piped { .. } => None,
             Self::User { path, .. } | Self::File(path) => Some(path),
         }
     }
@@ -72,7 +81,7 @@ pub struct Loaded {
     pub preset: Preset,
     /// The text of its file, comments included.
     pub text: String,
-    /// How to recognise the file when saving; a shipped preset has none.
+    /// How to recognise the file when saving, where there is one.
     pub fingerprint: Option<Fingerprint>,
 }
 
@@ -131,8 +140,8 @@ pub enum StoreError {
         cause: io::Error,
     },
     /// The data of a profile cannot be copied.
-    #[error("{0}")]
-    Data(String),
+    #[error(transparent)]
+    Data(#[from] DataError),
     /// The file cannot be written; nothing has changed.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -232,6 +241,7 @@ impl Store {
     pub fn load<S: AsRef<str>>(&self, source: &Source, assignments: &[S]) -> Result<Loaded, StoreError> {
         let (text, fingerprint) = match source {
             Source::Shipped(shipped) => (shipped.text.to_owned(), None),
+            Source::Piped { text, .. } => (text.to_string(), None),
             Source::User { path, .. } | Source::File(path) => {
                 let (text, fingerprint) = read_text(path, file::LARGEST)?;
                 (text, Some(fingerprint))
@@ -325,7 +335,8 @@ impl Store {
         }
     }
 
-    /// Saves a preset by name, and says where it is now and how to recognise the file.
+    /// Saves a preset by name, and says where it is now and how to recognise the file. What the person has written around
+    /// the values in the text that it was read `from` stays.
     ///
     /// # Errors
     /// The name or the preset is not valid, or the file must not be replaced or cannot be written; nothing has
@@ -334,11 +345,12 @@ impl Store {
         &self,
         name: &str,
         preset: &Preset,
+        from: Option<&Source>,
         overwrite: Overwrite,
     ) -> Result<(Source, Fingerprint), StoreError> {
         let path = self.path_of(name)?;
         make_own_folder(folder_of(&path))?;
-        let fingerprint = save_file(&path, preset, overwrite)?;
+        let fingerprint = save_file(&path, preset, from, overwrite)?;
         Ok((Source::User { name: name.to_owned(), path }, fingerprint))
     }
 
@@ -350,6 +362,7 @@ impl Store {
         &self,
         name: &str,
         preset: &Preset,
+        from: Option<&Source>,
         overwrite: Overwrite,
     ) -> Result<(Source, Fingerprint, Preset), StoreError> {
         let path = self.path_of(name)?;
@@ -358,8 +371,8 @@ impl Store {
             return Err(WriteError::Exists { path: show_path(&path) }.into());
         }
         make_own_folder(folder_of(&path))?;
-        let preset = copy_beside(folder_of(&path), preset).map_err(StoreError::Data)?;
-        let (source, fingerprint) = self.save(name, &preset, overwrite)?;
+        let preset = copy_beside(folder_of(&path), preset)?;
+        let (source, fingerprint) = self.save(name, &preset, from, overwrite)?;
         Ok((source, fingerprint, preset))
     }
 }
@@ -376,6 +389,17 @@ pub fn make_folder(folder: &Path) -> io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }
 
+/// The text of a preset as a person has written it; what comes with the program says in its comments what it is itself.
+fn own_text(source: &Source) -> Option<String> {
+    match source {
+        Source::Shipped(_) => None,
+        Source::Piped { text, .. } => Some(text.to_string()),
+        Source::User { path, .. } | Source::File(path) => {
+            read_text(path, file::LARGEST).ok().map(|(text, _)| text)
+        }
+    }
+}
+
 /// The lock of a folder, for the sake of a file in it.
 fn locked(folder: &Path, path: &Path) -> Result<FolderLock, WriteError> {
     let lock = FolderLock::acquire(folder, PATIENCE);
@@ -383,18 +407,28 @@ fn locked(folder: &Path, path: &Path) -> Result<FolderLock, WriteError> {
     lock.map_err(failed)?.ok_or_else(|| WriteError::Locked { path: show_path(path) })
 }
 
-/// Saves a preset to a file by its path: the whole text anew, read back before it takes the file's place.
+/// Saves a preset to a file by its path, read back before it takes the file's place: with what the person has written
+/// around the values in the text that it was read `from`, or anew.
 ///
 /// # Errors
 /// The preset is not valid, or the file must not be replaced or cannot be written; nothing has changed then.
-pub fn save_file(path: &Path, preset: &Preset, overwrite: Overwrite) -> Result<Fingerprint, StoreError> {
+pub fn save_file(
+    path: &Path,
+    preset: &Preset,
+    from: Option<&Source>,
+    overwrite: Overwrite,
+) -> Result<Fingerprint, StoreError> {
     preset.check().map_err(|mut all| StoreError::Invalid(all.swap_remove(0)))?;
     let preset = preset.placed_in(folder_of(path));
-    let text = write(&preset);
     // The folder where the rename happens, so that two names for one file share a lock.
     let target = follow(path)?;
     let shown = || show_path(path);
     let _lock = locked(folder_of(&target), path)?;
+    let text = from.and_then(|from| {
+        let folder = from.path().map(folder_of);
+        onto(folder, &own_text(from)?, &preset)
+    });
+    let text = text.unwrap_or_else(|| write(&preset));
     let fingerprint = write_verified(path, text.as_bytes(), overwrite, |bytes| {
         let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
         match read_in(Some(folder_of(path)), &shown(), text, &[] as &[&str]) {
@@ -433,7 +467,7 @@ mod tests {
         let (_home, store) = store();
         assert!(store.list().presets.len() == SHIPPED.len() && store.list().notice.is_none());
         assert!(!store.folder().unwrap().exists(), "listing makes no folder");
-        let (source, print) = store.save("mine", &wavy(), Overwrite::Never).unwrap();
+        let (source, print) = store.save("mine", &wavy(), None, Overwrite::Never).unwrap();
         assert_eq!(store.resolve("mine").unwrap(), source);
         let loaded = store.load(&source, NONE).unwrap();
         assert_eq!((&loaded.preset, loaded.fingerprint), (&wavy(), Some(print)));
@@ -482,7 +516,7 @@ mod tests {
     fn names_that_are_taken_cannot_be_saved() {
         let (_home, store) = store();
         for name in ["fig-9", "trace", "../up", "a/b", "", "UP"] {
-            let error = store.save(name, &wavy(), Overwrite::Always).unwrap_err();
+            let error = store.save(name, &wavy(), None, Overwrite::Always).unwrap_err();
             assert!(matches!(error, StoreError::Name(_)), "{error}");
         }
         assert!(!store.folder().unwrap().exists());
@@ -494,8 +528,8 @@ mod tests {
         let message = |name: &str| store.delete(name).unwrap_err().to_string();
         assert_eq!(message("mine"), "no preset is called \"mine\"");
         assert_eq!(message("fig-9"), "fig-9 comes with the program and cannot be deleted");
-        store.save("mine", &wavy(), Overwrite::Never).unwrap();
-        store.save("other", &wavy(), Overwrite::Never).unwrap();
+        store.save("mine", &wavy(), None, Overwrite::Never).unwrap();
+        store.save("other", &wavy(), None, Overwrite::Never).unwrap();
         let (outside, linked) = (home.path().join("outside.toml"), store.folder().unwrap().join("link.toml"));
         fs::write(&outside, "x").unwrap();
         symlink(&outside, &linked).unwrap();
@@ -521,31 +555,85 @@ mod tests {
     #[test]
     fn an_invalid_preset_is_not_saved() {
         let (_home, store) = store();
-        let error = store.save("mine", &with_rings(2), Overwrite::Always).unwrap_err();
+        let error = store.save("mine", &with_rings(2), None, Overwrite::Always).unwrap_err();
         assert!(matches!(error, StoreError::Invalid(_)), "{error}");
+    }
+
+    #[test]
+    fn a_save_keeps_what_a_person_wrote_around_the_values() {
+        let (home, store) = store();
+        let mine = "# notes\n[gap] # first\nshape = 'wavy-sphere'\namplitude = 0.0025   # A\nwavelength = 0.05\n\
+                    radius_of_curvature = 1\n\n[material]\nwork_of_adhesion = 4e-3\neffective_modulus = 1 # E*\n";
+        let path = home.path().join("mine.toml");
+        fs::write(&path, mine).unwrap();
+        let file = store.resolve(&path).unwrap();
+        let loaded = store.load(&file, &["gap.amplitude=0.003"]).unwrap();
+        let changed = mine.replace("0.0025", "0.003");
+        let text = |source: &Source| fs::read_to_string(source.path().unwrap()).unwrap();
+        // Back to the file, under a name, and from there again.
+        let known = Overwrite::IfUnchanged(loaded.fingerprint.unwrap());
+        save_file(&path, &loaded.preset, Some(&file), known).unwrap();
+        assert_eq!(text(&file), changed);
+        let (named, print) = store.save("mine", &loaded.preset, Some(&file), Overwrite::Never).unwrap();
+        assert_eq!(text(&named), changed);
+        let mut turned = loaded.preset.clone();
+        turned.assign("material.effective_modulus", "2").unwrap();
+        store.save("mine", &turned, Some(&named), Overwrite::IfUnchanged(print)).unwrap();
+        assert_eq!(text(&named), changed.replace("= 1 # E*", "= 2.0 # E*"));
+        // Over another preset the text is that of the one saved; through a pipe it is the person's too.
+        let piped = Source::Piped { name: "standard input".to_owned(), text: mine.into() };
+        store.save("mine", &loaded.preset, Some(&piped), Overwrite::Always).unwrap();
+        assert_eq!(text(&named), changed);
+        // Of the program's own, of nothing, and where the file is gone, it is written anew.
+        let shipped = store.resolve("wavy-sphere").unwrap();
+        let gone = Source::File(home.path().join("gone.toml"));
+        for from in [Some(&shipped), Some(&gone), None] {
+            store.save("mine", &loaded.preset, from, Overwrite::Always).unwrap();
+            assert_eq!(text(&named), write(&loaded.preset));
+        }
+    }
+
+    #[test]
+    fn the_name_of_a_profile_follows_the_preset_and_its_comment_stays() {
+        let (home, store) = store();
+        let rows = (0..100).map(f64::from).map(|r| format!("{r} {}\n", r * r / 2000.0)).collect::<Vec<_>>();
+        fs::write(home.path().join("scan.dat"), rows.concat()).unwrap();
+        let text = "[material]\neffective_modulus = 1\nwork_of_adhesion = 0.003\n[gap]\nshape = \"profile\"\n\
+                    file = \"scan.dat\" # of May\n[path]\nstart_contact_radius = 50\n";
+        let path = home.path().join("p.toml");
+        fs::write(&path, text).unwrap();
+        let file = store.resolve(&path).unwrap();
+        let loaded = store.load(&file, NONE).unwrap();
+        save_file(&path, &loaded.preset, Some(&file), Overwrite::Always).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        let (named, _) = store.save("mine", &loaded.preset, Some(&file), Overwrite::Never).unwrap();
+        let saved = fs::read_to_string(named.path().unwrap()).unwrap();
+        assert!(saved.contains("scan.dat\" # of May") && !saved.contains("\"scan.dat\""), "{saved}");
+        let radius = |preset: &Preset| preset.gap.radius_of_curvature().unwrap().to_bits();
+        assert_eq!(radius(&store.load(&named, NONE).unwrap().preset), radius(&loaded.preset));
     }
 
     #[test]
     fn what_changed_on_disk_is_not_overwritten() {
         let (_home, store) = store();
-        let (source, first) = store.save("mine", &wavy(), Overwrite::Never).unwrap();
-        let taken = store.save("mine", &wavy(), Overwrite::Never).unwrap_err();
+        let (source, first) = store.save("mine", &wavy(), None, Overwrite::Never).unwrap();
+        let taken = store.save("mine", &wavy(), None, Overwrite::Never).unwrap_err();
         assert!(matches!(taken, StoreError::Write(WriteError::Exists { .. })), "{taken}");
-        let (_, second) = store.save("mine", &with_rings(10), Overwrite::IfUnchanged(first)).unwrap();
+        let (_, second) = store.save("mine", &with_rings(10), None, Overwrite::IfUnchanged(first)).unwrap();
         // Another person's editor.
         let path = source.path().unwrap();
         fs::write(path, write(&with_rings(20))).unwrap();
-        let error = store.save("mine", &with_rings(30), Overwrite::IfUnchanged(second)).unwrap_err();
+        let error = store.save("mine", &with_rings(30), None, Overwrite::IfUnchanged(second)).unwrap_err();
         assert!(matches!(error, StoreError::Write(WriteError::Changed { .. })), "{error}");
         assert_eq!(store.load(&source, NONE).unwrap().preset, with_rings(20));
-        store.save("mine", &with_rings(30), Overwrite::Always).unwrap();
+        store.save("mine", &with_rings(30), None, Overwrite::Always).unwrap();
         assert_eq!(store.load(&source, NONE).unwrap().preset, with_rings(30));
     }
 
     #[test]
     fn unreadable_presets_are_listed_with_the_reason_and_left_alone() {
         let (_home, store) = store();
-        store.save("good", &wavy(), Overwrite::Never).unwrap();
+        store.save("good", &wavy(), None, Overwrite::Never).unwrap();
         let at = |name: &str| store.folder().unwrap().join(name);
         fs::write(at("bad.toml"), "rings = ").unwrap();
         fs::write(at("Odd Name.toml"), write(&wavy())).unwrap();
@@ -567,7 +655,7 @@ mod tests {
         assert!(reason("dangling").contains("No such file"));
         assert!(store.load(&store.resolve("bad").unwrap(), NONE).is_err());
         assert_eq!(fs::read_to_string(at("bad.toml")).unwrap(), "rings = ");
-        let error = store.save("bad", &wavy(), Overwrite::Never).unwrap_err();
+        let error = store.save("bad", &wavy(), None, Overwrite::Never).unwrap_err();
         assert!(matches!(error, StoreError::Write(WriteError::Exists { .. })), "{error}");
     }
 
@@ -587,7 +675,7 @@ mod tests {
     fn without_a_home_there_are_the_shipped_presets_and_a_notice() {
         let store = Store { folder: None, commands: Vec::new() };
         assert!(store.list().notice.is_some() && store.resolve("fig-8").is_ok());
-        assert!(matches!(store.save("mine", &wavy(), Overwrite::Never), Err(StoreError::NoFolder)));
+        assert!(matches!(store.save("mine", &wavy(), None, Overwrite::Never), Err(StoreError::NoFolder)));
         assert!(matches!(store.resolve("mine"), Err(StoreError::NotFound { .. })));
     }
 
@@ -596,7 +684,7 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         fs::write(home.path().join("file"), "").unwrap();
         let store = Store::at(home.path().join("file/presets"), COMMANDS);
-        let error = store.save("mine", &wavy(), Overwrite::Never).unwrap_err();
+        let error = store.save("mine", &wavy(), None, Overwrite::Never).unwrap_err();
         assert!(matches!(error, StoreError::Folder { .. }), "{error}");
         assert!(store.list().notice.is_some());
     }
@@ -604,12 +692,12 @@ mod tests {
     #[test]
     fn savers_at_the_same_time_lose_nothing() {
         let (_home, store) = store();
-        let (source, first) = store.save("mine", &wavy(), Overwrite::Never).unwrap();
+        let (source, first) = store.save("mine", &wavy(), None, Overwrite::Never).unwrap();
         let savers: Vec<_> = (0..8)
             .map(|i| {
                 let store = store.clone();
                 std::thread::spawn(move || {
-                    store.save("mine", &with_rings(10 + i), Overwrite::IfUnchanged(first))
+                    store.save("mine", &with_rings(10 + i), None, Overwrite::IfUnchanged(first))
                 })
             })
             .collect();
@@ -626,10 +714,10 @@ mod tests {
     #[test]
     fn a_folder_in_use_is_waited_for() {
         let (_home, store) = store();
-        store.save("mine", &wavy(), Overwrite::Never).unwrap();
+        store.save("mine", &wavy(), None, Overwrite::Never).unwrap();
         let held = FolderLock::acquire(store.folder().unwrap(), PATIENCE).unwrap();
         let other = store.clone();
-        let saver = std::thread::spawn(move || other.save("mine", &with_rings(9), Overwrite::Always));
+        let saver = std::thread::spawn(move || other.save("mine", &with_rings(9), None, Overwrite::Always));
         drop(held);
         assert!(saver.join().unwrap().is_ok());
     }

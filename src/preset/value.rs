@@ -1,5 +1,6 @@
 //! One parameter's value, and its check against the parameter's row.
 
+use super::former;
 use super::invalid::Invalid;
 use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
 use super::suggest::closest;
@@ -134,11 +135,6 @@ impl Parameter {
                 found if self.key == "format" => Err(Invalid::Format { found }),
                 n => Err(self.out_of_range(&n.to_string())),
             },
-            (Kind::Count { min, max }, Value::Integer(n)) if (min..=max).contains(&n) => {
-                Ok(Value::Integer(n))
-            }
-            (Kind::Count { .. }, Value::Integer(n)) => Err(self.out_of_range(&n.to_string())),
-            (Kind::Count { .. }, Value::Text(word)) if word == AUTO => Ok(Value::Text(word)),
             (Kind::Smoothing, Value::Text(word)) if word == AUTO || word == NONE => Ok(Value::Text(word)),
             (Kind::File, Value::Profile(rows)) => Ok(Value::Profile(rows)),
             (Kind::File, Value::Text(name)) => Ok(Value::Text(name)),
@@ -243,6 +239,9 @@ impl Parameter {
     }
 
     fn no_choice(&self, word: &str, words: &[&'static str]) -> Invalid {
+        if let Some(former) = former::word(&self.key, word) {
+            return former;
+        }
         let meant = closest(word, words.iter().copied());
         // The borrow of `words` is shorter than its words' own.
         let meant = meant.and_then(|w| words.iter().copied().find(|known| *known == w)).map(Cow::Borrowed);

@@ -14,29 +14,15 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 /// follow from the start stands as a comment, so that a file read back is the preset written.
 #[must_use]
 pub fn write(preset: &Preset) -> String {
-    let mut text = String::from(match preset.units {
-        UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
-        UnitSystem::Si(_) => "# A pulloff preset. Numbers without a unit are SI.\n",
-    });
+    let mut text = head(&preset.units).to_owned();
     let mut table = None;
     for row in preset.rows().filter(|row| !row.is_part() && !is_range(&row.key)) {
         let line = match preset.get(&row.key) {
             Some(value) if is_parameter(&row.key) => {
-                let ranges = family::PARAMETER_KEYS.iter().filter_map(|part| {
-                    let value = preset.get(&format!("{}.{part}", row.key))?;
-                    Some(format!(", {part} = {}", toml(preset, &row, &value)))
-                });
-                match ranges.collect::<String>().as_str() {
-                    "" => format!("{} = {}", row.name(), toml(preset, &row, &value)),
-                    ranges => {
-                        format!("{} = {{ value = {}{ranges} }}", row.name(), toml(preset, &row, &value))
-                    }
-                }
+                line(row.name(), &toml_of_parameter(preset, &row, &value), &comment(&row))
             }
-            Some(value) => format!("{} = {}", row.name(), toml(preset, &row, &value)),
-            None if row.key == "path.end_contact_radius" => {
-                format!("# {} = {}", row.name(), row.fallback_text())
-            }
+            Some(value) => line(row.name(), &toml(preset, &row, &value), &comment(&row)),
+            None if row.key == FOLLOWING => following(&row),
             None => continue,
         };
         if row.table() != table.as_deref() {
@@ -49,15 +35,49 @@ pub fn write(preset: &Preset) -> String {
                 }
             }));
         }
-        text.push_str(format!("{line:<40}{}", comment(&row)).trim_end());
+        text.push_str(&line);
         text.push('\n');
     }
     text
 }
 
+/// The first line, which says what bare numbers are.
+pub(super) fn head(units: &UnitSystem) -> &'static str {
+    match units {
+        UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
+        UnitSystem::Si(_) => "# A pulloff preset. Numbers without a unit are SI.\n",
+    }
+}
+
+/// The key that stands as a comment where it follows from others.
+pub(super) const FOLLOWING: &str = "path.end_contact_radius";
+
+/// The comment in its place.
+pub(super) fn following(row: &Parameter) -> String {
+    line(&format!("# {}", row.name()), &row.fallback_text(), &comment(row))
+}
+
+/// A line of a key, its value and what it means.
+pub(super) fn line(name: &str, value: &str, comment: &str) -> String {
+    format!("{:<40}{comment}", format!("{name} = {value}")).trim_end().to_owned()
+}
+
+/// A parameter of a formula as TOML, with its range and its unit where it has them.
+pub(super) fn toml_of_parameter(preset: &Preset, row: &Parameter, value: &Value) -> String {
+    let value = toml(preset, row, value);
+    let ranges = family::PARAMETER_KEYS.iter().filter_map(|part| {
+        let value = preset.get(&format!("{}.{part}", row.key))?;
+        Some(format!(", {part} = {}", toml(preset, row, &value)))
+    });
+    match ranges.collect::<String>().as_str() {
+        "" => value,
+        ranges => format!("{{ value = {value}{ranges} }}"),
+    }
+}
+
 /// A value of a row as TOML: in an SI preset as text with the unit in which it is shown, where that reads back as the
 /// very same number; bare where a unit of its own stands beside it.
-fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
+pub(super) fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
     let text = |quantity, number| {
         let shown = preset.units.shown(quantity, number);
         let text = shown.text(&format!("{:?}", shown.number), true);
@@ -84,7 +104,7 @@ fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
 }
 
 /// What a row means, as a comment; format and title speak for themselves.
-fn comment(row: &Parameter) -> String {
+pub(super) fn comment(row: &Parameter) -> String {
     if row.table().is_none() {
         return String::new();
     }

@@ -1,13 +1,14 @@
 //! The preset by dotted key: its values and its rows.
 
-use super::{BasisSpec, Functions, Preset, start_key};
+use super::{BasisSpec, Preset, start_key};
 use crate::contact::Control;
 use crate::preset::build::Values;
 use crate::preset::family;
+use crate::preset::former;
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::schema::{
-    AUTO, CHOOSERS, DISPLAY, FORMAT, PARAMETERS, Parameter, Row, SYSTEMS, parameter,
+    CHOOSERS, DISPLAY, EXACT, FORMAT, PARAMETERS, Parameter, Row, SYSTEMS, parameter,
 };
 use crate::preset::shape;
 use crate::preset::suggest::closest_key;
@@ -39,19 +40,15 @@ impl Preset {
             key if key.starts_with("gap.") => return shape::get(gap, key),
             "basis.kind" => match basis {
                 BasisSpec::Rings { .. } => "rings".into(),
-                BasisSpec::Spectral { .. } => "spectral".into(),
+                BasisSpec::Exact => EXACT.into(),
             },
-            "basis.rings" | "basis.functions" => match (key, *basis) {
-                ("basis.rings", BasisSpec::Rings { rings: n, .. })
-                | ("basis.functions", BasisSpec::Spectral { functions: Functions::Count(n) }) => {
-                    i64::try_from(n).ok()?.into()
-                }
-                ("basis.functions", BasisSpec::Spectral { functions: Functions::Auto }) => AUTO.into(),
-                _ => return None,
+            "basis.rings" => match basis {
+                BasisSpec::Rings { rings, .. } => i64::try_from(*rings).ok()?.into(),
+                BasisSpec::Exact => return None,
             },
             "basis.grading" => match basis {
                 BasisSpec::Rings { grading, .. } => grading.name().into(),
-                BasisSpec::Spectral { .. } => return None,
+                BasisSpec::Exact => return None,
             },
             key if groups::row(key).is_some() => return groups::get(self, key),
             "path.control" => path.control.into(),
@@ -130,6 +127,9 @@ pub(in crate::preset) fn unknown_key(key: &str, shape: Option<&str>) -> Invalid 
 }
 
 fn unknown_among<'a>(key: &str, rows: impl Iterator<Item = &'a Parameter>) -> Invalid {
+    if let Some(former) = former::key(key) {
+        return former;
+    }
     if key.starts_with("groups.") {
         let known: Vec<&str> = groups::GROUPS.iter().map(|row| &*row.key).collect();
         return Invalid::UnknownGroup { key: quote(key), known: known.join(", ") };

@@ -18,7 +18,7 @@ fn another(key: &str) -> Value {
         "display.adhesion" | "display.stiffness" => "mN/m".into(),
         "display.energy" => "eV".into(),
         "gap.shape" => "sphere".into(),
-        "basis.kind" => "spectral".into(),
+        "basis.kind" => "exact".into(),
         "basis.rings" | "basis.functions" => 77.into(),
         "basis.grading" => "edge".into(),
         "path.control" => Control::Force.into(),
@@ -38,7 +38,7 @@ fn the_table_is_total() {
     let Preset { title: _, units: _, material, gap, basis, path } = wavy();
     let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
     match basis {
-        BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Spectral { functions: _ } => {}
+        BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
     }
     let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
     match gap {
@@ -90,7 +90,6 @@ fn the_table_is_total() {
         "basis.kind",
         "basis.rings",
         "basis.grading",
-        "basis.functions",
         "path.control",
         "path.control.stiffness",
         "path.start_contact_radius",
@@ -117,7 +116,7 @@ fn the_table_is_total() {
             preset.set("units", "SI".into()).unwrap();
         }
         if row.key == "basis.functions" {
-            preset.set("basis.kind", "spectral".into()).unwrap();
+            preset.set("basis.kind", "exact".into()).unwrap();
         }
         preset.set(&row.key, value.clone()).unwrap();
         assert_eq!(preset.get(&row.key), Some(value), "{}", row.key);
@@ -210,13 +209,11 @@ fn a_shape_drops_and_brings_its_keys() {
 #[test]
 fn a_basis_drops_the_keys_of_the_other() {
     let mut preset = wavy();
-    let few = preset.set("basis.functions", 48.into()).unwrap_err();
-    assert_eq!(few.to_string(), "basis.functions belongs to spectral, and the basis is rings");
-    preset.set("basis.kind", "spectral".into()).unwrap();
-    assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+    preset.set("basis.kind", "exact".into()).unwrap();
+    assert_eq!(preset.basis, BasisSpec::Exact);
     assert_eq!(preset.get("basis.rings"), None);
-    preset.set("basis.functions", 48.into()).unwrap();
-    preset.set("basis.functions", "auto".into()).unwrap();
+    let few = preset.set("basis.rings", 48.into()).unwrap_err();
+    assert_eq!(few.to_string(), "basis.rings belongs to rings, and the basis is exact");
     preset.set("basis.kind", "rings".into()).unwrap();
     assert_eq!(preset, wavy());
 }
@@ -233,7 +230,7 @@ fn graded_rings_have_a_bound_of_their_own() {
     preset.reset("basis.grading").unwrap();
     preset.set("basis.rings", 401.into()).unwrap();
     assert_eq!(preset.set("basis.grading", "edge".into()).unwrap_err().to_string(), words);
-    preset.set("basis.kind", "spectral".into()).unwrap();
+    preset.set("basis.kind", "exact".into()).unwrap();
     assert_eq!(preset.get("basis.grading"), None);
 }
 

@@ -95,18 +95,59 @@ fn columns_that_their_header_names_the_other_way_round_are_refused() {
 }
 
 #[test]
-fn units_become_factors() {
-    let columns = good(&format!("r [um], h [nm]\n{}", rows(",")));
-    let factor = |unit: &str| match unit {
-        "um" => Some(2.0_f64.powi(-20)),
-        "nm" => Some(2.0_f64.powi(-30)),
-        _ => None,
-    };
-    let scaled = columns.clone().in_units(factor).unwrap();
-    let nine = (scaled.radii[9], scaled.gaps[9]);
-    assert_eq!(nine, (4.5 * 2.0_f64.powi(-20), 8.1 * 2.0_f64.powi(-30)));
-    let error = columns.in_units(|unit| (unit == "um").then_some(1.0)).unwrap_err();
-    assert_eq!(error.to_string(), "the unit \"nm\" of the gap is not known");
+fn gaps_become_lengths_in_the_unit_of_the_radii() {
+    for (header, unit, factor) in [
+        ("r [um], h [nm]", "um", 1e-3),
+        ("r [µm], h [Å]", "um", 1e-4),
+        ("r [micron], h [\u{3bc}m]", "micron", 1.0),
+        ("r [mm], h [m]", "mm", 1e3),
+        ("r / in, h / mm", "in", 1.0 / 25.4),
+        ("r nm, h nm", "nm", 1.0),
+    ] {
+        let (columns, found) = good(&format!("{header}\n{}", rows(","))).in_one_unit().unwrap();
+        assert_eq!(found.unwrap().ascii(), unit, "{header}");
+        assert_eq!(columns.radii, good(&rows(",")).radii);
+        assert!((columns.gaps[9] / (8.1 * factor) - 1.0).abs() < 1e-15, "{header}: {}", columns.gaps[9]);
+    }
+    let bare = good(&rows(","));
+    assert_eq!(bare.clone().in_one_unit().unwrap(), (bare, None));
+}
+
+#[test]
+fn units_that_are_no_lengths_and_missing_ones_are_refused_by_name_with_their_line() {
+    for (header, said) in [
+        ("r [um], h [N]", "line 1: the unit \"N\" of the gap is a force, not a length"),
+        ("r [foo], h [nm]", "line 1: the unit \"foo\" of the radius is not known"),
+        ("# mine\nr [um], h [um^2]", "line 2: the unit \"um^2\" of the gap is an area, not a length"),
+        ("\n# r [s], h [nm]", "line 2: the unit \"s\" of the radius is a time, not a length"),
+        ("r [um], h", "line 1: the header gives the radius in um and names no unit of the gap: write both"),
+        ("r, h [nm]", "line 1: the header gives the gap in nm and names no unit of the radius: write both"),
+        ("r / um, h", "line 1: the header gives the radius in um and names no unit of the gap: write both"),
+    ] {
+        let error = good(&format!("{header}\n{}", rows(","))).in_one_unit().unwrap_err().to_string();
+        assert!(error.starts_with(said), "{header}: {error}");
+    }
+}
+
+/// Rows at these radii.
+fn at(radii: impl Iterator<Item = f64>) -> String {
+    radii.map(|r| format!("{r},{}\n", r * r)).collect::<Vec<_>>().concat()
+}
+
+#[test]
+fn a_profile_without_its_centre_is_refused() {
+    let radii = |first: f64| (0..20).map(move |i| first + 0.1 * f64::from(i));
+    for first in [0.0, 0.05, 0.1] {
+        good(&at(radii(first)));
+    }
+    let said = refused(&format!("r,h\n{}", at(radii(0.15))));
+    let expected = "line 2: the smallest radius is 0.15, and the rows behind it are at most 0.1";
+    assert!(said.starts_with(expected), "{said}");
+    // The line is that of the smallest radius, wherever it stands.
+    let said = refused(&at((3..23).rev().map(f64::from)));
+    assert!(said.starts_with("line 20: the smallest radius is 3.0"), "{said}");
+    // Of uneven radii the widest of the first distances counts.
+    good(&at((0..20).map(|i| 0.3 + 0.1 * f64::from(i * i))));
 }
 
 #[test]

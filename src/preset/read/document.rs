@@ -5,6 +5,7 @@ use super::mistake::Origin;
 use super::sheet::{Place, Sheet};
 use crate::contact::shapes::harmonics::MOST_WAVES;
 use crate::preset::family;
+use crate::preset::former::{self, Kept};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured::located;
@@ -34,6 +35,15 @@ impl Sheet {
             // A quoted key with a dot in it is none of ours, whatever it spells.
             let plain = !name.contains('.');
             let row = parameter(&full).filter(|_| plain);
+            if self.takes_former
+                && let Some(kept) = former::kept(&full, value.get_ref())
+            {
+                self.was_former = true;
+                if let (Kept::Word(word), Some(row)) = (kept, &row) {
+                    self.put(row, Ok(word.into()), origin);
+                }
+                continue;
+            }
             let known_table = Some(&*full).filter(|table| plain && is_table(table));
             match (value.get_ref(), row, known_table) {
                 (DeValue::Array(waves), _, Some(family::WAVE_TABLE)) => {
@@ -65,7 +75,7 @@ impl Sheet {
                 (_, None, None) => {
                     let invalid = match (place, closest(&full, tables())) {
                         // A table by a wrong name is worth one message, and no guess among the keys.
-                        (_, Some(table)) if value.get_ref().is_table() => {
+                        (_, Some(table)) if holds_tables(value.get_ref()) => {
                             Invalid::UnknownKey { key: quote(&full), meant: Some(table.into()) }
                         }
                         _ => unknown_key(&full, None),
@@ -159,6 +169,12 @@ impl Sheet {
 /// Whether a key holds other keys.
 fn is_table(key: &str) -> bool {
     family::is_table(key) || tables().any(|table| table == key)
+}
+
+/// Whether a value is a table, or an array of them.
+fn holds_tables(value: &DeValue<'_>) -> bool {
+    let of_tables = |array: &DeArray<'_>| array.iter().any(|value| value.get_ref().is_table());
+    value.is_table() || value.as_array().is_some_and(of_tables)
 }
 
 fn not_table(table: &str, found: String) -> Invalid {

@@ -26,6 +26,10 @@ pub(super) struct Sheet {
     pub(super) folder: Option<PathBuf>,
     /// The rows of its profile, where they are known and no file is to be read.
     pub(super) rows: Option<Arc<Rows>>,
+    /// Whether keys and words of before are read as they were meant, as a session holds them.
+    pub(super) takes_former: bool,
+    /// Whether there were any.
+    pub(super) was_former: bool,
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     pub(super) refit: bool,
     pub(super) entries: BTreeMap<Key, Entry>,

@@ -7,7 +7,7 @@ mod mistakes;
 
 use super::*;
 use crate::contact::{Control, Shape, Start};
-use crate::preset::model::{BasisSpec, Functions};
+use crate::preset::model::BasisSpec;
 
 const WAVY: &str = r#"format = 1
 title = "Wavy sphere, A/λ = 0.05"
@@ -66,6 +66,6 @@ fn the_contract_reads() {
 fn material_and_gap_are_enough() {
     let end = WAVY.find("[basis]").unwrap();
     let preset = read("w.toml", &WAVY[..end]).unwrap();
-    assert_eq!(preset.basis, BasisSpec::Spectral { functions: Functions::Auto });
+    assert_eq!(preset.basis, BasisSpec::Exact);
     assert_eq!(preset.path.start, Start::ContactRadius(0.5));
 }

@@ -4,7 +4,7 @@ use super::MISTAKES;
 use super::mistake::{Mistake, Origin, ReadError};
 use super::sheet::{Entry, Sheet};
 use crate::preset::build::{Values, build};
-use crate::preset::family::parameter_key;
+use crate::preset::family::{below, parameter_key};
 use crate::preset::invalid::Invalid;
 use crate::preset::model::Preset;
 use crate::preset::resolve::count_in_own_units;
@@ -81,11 +81,14 @@ impl Sheet {
         Err(ReadError { mistakes })
     }
 
-    /// Whether a key only seems to be missing: its value was refused, or its name is misspelt.
+    /// Whether a key only seems to be missing: its value, or one below it, was refused, or its name is misspelt.
     fn is_echo(&self, fault: &Invalid, misspelt: &[&str]) -> bool {
         let of_table = |key: &str, table: &str| table_of(key) == Some(table);
         match fault {
-            Invalid::Missing { key, .. } => self.entries.contains_key(key) || misspelt.contains(&&**key),
+            Invalid::Missing { key, .. } => {
+                self.entries.contains_key(key)
+                    || misspelt.iter().any(|wrong| *wrong == &**key || below(wrong, key).is_some())
+            }
             Invalid::MissingTable { table, .. } => {
                 self.entries.keys().any(|key| of_table(key, table))
                     || misspelt.iter().any(|key| *key == &**table || of_table(key, table))
@@ -114,12 +117,13 @@ impl Sheet {
     }
 }
 
-/// What the unknown keys were meant to be, and what has been said to lack a value.
+/// What the unknown keys were meant to be, and what has been said to lack a value or have a wrong one.
 fn meant_keys(mistakes: &[Mistake]) -> Vec<Key> {
     let meant = |mistake: &Mistake| match &mistake.invalid {
         Invalid::UnknownKey { meant, .. } => meant.clone(),
         // Said already, in words of its own.
-        Invalid::Unset { key, .. } => Some(key.clone()),
+        Invalid::Unset { key, .. } | Invalid::Range { key, .. } => Some(key.clone()),
+        Invalid::NotTable { table, .. } => Some(table.clone()),
         _ => None,
     };
     mistakes.iter().filter_map(meant).collect()

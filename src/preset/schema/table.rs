@@ -1,7 +1,7 @@
 //! The rows of the table of parameters.
 
 use super::{
-    AUTO, Applies, CHOOSERS, COEFFICIENT, DISPLAY, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
+    Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
     SYSTEMS,
 };
 use crate::units::Quantity;
@@ -185,10 +185,10 @@ pub static PARAMETERS: &[Parameter] = &[
     row(
         "basis.kind",
         "basis",
-        "functions in which the contact pressure is sought",
-        Kind::Choice(&["rings", "spectral"]),
+        "how the contact pressure is sought: exactly, or in the ring elements of the paper",
+        Kind::Choice(&[EXACT, "rings"]),
     )
-    .or(Fallback::Text("spectral")),
+    .or(Fallback::Text(EXACT)),
     row("basis.rings", "N", "number of ring elements", Kind::Integer { min: 4, max: 2000 })
         .or(Fallback::Integer(200))
         .of_basis(&["rings"]),
@@ -200,14 +200,6 @@ pub static PARAMETERS: &[Parameter] = &[
     )
     .or(Fallback::Text("uniform"))
     .of_basis(&["rings"]),
-    row(
-        "basis.functions",
-        "functions",
-        "number of eigenfunctions; auto takes enough for the waves in the largest contact",
-        Kind::Count { min: 4, max: 4096 },
-    )
-    .or(Fallback::Text(AUTO))
-    .of_basis(&["spectral"]),
     row("path.control", "control", "what the loading device prescribes", Kind::Control)
         .or(Fallback::Text("displacement")),
     measured(

@@ -2,7 +2,7 @@
 
 use super::{WAVY, edited, messages, set};
 use crate::contact::{Control, Shape, Start};
-use crate::preset::model::{BasisSpec, Functions};
+use crate::preset::model::BasisSpec;
 use crate::preset::{read, read_with};
 use crate::ritz::Grading;
 
@@ -30,32 +30,42 @@ fn assignments_are_laid_over_the_file_in_order() {
 
 #[test]
 fn a_basis_drops_and_brings_its_keys() {
-    let auto = BasisSpec::Spectral { functions: Functions::Auto };
-    assert_eq!(set(&["basis.kind=spectral"]).basis, auto);
-    assert_eq!(set(&["basis.kind=spectral", "basis.functions=auto"]).basis, auto);
-    let count = BasisSpec::Spectral { functions: Functions::Count(64) };
-    assert_eq!(set(&["basis.functions=64", "basis.kind=spectral"]).basis, count);
-    let text = WAVY.replace("\"rings\"\nrings = 200", "\"spectral\"\nfunctions = \"auto\"");
-    assert_eq!(read("w.toml", &text).unwrap().basis, auto);
+    assert_eq!(set(&["basis.kind=exact"]).basis, BasisSpec::Exact);
+    let text = WAVY.replace("\"rings\"\nrings = 200", "\"exact\"");
+    assert_eq!(read("w.toml", &text).unwrap().basis, BasisSpec::Exact);
+    assert_eq!(
+        read_with("w.toml", &text, &["basis.kind=rings", "basis.rings=9"]).unwrap().basis,
+        BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
+    );
     for (old, new, expected) in [
-        ("\"rings\"", "\"spectral\"", "w.toml:13: basis.rings belongs to rings, and the basis is spectral"),
+        ("\"rings\"", "\"exact\"", "w.toml:13: basis.rings belongs to rings, and the basis is exact"),
         (
-            "rings = 200",
-            "functions = 9",
-            "w.toml:13: basis.functions belongs to spectral, and the basis is rings",
-        ),
-        (
-            "\"rings\"\nrings = 200",
-            "\"spectral\"\nfunctions = 3",
-            "w.toml:13: basis.functions = 3 is out of range: it must be \"auto\" or a whole number from 4 to 4096",
-        ),
-        (
-            "\"rings\"\nrings = 200",
-            "\"spectral\"\nfunctions = \"many\"",
-            "w.toml:13: basis.functions must be \"auto\" or a whole number from 4 to 4096, not the text \"many\"",
+            "\"rings\"",
+            "\"exat\"",
+            "w.toml:12: basis.kind = \"exat\" is not known: it must be \"exact\" or \"rings\"; did you mean exact?",
         ),
     ] {
         assert_eq!(edited(old, new), expected);
+    }
+}
+
+#[test]
+fn keys_and_words_of_before_are_refused_with_what_to_write() {
+    let spectral = "basis.kind = \"spectral\" is called \"exact\" now: write kind = \"exact\" (basis.kind=exact in an \
+                    assignment)";
+    let functions = "basis.functions is no longer needed: the exact basis resolves every gap by itself; remove it and \
+                     write kind = \"exact\" (basis.kind=exact in an assignment)";
+    let old = "\"rings\"\nrings = 200";
+    assert_eq!(edited(old, "\"spectral\""), format!("w.toml:12: {spectral}"));
+    assert_eq!(edited(old, "\"rings\"\nfunctions = 48"), format!("w.toml:13: {functions}"));
+    // Both lines of a file are named.
+    let both = messages(&WAVY.replace(old, "\"spectral\"\nfunctions = \"auto\""), &[]);
+    assert_eq!(both, [format!("w.toml:12: {spectral}"), format!("w.toml:13: {functions}")]);
+    for (set, what) in [("basis.kind=spectral", spectral), ("basis.functions=48", functions)] {
+        let refused = read_with("w.toml", WAVY, &[set]).unwrap_err().to_string();
+        assert_eq!(refused, format!("--set {set}: {what}"));
+        let (key, value) = set.split_once('=').unwrap();
+        assert_eq!(read("w.toml", WAVY).unwrap().assign(key, value).unwrap_err().to_string(), what);
     }
 }
 

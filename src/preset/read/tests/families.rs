@@ -70,7 +70,6 @@ fn formulas_and_waves_read() {
     assert_eq!(with(&["gap.waves.2.phase=2"]).get("gap.waves.2.phase"), Some(2.0.into()));
     let one = with(&["gap.waves=[{amplitude=0.003, wavelength=0.2}]"]);
     assert_eq!((one.get("gap.waves.1.wavelength"), one.get("gap.waves.2.phase")), (Some(0.2.into()), None));
-    assert_eq!(with(&["gap.waves=[]"]).gap.radius_of_curvature(), Some(1.0));
 }
 
 #[test]
@@ -124,13 +123,14 @@ fn mistakes_in_formulas_and_waves_are_named() {
 #[test]
 fn a_profile_is_read_from_beside_its_preset() {
     let folder = tempfile::tempdir().unwrap();
-    let rows: Vec<String> = (0..20).map(|i| format!("{i}, {}\n", i * i)).collect();
+    let rows: Vec<String> = (0..20).map(f64::from).map(|i| format!("{i}, {}\n", i * i / 1000.0)).collect();
     let rows = rows.concat();
-    std::fs::write(folder.path().join("scan.csv"), format!("r [um], h [nm]\n{rows}")).unwrap();
+    std::fs::write(folder.path().join("scan.csv"), format!("r, h\n{rows}")).unwrap();
+    std::fs::write(folder.path().join("units.csv"), format!("# mine\nr [um], h [nm]\n{rows}")).unwrap();
     let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='scan.csv'\n                    [path]\nstart_contact_radius=5\n";
     let read = |text: &str, assignments: &[&str]| read_in(Some(folder.path()), "p.toml", text, assignments);
     let preset = read(text, &[]).unwrap();
-    // h = r²/1000 in µm: R = 500 µm.
+    // h = r²/1000.
     assert!((preset.gap.radius_of_curvature().unwrap() - 500.0).abs() < 1e-6);
     assert_eq!(preset.get("gap.smoothing"), Some("none".into()));
     assert_eq!(read(text, &["gap.smoothing=4"]).unwrap().get("gap.smoothing"), Some(4.0.into()));
@@ -148,10 +148,103 @@ fn a_profile_is_read_from_beside_its_preset() {
         let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
         assert!(message.starts_with(expected), "{message}");
     }
+    let message = read(&text.replace("scan.csv", "units.csv"), &[]).unwrap_err().to_string();
+    assert!(
+        message.starts_with("p.toml:6: gap.file: ") && message.contains("units.csv: line 2: "),
+        "{message}"
+    );
+    assert!(message.contains("names a unit, um, and the problem is in reduced units"), "{message}");
+    let si = "units='SI'\n".to_owned() + &text.replace("scan.csv", "units.csv").replace("=5", "='5 um'");
+    let si = read(&si, &[]).unwrap();
+    assert!((si.gap.radius_of_curvature().unwrap() - 0.5).abs() < 1e-9, "{:?}", si.gap.radius_of_curvature());
+    let message = read(text, &["gap.smoothing=20"]).unwrap_err().to_string();
+    assert!(
+        message.contains("gap.smoothing: ") && message.contains("at most 19, the last radius"),
+        "{message}"
+    );
     // A copy elsewhere still finds its rows.
     let other = tempfile::tempdir().unwrap();
     let moved = preset.placed_in(other.path());
     let back = read_in(Some(other.path()), "q.toml", &crate::preset::write(&moved), &[] as &[&str]).unwrap();
     assert_eq!(back.gap.radius_of_curvature(), preset.gap.radius_of_curvature());
     assert_eq!(preset.placed_in(folder.path()), preset);
+}
+
+#[test]
+fn harmonics_have_waves() {
+    let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='harmonics'\nradius_of_curvature=1\n";
+    let words = "gap.waves is missing: it must be one or more tables [[gap.waves]]";
+    for (text, at) in [(text.to_owned(), "h.toml:4: "), (format!("{text}waves=[]\n"), "h.toml:4: ")] {
+        let message = read("h.toml", &text).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("{at}{words}")), "{message}");
+    }
+    let one = format!("{text}[[gap.waves]]\namplitude=0.001\nwavelength=0.1\n");
+    assert!(read("h.toml", &one).is_ok());
+    let message = read_with("h.toml", &one, &["gap.waves=[]"]).unwrap_err().to_string();
+    assert!(message.contains(words), "{message}");
+    // A table that is misspelt is named, and not missed as well.
+    let misspelt = read("h.toml", &one.replace("[[gap.waves]]", "[[gap.wave]]")).unwrap_err();
+    assert_eq!(misspelt.mistakes.len(), 1, "{misspelt:?}");
+}
+
+#[test]
+fn a_gap_that_falls_from_the_axis_everywhere_is_refused() {
+    let text = |formula: &str, path: &str| {
+        format!(
+            "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='formula'\nformula='{formula}'\n[path]\n{path}\n"
+        )
+    };
+    let paths =
+        ["start_contact_radius=0.5", "start_contact_radius=1e-9", "start_approach=0.1", "start_force=1"];
+    for path in paths {
+        for formula in
+            ["-r^2", "-r", "1 - cosh(r/10)", "-r^1.5 - 1e-3*r", "sqrt(1 - r^2/1e8)", "-r^2 + 1e-3*sin(r)^2"]
+        {
+            let message = read("f.toml", &text(formula, path)).unwrap_err().to_string();
+            let words = "f.toml:6: gap.formula: the gap falls from the axis outward at every radius";
+            assert!(message.starts_with(words), "{formula}, {path}: {message}");
+        }
+        // Somewhere each of these rises: where, and whether a state is possible, is not for the reader to say.
+        for formula in
+            ["r^2", "0", "-r^2 + r^4", "r^2 - r^4/9", "-r^2 + 0.001*sin(100*r)", "-0.001*sin(40*r)"]
+        {
+            assert!(read("f.toml", &text(formula, path)).is_ok(), "{formula}, {path}");
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let preset = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='h.csv'\n\
+                  [path]\nstart_contact_radius=5\n";
+    for (sign, fine) in [(-1.0, false), (1.0, true)] {
+        let rows: Vec<String> =
+            (0..20_i32).map(f64::from).map(|r| format!("{r},{}\n", sign * r * r)).collect();
+        std::fs::write(folder.path().join("h.csv"), rows.concat()).unwrap();
+        let read = read_in(Some(folder.path()), "p.toml", preset, &[] as &[&str]);
+        let said = read.as_ref().err().map(ToString::to_string).unwrap_or_default();
+        assert_eq!(
+            said.starts_with("p.toml:6: gap.file: the gap falls from the axis outward"),
+            !fine,
+            "{said}"
+        );
+        assert_eq!(read.is_ok(), fine);
+    }
+}
+
+#[test]
+fn units_to_show_numbers_in_need_units() {
+    let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='sphere'\nradius_of_curvature=1\n\
+                [display]\nlength='um'\n";
+    let words = "display.length belongs to SI, and the unit system is reduced: numbers shown in units need units = \"SI\"";
+    for units in ["", "units='reduced'\n"] {
+        let message = read("d.toml", &format!("{units}{text}")).unwrap_err().to_string();
+        assert!(message.starts_with("d.toml:") && message.ends_with(words), "{message}");
+    }
+    assert!(read("d.toml", &format!("units='SI'\n{text}")).is_ok());
+    let reduced = text.split("[display]").next().unwrap();
+    let message = read_with("d.toml", reduced, &["display.length=um"]).unwrap_err().to_string();
+    assert_eq!(message, format!("--set display.length=um: {words}"));
+    assert!(read_with("d.toml", reduced, &["display.length=um", "units=SI"]).is_ok());
+    assert_eq!(
+        read("d.toml", reduced).unwrap().assign("display.length", "um").unwrap_err().to_string(),
+        words
+    );
 }
