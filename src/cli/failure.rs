@@ -2,9 +2,10 @@
 
 use crate::case::CaseError;
 use crate::explorer::archive::ArchiveError;
+use crate::mend::{Mend, Reason};
+use crate::preset::file::FileError;
 use crate::preset::{StoreError, WriteError};
 use crate::print::{DrawError, FormatError};
-use crate::quasistatic::StartError;
 use crate::report::rows::RowsError;
 use crate::sweep::OutputError;
 use crate::sweep::merge::MergeError;
@@ -24,6 +25,12 @@ pub enum Failure {
     /// The problem could not be computed.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// A comparison could not be made.
+    #[error(transparent)]
+    Verify(#[from] crate::verify::VerifyError),
+    /// A script cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The result could not be written to a file.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -48,9 +55,14 @@ pub enum Failure {
     /// The result could not be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
-    /// Standard output could not be written.
-    #[error("standard output: {0}")]
-    Output(io::Error),
+    /// The system says no.
+    #[error("{what}: {cause}")]
+    System {
+        /// What was being done, or where, safe to show.
+        what: String,
+        /// What it says.
+        cause: io::Error,
+    },
     /// The reader of standard output went away: a quiet end.
     #[error("standard output was closed")]
     Closed,
@@ -67,17 +79,22 @@ pub enum Failure {
     #[error("{0}")]
     Inadmissible(String),
     /// A line of a script failed; those before it were done.
-    #[error("{0}")]
-    Script(String),
+    #[error("{text}")]
+    Script {
+        /// The line and the reason.
+        text: String,
+        /// The reason.
+        reason: Reason,
+    },
     /// The spec of a sweep is bad, or cannot be read.
     #[error(transparent)]
     Spec(#[from] LoadError),
     /// The results of a sweep cannot be begun, gone on with or written.
     #[error(transparent)]
-    Sweep(#[from] OutputError),
+    Sweep(OutputError),
     /// The parts of a sweep cannot be joined.
     #[error(transparent)]
-    Merge(#[from] MergeError),
+    Merge(MergeError),
     /// A signal ended a sweep; what was done is kept.
     #[error("{text}")]
     Interrupted {
@@ -89,6 +106,25 @@ pub enum Failure {
     /// The terminal failed.
     #[error("{0}")]
     Terminal(String),
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        match error {
+            // Only a reader that went away breaks a pipe.
+            OutputError::Io { cause, .. } if cause.kind() == io::ErrorKind::BrokenPipe => Self::Closed,
+            error => Self::Sweep(error),
+        }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        match error {
+            MergeError::Output(error) => error.into(),
+            error => Self::Merge(error),
+        }
+    }
 }
 
 impl Failure {
@@ -105,49 +141,41 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Closed => 0,
-            Self::Map(_)
-            | Self::Preset(_)
-            | Self::Session(
-                ArchiveError::NotFound { .. }
-                | ArchiveError::Empty
-                | ArchiveError::Running { .. }
-                | ArchiveError::Unreadable { .. }
-                | ArchiveError::NoFolder,
-            )
-            | Self::Usage(_)
-            | Self::Format(_)
-            | Self::Spec(_)
-            | Self::Case(
-                CaseError::EndOutsideStart { .. }
-                | CaseError::Basis(_)
-                | CaseError::Start {
-                    error: StartError::OutOfReach { .. } | StartError::NotReached { .. }, ..
-                },
-            )
-            | Self::Merge(
-                MergeError::Exists { .. }
-                | MergeError::NotOurs { .. }
-                | MergeError::OtherSweep { .. }
-                | MergeError::OtherDivision { .. }
-                | MergeError::Doubled { .. }
-                | MergeError::Missing(_),
-            ) => 2,
-            Self::Sweep(error) | Self::Merge(MergeError::Output(error)) if is_refusal(error) => 2,
             Self::Inadmissible(_) => 3,
             // As a shell says it of a program that a signal ended.
             Self::Interrupted { signal, .. } => 128 + signal,
+            other if other.can_be_mended() => 2,
             _ => 1,
         })
     }
-}
 
-/// Whether results were refused for what they are, not for what the system says.
-fn is_refusal(error: &OutputError) -> bool {
-    match error {
-        OutputError::Write(error) => {
-            matches!(error, WriteError::Exists { .. } | WriteError::NotRegular { .. })
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Preset(error) => error.can_be_mended(),
+            Self::Session(error) => error.can_be_mended(),
+            Self::Case(error) => error.can_be_mended(),
+            Self::File(error) => error.can_be_mended(),
+            Self::Write(error) => error.can_be_mended(),
+            Self::Map(error) => error.can_be_mended(),
+            Self::Format(error) => error.can_be_mended(),
+            Self::Draw(error) => error.can_be_mended(),
+            Self::Script { reason, .. } => reason.can_be_mended(),
+            Self::Spec(error) => error.can_be_mended(),
+            Self::Sweep(error) => error.can_be_mended(),
+            Self::Merge(error) => error.can_be_mended(),
+            Self::System { cause, .. } => cause.can_be_mended(),
+            Self::Usage(_) => true,
+            Self::Rows(_)
+            | Self::Csv(_)
+            | Self::Paper(_)
+            | Self::Verify(_)
+            | Self::Json(_)
+            | Self::Closed
+            | Self::Incomplete(_)
+            | Self::Disagreement(_)
+            | Self::Inadmissible(_)
+            | Self::Interrupted { .. }
+            | Self::Terminal(_) => false,
         }
-        OutputError::Io { .. } | OutputError::Threads(_) => false,
-        _ => true,
     }
 }

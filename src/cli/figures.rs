@@ -2,7 +2,7 @@
 
 use super::{Failure, output};
 use crate::plot::{Width, paper, svg, table};
-use crate::preset::{Overwrite, write_atomically};
+use crate::preset::{Overwrite, stream, write_atomically};
 #[cfg(feature = "png")]
 use crate::print::Format;
 use clap::Args;
@@ -32,8 +32,12 @@ const CAPTIONS: &str = "captions.md";
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let folder = &arguments.output;
+    if stream::is_stream(folder) {
+        let text = format!("-o {}: the figures are many files; name a folder", output::shown(folder));
+        return Err(Failure::Usage(text));
+    }
     std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::Usage(format!("-o {}: {error}", output::shown(folder))))?;
+        .map_err(|cause| Failure::System { what: format!("-o {}", output::shown(folder)), cause })?;
     let sheets = paper::sheets(|name| {
         let _ = writeln!(std::io::stderr(), "pulloff: {name}");
     })?;

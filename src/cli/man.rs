@@ -9,7 +9,7 @@ use std::io;
 use std::process::ExitCode;
 
 pub fn run() -> Result<ExitCode, Failure> {
-    let page = page().map_err(Failure::Output)?;
+    let page = page().map_err(|cause| Failure::System { what: "the manual page".to_owned(), cause })?;
     output::write(&String::from_utf8_lossy(&page), None)?;
     Ok(ExitCode::SUCCESS)
 }

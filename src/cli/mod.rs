@@ -3,8 +3,8 @@
 //! | exit status | when |
 //! |---|---|
 //! | 0 | success |
-//! | 1 | the computation, or writing its result, failed |
-//! | 2 | bad usage or bad input |
+//! | 1 | something failed: the computation, a full disk |
+//! | 2 | what the person can mend: bad usage, a bad value, a path that leads nowhere or must not be written |
 //! | 3 | with `--strict`: the result has inadmissible states |
 //! | 130, 143 | a sweep was stopped by Ctrl-C or SIGTERM; what was done is kept |
 //!
@@ -29,13 +29,18 @@ mod verify;
 
 pub use failure::Failure;
 
-use crate::preset::{Loaded, Store};
+use crate::preset::file::LARGEST;
+use crate::preset::stream::{self, STANDARD};
+use crate::preset::{Loaded, Source, Store, StoreError};
 use crate::report::OverlapReport;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use std::ffi::OsString;
-use std::io::Write;
-use std::path::PathBuf;
+use signal_hook::consts::SIGXFSZ;
+use signal_hook::flag;
+use std::ffi::{OsStr, OsString};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
 #[derive(Debug, Parser)]
@@ -87,7 +92,7 @@ enum Command {
 /// Which problem, as the explorer and every computing command take it.
 #[derive(Debug, Args)]
 struct Problem {
-    /// A preset's name, or a preset file (with a '/' or ending in .toml); the wavy sphere when left out
+    /// A preset's name, or a preset file (with a '/' or ending in .toml; - is standard input); the wavy sphere when left out
     #[arg(value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
@@ -112,10 +117,23 @@ pub fn store() -> Store {
     Store::open(&names)
 }
 
+/// What the argument `preset` names: the text itself where it comes through a pipe, which can be read but once.
+fn source(store: &Store, preset: &OsStr) -> Result<Source, Failure> {
+    let path = Path::new(preset);
+    if preset != STANDARD {
+        match store.resolve(preset)? {
+            Source::File(path) if stream::is_stream(&path) => {}
+            source => return Ok(source),
+        }
+    }
+    let (name, text) = stream::read_text(path, LARGEST).map_err(StoreError::from)?;
+    Ok(Source::Piped { name, text: text.into() })
+}
+
 fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Failure> {
     let store = store();
     let source = match preset {
-        Some(argument) => store.resolve(argument)?,
+        Some(argument) => source(&store, argument)?,
         None => store.resolve(crate::preset::shipped::DEFAULT)?,
     };
     let loaded = store.load(&source, assignments)?;
@@ -123,8 +141,15 @@ fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Fai
     Ok(loaded)
 }
 
+/// Makes the limit on the size of files an error of the write that meets it, as a full disk is, and not a signal that kills.
+fn outlive_the_limit() {
+    // A signal that is caught lets the write return. Should it not be caught, it kills as ever.
+    let _ = flag::register(SIGXFSZ, Arc::default());
+}
+
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
+    outlive_the_limit();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -155,6 +180,20 @@ pub fn run() -> ExitCode {
             }
             failure.exit_code()
         }
+    }
+}
+
+/// Asks on standard error; any answer but `y` or `yes` is no.
+fn ask(question: &str) -> Result<(), Failure> {
+    if !std::io::stdin().is_terminal() {
+        return Err(Failure::Usage("nobody can be asked: --yes deletes without a question".to_owned()));
+    }
+    let _ = write!(std::io::stderr(), "{question} [y/N] ");
+    let mut answer = String::new();
+    let read = std::io::stdin().read_line(&mut answer);
+    match answer.trim() {
+        "y" | "yes" if read.is_ok() => Ok(()),
+        _ => Err(Failure::Usage("not deleted".to_owned())),
     }
 }
 

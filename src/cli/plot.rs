@@ -8,15 +8,15 @@ use crate::plot::map::{Map, MapError};
 use crate::plot::range::RangeError;
 use crate::plot::{Chart, Range, Width, series, svg, table};
 use crate::preset::file::kind_of;
-use crate::preset::{Loaded, Overwrite, Preset, WriteError, write_atomically};
-use crate::print::Format;
+use crate::preset::{Loaded, Overwrite, Preset, WriteError, stream, write_atomically};
+use crate::print::{Format, FormatError};
 use crate::quasistatic::jump::Run;
 use crate::sweep::Results;
 use crate::units::Quantity;
 use crate::units::number::said;
 use clap::{Args, ValueEnum};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub struct Arguments {
     /// Write the data beside the figure too, to FILE.csv; a file there that holds anything else is kept, and refused
     #[arg(long, requires = "output")]
     data: bool,
-    /// Write to this file, as SVG, PNG or PDF by its ending, instead of SVG to standard output
+    /// Write to this file, as SVG, PNG or PDF by its ending, instead of SVG to standard output, which is -
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -100,7 +100,7 @@ fn width(text: &str) -> Result<Width, String> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = format(arguments.output.as_deref())?;
     if let Some(path) = &arguments.sweep {
-        write(&arguments.of_sweep(path)?, format, arguments.output.as_deref())?;
+        output::write_bytes(&format.bytes(&arguments.of_sweep(path)?)?, arguments.output.as_deref())?;
         return Ok(ExitCode::SUCCESS);
     }
     if arguments.quantity.is_some() {
@@ -129,7 +129,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
     let subject = Subject { inside: inside.as_ref(), axes, ..Subject::alone(&curve, overlays) };
     let chart = arguments.part(Chart::of(&subject.figure(view), &Window::WHOLE))?;
-    write(&svg::svg(&chart, arguments.width), format, arguments.output.as_deref())?;
+    let picture = svg::svg(&chart, arguments.width);
+    output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
     if let Some((path, overwrite)) = data {
         write_atomically(&path, table::csv(&chart)?.as_bytes(), overwrite)?;
     }
@@ -164,7 +165,7 @@ impl Arguments {
     /// The file of the data, and whether there is one to be replaced: only data of a figure are.
     fn data_file(&self, loaded: &Loaded) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
         let Some(figure) = self.output.as_ref().filter(|_| self.data) else { return Ok(None) };
-        if figure == Path::new("-") {
+        if stream::is_stream(figure) {
             let what = "--data: the data stand beside the file of the figure, which -o FILE names";
             return Err(Failure::Usage(what.to_owned()));
         }
@@ -189,7 +190,7 @@ impl Arguments {
 fn first_line(path: &Path) -> Result<Option<String>, Failure> {
     /// Far more than the header of a table of data.
     const LONGEST: u64 = 4096;
-    let failed = |error: io::Error| Failure::Usage(format!("--data {}: {error}", output::shown(path)));
+    let failed = |cause| Failure::System { what: format!("--data {}", output::shown(path)), cause };
     let file = match path.metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(failed(error)),
@@ -244,17 +245,11 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
     preset.number(&row, text).map_err(words)
 }
 
-/// The format that is asked for: standard output has no ending.
+/// The format that is asked for; standard output and descriptors have no ending.
 fn format(path: Option<&Path>) -> Result<Format, Failure> {
-    Ok(path.filter(|path| *path != Path::new("-")).map_or(Ok(Format::Svg), Format::of)?)
-}
-
-fn write(text: &str, format: Format, path: Option<&Path>) -> Result<(), Failure> {
-    match (format, path) {
-        (Format::Png | Format::Pdf, Some(path)) => {
-            write_atomically(path, &format.bytes(text)?, Overwrite::Always)?;
-            Ok(())
-        }
-        (_, path) => output::write(text, path),
+    let Some(path) = path else { return Ok(Format::Svg) };
+    match Format::of(path) {
+        Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(Format::Svg),
+        format => Ok(format?),
     }
 }

@@ -1,12 +1,12 @@
 //! `pulloff presets`: list, show, delete, and where they are kept.
 
-use super::{Failure, output, store};
+use super::{Failure, ask, output, store};
 use crate::preset::Source;
 use crate::preset::text::{sanitize, show_path};
 use clap::Subcommand;
 use std::ffi::OsString;
 use std::fmt::Write as _;
-use std::io::{IsTerminal as _, Write as _};
+use std::io::Write as _;
 use std::process::ExitCode;
 
 /// The subcommands of `pulloff presets`.
@@ -16,7 +16,7 @@ pub enum Command {
     List,
     /// Write a preset's file to standard output
     Show {
-        /// Its name, or a preset file
+        /// Its name, or a preset file; - is standard input
         name: OsString,
     },
     /// Delete a preset of your own, after a question
@@ -56,7 +56,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             output::write(&text, None)?;
         }
         Command::Show { name } => {
-            let source = store.resolve(name)?;
+            let source = super::source(&store, name)?;
             // Loaded first: a file that is no preset is an error, not text to print.
             let loaded = store.load(&source, &[] as &[&str])?;
             output::write(&loaded.text, None)?;
@@ -75,18 +75,4 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
         },
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Asks on standard error; any answer but `y` or `yes` is no.
-fn ask(question: &str) -> Result<(), Failure> {
-    if !std::io::stdin().is_terminal() {
-        return Err(Failure::Usage("nobody can be asked: --yes deletes without a question".to_owned()));
-    }
-    let _ = write!(std::io::stderr(), "{question} [y/N] ");
-    let mut answer = String::new();
-    let read = std::io::stdin().read_line(&mut answer);
-    match answer.trim() {
-        "y" | "yes" if read.is_ok() => Ok(()),
-        _ => Err(Failure::Usage("not deleted".to_owned())),
-    }
 }

@@ -4,11 +4,11 @@ use super::{Failure, Problem, store};
 use crate::explorer::command::by_name;
 use crate::explorer::script::{self, Line, Permission, play};
 use crate::explorer::{Inline, Model, open};
-use crate::preset::file::{FileError, read_text};
-use crate::preset::text::{sanitize, show_path};
+use crate::preset::stream::{self, STANDARD};
+use crate::preset::text::sanitize;
 use clap::Args;
 use std::ffi::OsString;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 pub struct Arguments {
     /// The script, one command a line; - reads standard input
     script: PathBuf,
-    /// The preset it begins with, by name or file; the wavy sphere when left out
+    /// The preset it begins with, by name or file; - reads standard input; the wavy sphere when left out
     #[arg(long, value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
@@ -42,7 +42,13 @@ pub struct Arguments {
 const ACCOUNT: usize = 200;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (name, text) = source(&arguments.script)?;
+    if arguments.script == Path::new(STANDARD)
+        && arguments.preset.as_ref().is_some_and(|name| name == STANDARD)
+    {
+        let text = "standard input holds the script or the preset, not both: name a file for one of them";
+        return Err(Failure::Usage(text.to_owned()));
+    }
+    let (name, text) = stream::read_given(&arguments.script, script::LARGEST)?;
     let lines = script::read(&name, &text).map_err(|error| Failure::Usage(error.to_string()))?;
     let chosen = arguments.preset.is_some() || !arguments.assignments.is_empty();
     if chosen && lines.first().is_some_and(|line| script::play::opens(&line.command)) {
@@ -58,30 +64,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
     };
     play(&mut model, &Inline::new(store()), effects, &lines, permission, &mut told)
-        .map_err(|failed| Failure::Script(format!("{name}:{failed}")))?;
+        .map_err(|failed| Failure::Script { text: format!("{name}:{failed}"), reason: failed.reason })?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The script's name for messages, and its text.
-fn source(path: &Path) -> Result<(String, String), Failure> {
-    let unread = |error: FileError| Failure::Usage(error.to_string());
-    if path != Path::new("-") {
-        let (text, _) = read_text(path, script::LARGEST).map_err(unread)?;
-        return Ok((show_path(path), text));
-    }
-    let name = "standard input".to_owned();
-    let mut text = String::new();
-    let read = io::stdin().lock().take(script::LARGEST + 1).read_to_string(&mut text);
-    match read {
-        Ok(bytes) if bytes as u64 > script::LARGEST => {
-            Err(Failure::Usage(format!("{name}: has more than the {} bytes that are read", script::LARGEST)))
-        }
-        Ok(_) => Ok((name, text)),
-        Err(error) if error.kind() == ErrorKind::InvalidData => {
-            Err(Failure::Usage(format!("{name}: is not UTF-8 text")))
-        }
-        Err(error) => Err(Failure::Usage(format!("{name}: cannot read: {error}"))),
-    }
 }
 
 /// What became of a line, in one line.

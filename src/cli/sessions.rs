@@ -1,13 +1,12 @@
 //! `pulloff sessions`: list, show and delete what the explorer keeps of a session.
 
-use super::{Failure, output};
+use super::{Failure, ask, output};
 use crate::explorer::archive::{Archive, ArchiveError, ago};
 use crate::explorer::session::{Document, Summary};
 use crate::preset::text::{sanitize, show_path};
 use crate::report::number::significant;
 use clap::Subcommand;
 use std::fmt::Write as _;
-use std::io::{self, IsTerminal, Write as _};
 use std::process::ExitCode;
 use std::time::UNIX_EPOCH;
 
@@ -54,8 +53,8 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
         Command::Show { name, json: false } => output::write(&shown(&archive, name)?, None)?,
         Command::Delete { names, yes } => {
             for name in names {
-                if !yes && !agreed(name)? {
-                    return Ok(ExitCode::FAILURE);
+                if !yes {
+                    ask(&format!("Delete the session {} for good?", sanitize(name, NAME)))?;
                 }
                 archive.delete(name)?;
             }
@@ -115,15 +114,4 @@ fn shown(archive: &Archive, name: &str) -> Result<String, Failure> {
     }
     row("pins", &document.pins().to_string());
     Ok(text)
-}
-
-/// Asks on a terminal; without one nothing is deleted that nobody said yes to.
-fn agreed(name: &str) -> Result<bool, Failure> {
-    if !io::stdin().is_terminal() {
-        return Err(Failure::Usage("nobody to ask: --yes deletes without asking".to_owned()));
-    }
-    let _ = write!(io::stderr(), "Delete the session {}? y deletes it: ", sanitize(name, NAME));
-    let mut answer = String::new();
-    io::stdin().read_line(&mut answer).map_err(Failure::Output)?;
-    Ok(matches!(answer.trim(), "y" | "yes"))
 }

@@ -1,7 +1,8 @@
 //! `pulloff sweep`: many problems into one file, and shards of it joined.
 
 use super::{Failure, output};
-use crate::preset::text::{show_name, show_path};
+use crate::preset::stream;
+use crate::preset::text::show_name;
 use crate::report::number::{short, significant};
 use crate::sweep::axis::Axis;
 use crate::sweep::spec::Design;
@@ -38,7 +39,7 @@ enum Command {
         /// The results of each shard, in any order
         #[arg(required = true, value_name = "PART.csv")]
         parts: Vec<PathBuf>,
-        /// Write to this file
+        /// Write to this file; - is standard output
         #[arg(short, value_name = "RESULTS.csv")]
         output: PathBuf,
         /// Replace results that are there
@@ -52,10 +53,10 @@ enum Command {
 /// What is swept, and where to.
 #[derive(Debug, Args)]
 struct Sweep {
-    /// The spec: a preset, axes, quantities
+    /// The spec: a preset, axes, quantities; - is standard input
     #[arg(value_name = "SPEC.toml")]
     spec: PathBuf,
-    /// Write to this file; a rerun goes on where it ends
+    /// Write to this file, where a rerun goes on; - is standard output, where it begins anew
     #[arg(short, value_name = "RESULTS.csv")]
     output: PathBuf,
     /// Threads, at most 1024 [default: one per core]
@@ -82,9 +83,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             Ok(ExitCode::SUCCESS)
         }
         (Some(Command::Merge { parts, output, overwrite }), _) => {
+            output::csv_only(output)?;
             let rows = merge(parts, output, existing(*overwrite))?;
             let shards = parts.len();
-            say(&format!("{rows} rows of {shards} shards in {}", show_path(output)));
+            say(&format!("{rows} rows of {shards} shards in {}", stream::shown(output)));
             Ok(ExitCode::SUCCESS)
         }
         (None, Some(sweep)) => sweep.run(),
@@ -143,9 +145,11 @@ impl Stop {
 
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
+        output::csv_only(&self.output)?;
         let spec = Spec::load(&super::store(), &self.spec)?;
         let results = self.open(&spec)?;
-        let stop = Stop::catch().map_err(|error| Failure::Usage(format!("cannot catch signals: {error}")))?;
+        let cannot_catch = |cause| Failure::System { what: "cannot catch signals".to_owned(), cause };
+        let stop = Stop::catch().map_err(cannot_catch)?;
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let jobs = self.jobs.map_or_else(cores, usize::from);
         let bar = bar(self.shard.len(spec.rows), results.rows);
@@ -164,10 +168,12 @@ impl Sweep {
             None => Ok(ExitCode::SUCCESS),
             Some(signal) => {
                 let rows = summary.before + summary.now;
-                let text = format!(
-                    "stopped with {rows} of {} rows, all kept; the same command goes on from there",
-                    summary.of
-                );
+                let kept = if stream::is_stream(&self.output) {
+                    ""
+                } else {
+                    ", all kept; the same command goes on from there"
+                };
+                let text = format!("stopped with {rows} of {} rows{kept}", summary.of);
                 Err(Failure::Interrupted { signal, text })
             }
         }
@@ -195,7 +201,7 @@ impl Sweep {
         let rows = summary.before + summary.now;
         let kept =
             if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };
-        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, show_path(&self.output));
+        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&self.output));
         let seconds = took.as_secs_f64();
         if summary.now > 0 && seconds > 0.0 {
             let rate = summary.now as f64 / seconds;
@@ -212,6 +218,7 @@ impl Sweep {
         }
         if summary.is_complete()
             && self.shard == Shard::WHOLE
+            && !stream::is_stream(&self.output)
             && let Some(line) = how_to_plot(spec, &self.output)
         {
             say(&line);

@@ -2,7 +2,8 @@
 
 use super::{Failure, Problem, admissible, note, output, warn};
 use crate::quasistatic::CurveStop;
-use crate::report::{TraceReport, json};
+use crate::report::trace::{COLUMNS, EXACT_COLUMNS};
+use crate::report::{TraceReport, columns, json};
 use crate::theory::Exact;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -13,40 +14,48 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
-    /// csv has one row per point; json also has the limit points and the problem
-    #[arg(long, value_enum, default_value = "csv")]
-    format: Format,
+    /// csv has one row per point; json also has the limit points and the problem [default: by the ending of the file, else
+    /// csv]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// Add the exact solution at the same contact radius, and the relative difference of the force
     #[arg(long)]
     theory: bool,
     /// Exit with status 3 where a state is inadmissible: the next crest would already touch
     #[arg(long)]
     strict: bool,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output, which is -
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     Csv,
     Json,
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let file = arguments.output.as_deref();
+    let format = output::format(arguments.format, file, Format::Csv)?;
     let loaded = arguments.problem.load()?;
-    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
+    output::spares(file, "-o", &loaded)?;
     let mut report = TraceReport::compute(&loaded.preset)?;
     if arguments.theory {
         report = report.beside(&Exact::of(&loaded.preset.problem()));
     }
     warn(&report.warnings);
     note(report.start_note.as_deref());
-    let text = match arguments.format {
-        Format::Csv => report.csv()?,
+    let text = match format {
+        Format::Csv => {
+            let exact = if arguments.theory { EXACT_COLUMNS } else { &[] };
+            let preset = &loaded.preset;
+            note(columns::units(&[COLUMNS, exact].concat(), preset.path.control, &preset.units).as_deref());
+            report.csv()?
+        }
         Format::Json => json(&report)?,
     };
-    output::write(&text, arguments.output.as_deref())?;
+    output::write(&text, file)?;
     if report.stop == CurveStop::End.to_string() {
         return admissible(arguments.strict, &report.inadmissible);
     }

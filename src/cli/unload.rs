@@ -1,8 +1,9 @@
 //! `pulloff unload`: the quasi-static unloading, instability by instability.
 
-use super::{Failure, Problem, admissible, output, warn};
+use super::{Failure, Problem, admissible, note, output, warn};
 use crate::quasistatic::PathStop;
-use crate::report::{UnloadReport, json, table};
+use crate::report::unload::COLUMNS;
+use crate::report::{UnloadReport, columns, json, table};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,18 +16,19 @@ pub struct Arguments {
     /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
     #[arg(long, value_name = "CONTROL")]
     control: Option<String>,
-    /// table is for reading; csv has one row per instability; json has everything
-    #[arg(long, value_enum, default_value = "table")]
-    format: Format,
+    /// table is for reading; csv has one row per instability; json has everything [default: by the ending of the file, else
+    /// table]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// Exit with status 3 where a state is inadmissible: the next crest would already touch
     #[arg(long)]
     strict: bool,
-    /// Write to this file instead of standard output
+    /// Write to this file instead of standard output, which is -
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     Table,
     Csv,
@@ -34,8 +36,10 @@ enum Format {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let file = arguments.output.as_deref();
+    let format = output::format(arguments.format, file, Format::Table)?;
     let loaded = arguments.problem.load()?;
-    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
+    output::spares(file, "-o", &loaded)?;
     let mut preset = loaded.preset;
     if let Some(control) = &arguments.control {
         preset
@@ -44,12 +48,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let report = UnloadReport::compute(&preset)?;
     warn(&report.warnings);
-    let text = match arguments.format {
+    let text = match format {
         Format::Table => table::unload(&report),
-        Format::Csv => report.csv()?,
+        Format::Csv => {
+            note(columns::units(COLUMNS, report.control, &preset.units).as_deref());
+            report.csv()?
+        }
         Format::Json => json(&report)?,
     };
-    output::write(&text, arguments.output.as_deref())?;
+    output::write(&text, file)?;
     if [PathStop::PullOff, PathStop::End].iter().any(|end| report.stop == end.to_string()) {
         return admissible(arguments.strict, report.inadmissible.as_deref().unwrap_or_default());
     }

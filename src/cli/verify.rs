@@ -1,7 +1,6 @@
 //! `pulloff verify`: our numbers against theory.
 
 use super::{Failure, output};
-use crate::case::CaseError;
 use crate::report::{VerifyReport, json, table};
 use crate::verify::{Settings, verify};
 use clap::Args;
@@ -19,7 +18,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let groups = verify(&Settings::default()).map_err(CaseError::from)?;
+    let groups = verify(&Settings::default())?;
     let report = VerifyReport::new(&groups, arguments.only.as_deref());
     if report.total == 0 {
         let headings: Vec<&str> = groups.iter().map(|group| group.title.as_str()).collect();
@@ -47,8 +46,8 @@ mod tests {
 
     #[test]
     fn one_row_that_fails_is_exit_status_one() {
-        // Too few eigenfunctions for the waves of Fig. 9: they cannot follow its curve.
-        let groups = verify(&Settings { functions: Some(16), ..Settings::default() }).unwrap();
+        // Too few rings for the waves of Fig. 9: they cannot follow its curve.
+        let groups = verify(&Settings { rings: 40 }).unwrap();
         let report = VerifyReport::new(&groups, None);
         assert!(report.passed < report.total);
         let failure = verdict(&report).unwrap_err();

@@ -209,7 +209,7 @@ fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
     let session = Session::new("wavy-sphere");
     let subject = Subject::of(&session.model).unwrap();
     let figure = subject.figure(View::ForceApproach);
-    let point = &subject.curve.points[100];
+    let point = &subject.curve.points[80];
     let at = subject.scale().place(View::ForceApproach, [point.approach, point.force, point.contact_radius]);
     let found = nearest(&subject, View::ForceApproach, &figure.bounds, at).unwrap();
     assert_eq!((found.at, found.contact_radius), (at, point.contact_radius));

@@ -17,8 +17,9 @@ use crate::explorer::{CurveData, Overlays, View, Window};
 use crate::figure::{Line, Role, Subject};
 use crate::preset::{Preset, ReadError, read_with, shipped};
 use crate::quasistatic::Profile;
+use crate::quasistatic::admissible::Judge;
 use crate::report::number::significant;
-use crate::ritz::{BasisError, Grading, NewtonSettings, Rings, solve};
+use crate::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
 use crate::theory::Exact;
 use crate::verify::cases::{smooth, sphere};
 use crate::verify::convergence::radius_at;
@@ -48,7 +49,7 @@ pub enum PaperError {
     Case(#[from] CaseError),
     /// A basis could not be made.
     #[error(transparent)]
-    Basis(#[from] BasisError),
+    Basis(#[from] RingsError),
     /// There is no equilibrium where the paper shows one.
     #[error("there is no equilibrium at the contact radius {0}")]
     NoState(f64),
@@ -151,10 +152,10 @@ fn chart(data: &CurveData, view: View) -> Chart {
     Chart::of(&subject.figure(view), &Window::WHOLE)
 }
 
-/// The quasi-static path of Fig. 9 and what it dissipates, in the eigenfunctions, whose energies are good to rounding.
+/// The quasi-static path of Fig. 9 and what it dissipates, in the exact basis, whose energies are good to rounding.
 fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
     let word = if control == Control::Force { "force" } else { "displacement" };
-    let set = [format!("path.control={word}"), "basis.kind=spectral".to_owned()];
+    let set = [format!("path.control={word}"), "basis.kind=exact".to_owned()];
     let preset = shipped("fig-9", &[&set[0], &set[1]])?;
     let data = checked(&preset)?;
     let events = data.report.as_ref().map_or(&[][..], |report| &report.events);
@@ -204,7 +205,7 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
     let set = [
         "material.work_of_adhesion=0".to_owned(),
         format!("gap.amplitude={amplitude}"),
-        "basis.kind=spectral".to_owned(),
+        "basis.kind=exact".to_owned(),
         format!("path.start_contact_radius={last}"),
     ];
     let preset = shipped("fig-8", &[&set[0], &set[1], &set[2], &set[3]])?;
@@ -227,7 +228,7 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
         "It is positive everywhere, so the contact is one connected disc."
     };
     let caption = format!(
-        "The contact pressure on waves without adhesion, {title}, under rising load: eigenfunctions (lines) and the exact \
+        "The contact pressure on waves without adhesion, {title}, under rising load: as computed (lines) and the exact \
          solution (dots). {sign} The two differ by at most {} of the pressure on the axis.",
         significant(apart, 2)
     );
@@ -254,10 +255,9 @@ struct Pressure {
 impl Pressure {
     /// At the equilibrium of contact radius `s`, in the problem's own units, which are reduced ones here.
     fn at(case: &Case, s: f64) -> Result<Self, PaperError> {
-        let curve = case.sweep(|| true)?;
-        let point = curve.equilibrium.explicit(s).ok_or(PaperError::NoState(s))?;
-        let state = curve.equilibrium.state(&point);
-        let profile = Profile::of(&case.reduced, &*case.basis, s, state.approach);
+        let state = case.basis.equilibrium(&case.reduced, s).ok_or(PaperError::NoState(s))?;
+        let judge = Judge::new(&case.reduced, &case.table);
+        let profile = Profile::of(&case.reduced, &*case.basis, &judge, s, state.approach);
         let exact = Exact::of(&case.problem);
         let ours: Vec<(f64, f64)> =
             profile.inside.iter().map(|inside| (inside.radius / s, inside.pressure)).collect();
@@ -292,8 +292,7 @@ fn errors() -> Result<Sheet, PaperError> {
         let problem = sphere(work_of_adhesion).reduced();
         let mut found = Vec::new();
         for rings in RINGS {
-            let basis =
-                Rings::shared_with(rings, Grading::Uniform, &mut |_| true).map_err(BasisError::from)?;
+            let basis = Rings::shared_with(rings, Grading::Uniform, &mut |_| true)?;
             let start = 3.0 * radius;
             let solved =
                 solve(&*basis, &problem, Control::Displacement, APPROACH, start, NewtonSettings::default());

@@ -19,9 +19,14 @@ pub enum RangeError {
         "expected LO..HI, two numbers in the units of the axis, or one of them alone: 0..0.1, ..0.1, 0.1.."
     )]
     Text,
-    /// The ends are not one below the other, or doubles cannot tell places between them apart.
+    /// The ends are not one below the other, or infinitely far apart.
     #[error("the range must go from a number up to a larger one, not from {0} to {1}")]
     Order(String, String),
+    /// The ends are so near each other that the numbers beside the axis would be the same.
+    #[error(
+        "the range is too narrow to draw, the numbers beside the axis could not be told apart: it must be at least {0} wide"
+    )]
+    Narrow(String),
     /// Nothing of the figure is in it.
     #[error("shows nothing of the figure, where {title} goes from {from} to {to}")]
     Empty {
@@ -34,10 +39,12 @@ pub enum RangeError {
     },
 }
 
-/// Doubles told apart across a range at least.
-const PLACES: f64 = 1e3;
-/// Digits of a number in a message.
+/// Digits of a number in a message, and beside an axis.
 const DIGITS: usize = 6;
+/// The most steps between numbers beside an axis.
+const STEPS: f64 = 10.0;
+/// By how much the rounding of the ends may make a width smaller.
+const ROUNDING: f64 = 1e-9;
 
 impl Range {
     /// Its ends on an axis of this title that goes over `whole` when nothing is asked for, and whose lines over `drawn`.
@@ -60,12 +67,24 @@ impl Range {
 
 fn ascending(ends: [f64; 2]) -> Result<[f64; 2], RangeError> {
     let [lo, hi] = ends;
-    let least = PLACES * f64::EPSILON * lo.abs().max(hi.abs());
     let apart = hi - lo;
-    if apart > 0.0 && apart >= least && apart.is_finite() {
-        return Ok(ends);
+    if !(apart > 0.0 && apart.is_finite()) {
+        return Err(RangeError::Order(short(lo, DIGITS), short(hi, DIGITS)));
     }
-    Err(RangeError::Order(short(lo, DIGITS), short(hi, DIGITS)))
+    let least = narrowest(lo.abs().max(hi.abs()));
+    // The width of decimal ends is right to their rounding only.
+    if apart < least * (1.0 - ROUNDING) {
+        return Err(RangeError::Narrow(short(least, 1)));
+    }
+    Ok(ends)
+}
+
+/// The smallest width of a range whose numbers, the largest of them this, have so many digits and still differ.
+fn narrowest(largest: f64) -> f64 {
+    let digits = i32::try_from(DIGITS).unwrap_or(i32::MAX);
+    // An end of a width above zero is not zero.
+    let decade = largest.log10().floor();
+    STEPS * 10.0_f64.powf(decade + 1.0 - f64::from(digits))
 }
 
 impl FromStr for Range {
@@ -114,8 +133,20 @@ mod tests {
         for text in ["", "..", "0.1", "0,1", "a..b", "0..1 mm", "nan..1", "0..inf", "0..1..2"] {
             assert_eq!(range(text), Err(RangeError::Text), "{text}");
         }
-        for text in ["1..0", "1..1", "1..1.0000000000001", "-1e308..1e308"] {
+        for text in ["1..0", "1..1", "-1e308..1e308"] {
             assert!(matches!(range(text), Err(RangeError::Order(..))), "{text}");
+        }
+        // Six digits beside the axis, in at most ten steps.
+        for (text, wide, least) in [
+            ("1..1.0000000000001", "1..1.0001", "0.0001"),
+            ("0.02..0.0200009", "0.02..0.020001", "1e-6"),
+            ("-7..-6.9999999", "-7..-6.9999", "0.0001"),
+            ("123456..123456.5", "123456..123466", "10"),
+            ("1e-300..1.00001e-300", "1e-300..1.0001e-300", "1e-304"),
+        ] {
+            let said = range(text).unwrap_err().to_string();
+            assert!(said.ends_with(&format!("it must be at least {least} wide")), "{text}: {said}");
+            assert!(range(wide).is_ok(), "{wide}");
         }
     }
 

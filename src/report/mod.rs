@@ -14,6 +14,7 @@
 //! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
 //! read the same documents.
 
+pub mod columns;
 pub mod overlap;
 pub mod problem;
 pub mod rows;

@@ -171,15 +171,21 @@ fn row(units: &UnitSystem, number: usize, event: &EventReport) -> Vec<String> {
 
 /// The verification as lines of text, its rows under the headings of their groups; the last line counts them.
 pub fn verify(report: &VerifyReport) -> String {
-    let heads = ["", "ours", "exact", "difference", "bound", ""];
-    let mut rows = vec![heads.map(str::to_owned).to_vec()];
+    // Beside ours stands the exact number or another of ours, which no heading may call exact.
+    let heads = ["exact", "ours too"].map(|beside| ["", "ours", beside, "difference", "bound", ""]);
+    let mut rows: Vec<Vec<String>> = heads.iter().map(|head| head.map(str::to_owned).to_vec()).collect();
     rows.extend(report.rows.iter().map(verified));
     let lines = aligned(&rows, 1);
     let mut lines = lines.lines();
-    let mut text = lines.next().unwrap_or_default().to_owned();
-    text.push('\n');
-    let mut group = None;
+    let heads = [(); 2].map(|()| lines.next().unwrap_or_default());
+    let mut text = String::new();
+    let (mut group, mut head) = (None, None);
     for (row, line) in report.rows.iter().zip(lines) {
+        if head != Some(row.is_own) {
+            let apart = if head.is_some() { "\n" } else { "" };
+            let _ = writeln!(text, "{apart}{}", heads[usize::from(row.is_own)]);
+            head = Some(row.is_own);
+        }
         if group != Some(&row.group) {
             let _ = writeln!(text, "\n{} ({})", row.group, row.measure);
             group = Some(&row.group);
@@ -198,7 +204,7 @@ fn verified(row: &RowReport) -> Vec<String> {
     vec![
         format!("  {}", row.what),
         row.ours.map_or_else(dash, number),
-        row.exact.map_or_else(dash, number),
+        row.exact.or(row.other).map_or_else(dash, number),
         row.difference.map_or_else(dash, off),
         short(row.bound, 2),
         if row.passes { "pass" } else { "FAIL" }.to_owned(),

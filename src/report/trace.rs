@@ -9,8 +9,8 @@ use crate::case::{Case, CaseError};
 use crate::contact::Control;
 use crate::preset::Preset;
 use crate::quasistatic::overlap::overlaps;
-use crate::quasistatic::{Curve, Overlap};
-use crate::theory::{Equilibrium, Exact};
+use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point};
+use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
 
@@ -89,9 +89,14 @@ pub struct ExactReport {
 
 impl PointReport {
     /// The state at `step` of a curve of `case`, which is not admissible where it lies in one of `overlapping`.
-    fn new(case: &Case, curve: &Curve, step: usize, overlapping: &[Overlap]) -> Self {
-        let (equilibrium, units) = (&curve.equilibrium, case.units());
-        let point = &curve.branch.points[step];
+    fn new(
+        case: &Case,
+        equilibrium: &Equilibrium,
+        step: usize,
+        point: &Point,
+        overlapping: &[Overlap],
+    ) -> Self {
+        let units = case.units();
         let state = equilibrium.state(point).in_units(units);
         let stability = equilibrium.stability(point);
         let stiffness = equilibrium.stiffness(point).in_units(units);
@@ -120,7 +125,7 @@ impl PointReport {
 
 impl ExactReport {
     /// `force` of a point beside the exact equilibrium at its radius.
-    fn new(force: f64, exact: &Equilibrium) -> Self {
+    fn new(force: f64, exact: &theory::Equilibrium) -> Self {
         Self {
             approach: exact.approach,
             force: exact.force,
@@ -196,8 +201,9 @@ impl TraceReport {
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
         let case = Case::new(preset)?;
-        let curve = case.trace()?;
-        Ok(Self::new(preset, &case, &curve))
+        let curve = case.curve(|| true)?;
+        let (branch, stop) = case.trace(&curve)?;
+        Ok(Self::new(preset, &case, &curve, &branch.points, stop))
     }
 
     /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
@@ -219,28 +225,27 @@ impl TraceReport {
         self
     }
 
-    /// The document of a curve of `case`.
-    pub fn new(preset: &Preset, case: &Case, curve: &Curve) -> Self {
+    /// The document of a curve of `case`, its points `traced` along it by arc length.
+    pub fn new(preset: &Preset, case: &Case, curve: &Curve, traced: &[Point], stop: CurveStop) -> Self {
         let units = case.units();
         let equilibrium = &curve.equilibrium;
         let overlapping = overlaps(curve);
         let inadmissible = OverlapReport::all(&overlapping, units);
-        let points: Vec<PointReport> = (0..curve.branch.points.len())
-            .map(|step| PointReport::new(case, curve, step, &overlapping))
+        let points: Vec<PointReport> = traced
+            .iter()
+            .enumerate()
+            .map(|(step, point)| PointReport::new(case, equilibrium, step, point, &overlapping))
             .collect();
         let limit_points: Vec<LimitReport> = case
             .controls()
             .into_iter()
             .flat_map(|control| curve.limit_points(control))
-            .map(|limit| {
-                let [delta, force, s] = equilibrium.quantities(&limit.point.y);
-                LimitReport {
-                    control: case.shown_control(limit.control),
-                    contact_radius: s * units.length,
-                    approach: delta * units.length,
-                    force: force * units.force,
-                    wave: equilibrium.wave(s),
-                }
+            .map(|limit| LimitReport {
+                control: case.shown_control(limit.control),
+                contact_radius: limit.contact_radius * units.length,
+                approach: limit.approach * units.length,
+                force: limit.force * units.force,
+                wave: equilibrium.wave(limit.contact_radius),
             })
             .collect();
         let smallest = |of: fn((f64, f64)) -> f64| {
@@ -259,7 +264,7 @@ impl TraceReport {
                 .collect(),
             notes: case.notes(curve.outermost()),
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
-            stop: curve.stop.in_units(units).words(&preset.units),
+            stop: stop.in_units(units).words(&preset.units),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,

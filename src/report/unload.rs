@@ -119,10 +119,12 @@ impl UnloadReport {
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
         let case = Case::new(preset)?;
-        let mut curve = case.sweep(|| true)?;
-        let unloading = case.unload(&mut curve, case.control)?;
-        let passed = passed_while(&curve.equilibrium, &unloading.pieces, &mut || true).unwrap_or_default();
-        Ok(Self::new(preset, &case, &unloading).checked(&case, &unloading, &passed))
+        let curve = case.curve(|| true)?;
+        let unloading = case.unload(&curve, case.control)?;
+        let passed = passed_while(&curve, &unloading.pieces, &mut || true).unwrap_or_default();
+        let mut report = Self::new(preset, &case, &unloading).checked(&case, &unloading, &passed);
+        report.warnings.extend(case.unsettled(&unloading));
+        Ok(report)
     }
 
     /// The document of an unloading of `case`, whose admissibility is not known yet: to find it takes longer than all

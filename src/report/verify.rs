@@ -1,4 +1,4 @@
-//! Our numbers against theory as a document.
+//! Our numbers against theory, and against each other, as a document.
 
 use super::SCHEMA;
 use crate::verify::{Group, Row};
@@ -19,7 +19,7 @@ pub struct VerifyReport {
     pub rows: Vec<RowReport>,
 }
 
-/// One number against theory.
+/// One number against theory, or against another of ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RowReport {
     /// What is compared, with the basis.
@@ -30,8 +30,13 @@ pub struct RowReport {
     pub what: String,
     /// The engine's; null where it could not be computed.
     pub ours: Option<f64>,
-    /// The exact one.
+    /// The exact one; null where ours stands beside another of ours.
     pub exact: Option<f64>,
+    /// The other of ours, where it is compared with that.
+    pub other: Option<f64>,
+    /// Whether it is compared with another of ours; the table has a heading for these.
+    #[serde(skip)]
+    pub is_own: bool,
     /// The difference, divided as `measure` says.
     pub difference: Option<f64>,
     /// The largest difference, without its sign, that passes.
@@ -79,6 +84,8 @@ impl RowReport {
             what: row.what.clone(),
             ours: finite(row.ours),
             exact: finite(row.exact),
+            other: row.other.and_then(finite),
+            is_own: row.other.is_some(),
             difference: finite(row.difference),
             bound: row.bound,
             passes: row.passes(),

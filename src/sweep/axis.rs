@@ -4,7 +4,8 @@ use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
 use crate::contact::Control;
 use crate::contact::shapes::split_mix::SplitMix64;
-use crate::preset::schema::START_KEYS;
+use crate::preset::groups;
+use crate::preset::schema::{START_KEYS, parameter};
 use crate::preset::text::quote;
 use crate::preset::{Invalid, Preset, Value, model};
 use crate::report::number::exact;
@@ -95,23 +96,20 @@ impl Axis {
         {
             return Err(entry.fault(&format!("axis.key: {unknown}")));
         }
-        let given: Vec<Entry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
-        let [points] = &given[..] else {
-            let what = format!("the axis {key} must have exactly one of {}", KINDS.join(", "));
-            return Err(given.get(1).unwrap_or(&entry).fault(&what));
-        };
-        let reader = Reader { preset, key };
-        let points = match points.name.rsplit('.').next() {
-            Some("values") => reader.values(points)?,
-            Some("linear") => reader.linear(points)?,
-            Some("logarithmic") => reader.logarithmic(points)?,
-            _ => Points::Drawn(reader.distribution(points)?),
-        };
+        let points = Reader { preset: Some(preset), key }.points(section, &entry)?;
         let axis = Self { key: key.to_owned(), points };
         if fixed {
             axis.check_applies(&entry, preset)?;
         }
         Ok(axis)
+    }
+
+    /// Reads an axis of the [`canonical`](Self::canonical) form with its key: its values have been checked, and are in the
+    /// units of their preset.
+    pub(super) fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
+        let entry = section.need("key", "a key")?;
+        let key = entry.text("a key")?;
+        Ok(Self { key: key.to_owned(), points: Reader { preset: None, key }.points(section, &entry)? })
     }
 
     /// Refuses a key that this preset cannot have.
@@ -239,7 +237,19 @@ impl Distribution {
     }
 }
 
-/// Two start keys in one row would leave only the later one.
+/// Whether no row of an axis over `axis` has the value that an assignment gives to `key`.
+pub(super) fn overrides(axis: &str, key: &str) -> bool {
+    let is_part_of = |part: &str, whole: &str| {
+        parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
+    };
+    rival(axis, [key]).is_some()
+        || is_part_of(axis, key)
+        || is_part_of(key, axis)
+        || groups::changed(axis).contains(&key)
+        || groups::changed(key) == [axis]
+}
+
+/// The key of `before` that sets what `key` sets: itself, or another start, of which only the later would be left.
 pub(super) fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let is_start = |key: &str| START_KEYS.contains(&key);
     before.into_iter().find(|other| *other == key || (is_start(other) && is_start(key)))
@@ -247,11 +257,27 @@ pub(super) fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) ->
 
 /// Reads the values of one key.
 struct Reader<'a> {
-    preset: &'a Preset,
+    /// What checks them; without it they are as they stand.
+    preset: Option<&'a Preset>,
     key: &'a str,
 }
 
 impl Reader<'_> {
+    /// The values of the axis of a `section`, whose key is `named`.
+    fn points(&self, section: &Section<'_>, named: &Entry<'_>) -> Result<Points, SpecError> {
+        let given: Vec<Entry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
+        let [points] = &given[..] else {
+            let what = format!("the axis {} must have exactly one of {}", self.key, KINDS.join(", "));
+            return Err(given.get(1).unwrap_or(named).fault(&what));
+        };
+        match points.name.rsplit('.').next() {
+            Some("values") => self.values(points),
+            Some("linear") => self.linear(points),
+            Some("logarithmic") => self.logarithmic(points),
+            _ => Ok(Points::Drawn(self.distribution(points)?)),
+        }
+    }
+
     fn values(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
         let values = entry.array("an array of values")?;
         if values.is_empty() {
@@ -267,11 +293,24 @@ impl Reader<'_> {
                 entry.fault(&format!("{}: {} is {found}; write a number or a text", entry.name, self.key))
             })
         };
-        let value = match (entry.value, self.preset.row(self.key)) {
+        let Some(preset) = self.preset else {
+            return if let DeValue::Table(_) = entry.value { Self::stiffness(entry) } else { of_toml() };
+        };
+        let value = match (entry.value, preset.row(self.key)) {
             (DeValue::String(text), Some(row)) => row.parse(text).map_err(|e| entry.fault(&e.to_string()))?,
             _ => of_toml()?,
         };
-        self.preset.resolved(self.key, value).map_err(|e| entry.fault(&e.to_string()))
+        preset.resolved(self.key, value).map_err(|e| entry.fault(&e.to_string()))
+    }
+
+    /// `{ stiffness = k }`, as a canonical form has it.
+    fn stiffness(entry: &Entry<'_>) -> Result<Value, SpecError> {
+        let allowed = "{ stiffness = k }";
+        let stiffness = entry.section(allowed)?.need("stiffness", "a number")?;
+        match Value::from_toml(stiffness.value) {
+            Ok(Value::Number(k)) => Ok(Control::Stiffness(k).into()),
+            _ => Err(entry.fault(&format!("{} must be {allowed}", entry.name))),
+        }
     }
 
     fn number(&self, entry: &Entry<'_>) -> Result<f64, SpecError> {

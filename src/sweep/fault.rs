@@ -36,7 +36,7 @@ impl Fault {
     #[must_use]
     pub fn of_case(error: &CaseError) -> Self {
         let reason = match error {
-            CaseError::Basis(_) => REASONS[1],
+            CaseError::Basis(_) | CaseError::Table { .. } => REASONS[1],
             CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
             CaseError::Unload { .. } => REASONS[3],
             CaseError::Cancelled => REASONS[4],

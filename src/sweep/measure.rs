@@ -5,13 +5,14 @@ use super::fault::Fault;
 use super::quantity::{Column, Of};
 use crate::case::{Case, CaseError};
 use crate::contact::{Control, Gap, Groups, Problem};
+use crate::disc::{ExactSolution, Solution};
 use crate::preset::Preset;
+use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::overlap::passed_while;
-use crate::quasistatic::{Curve, EventKind, Losses, PathStop, State, Unloading};
+use crate::quasistatic::{Curve, Equilibrium, EventKind, Losses, Monotone, PathStop, State, Unloading};
 use crate::report::number::exact;
 use crate::theory::guduru::Guduru;
 use crate::theory::kesari_lew::KesariLew;
-use crate::theory::{self, Exact};
 use crate::units::Quantity as Unit;
 use std::cell::OnceCell;
 use std::fmt;
@@ -57,7 +58,6 @@ pub(super) struct Start {
 /// The curve, reduced.
 pub(super) struct Line {
     curve: Curve,
-    problem: Problem,
     /// The state of smallest force and that of smallest approach.
     least: [Least; 2],
     critical_force: Option<f64>,
@@ -117,13 +117,13 @@ impl Start {
 
 impl Line {
     fn new(case: &Case, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
-        let mut curve = case.sweep(go_on)?;
+        let mut curve = case.curve(go_on)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
             Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
         });
         let critical_force = case.critical_force().map(|force| force / case.units().force);
-        Ok(Self { curve, problem: case.problem.clone(), least, critical_force })
+        Ok(Self { curve, least, critical_force })
     }
 
     /// Of the state of smallest force.
@@ -154,27 +154,42 @@ impl Line {
         if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
     }
 
-    /// Whether what `control` holds is smaller in a larger contact than the curve has, by the exact solution: the basis
-    /// need not resolve the waves out there.
+    /// Whether what `control` holds is smaller in a larger contact than the curve has, by the table of the gap: rings need not
+    /// resolve the waves out there.
     fn is_smaller_beyond(&self, state: &State, control: Control) -> bool {
-        let problem = &self.curve.equilibrium.problem;
-        let (unit, exact) = (problem.units.length, Exact::of(&self.problem));
-        let start = self.curve.outermost() * unit;
-        let waves = problem.gap.feature_length().map_or(0.0, |wave| WAVES * wave * unit);
-        let far = (REACH * start + waves).min(problem.largest_contact() * unit);
-        let s = state.contact_radius * unit;
-        let here = control.value(exact.approach(s), exact.force(s));
-        start < far && theory::unloading::least(&*exact, control, far, start) < here - SMALLER * here.abs()
+        let Equilibrium { problem, table, .. } = &self.curve.equilibrium;
+        let start = self.curve.outermost();
+        let waves = problem.gap.feature_length().map_or(0.0, |wave| WAVES * wave);
+        let far = (REACH * start + waves).min(problem.largest_contact());
+        let Ok(panels) = table.up_to(far) else { return false };
+        let exact = ExactSolution::new(panels, problem.work_of_adhesion);
+        let Some(here) = exact.place(state.contact_radius).map(|place| exact.at(place)) else { return false };
+        let here = weighted(control, here.approach, here.force);
+        let monotone = Monotone::of(&exact, control);
+        let beyond = monotone.stretches.iter().filter(|stretch| stretch.radii[1] > start);
+        let ends = beyond.flat_map(|stretch| {
+            let [inner, outer] = stretch.radii;
+            [(inner, stretch.values[0]), (outer, stretch.values[1])]
+        });
+        let least = ends
+            .filter(|(s, _)| *s > start && *s <= far)
+            .map(|(_, value)| value)
+            .fold(f64::INFINITY, f64::min);
+        start < far && least < here - SMALLER * here.abs()
     }
 }
 
 /// The state of the curve at which the quantity that `control` holds is smallest.
 fn least(curve: &Curve, control: Control) -> State {
-    let row = curve.equilibrium.control_row(control);
-    let limits = curve.limit_points(control);
-    let points = curve.branch.points.iter().chain(limits.iter().map(|limit| &limit.point));
-    let y = points.map(|point| point.y).min_by(|a, b| row.dot(a).total_cmp(&row.dot(b))).unwrap_or_default();
-    let [approach, force, contact_radius] = curve.equilibrium.quantities(&y);
+    let limits = curve
+        .limit_points(control)
+        .into_iter()
+        .map(|limit| [limit.contact_radius, limit.approach, limit.force]);
+    let ends = [curve.samples.first(), curve.samples.last()].into_iter().flatten();
+    let ends = ends.map(|at| [at.contact_radius, at.approach, at.force]);
+    let value = |[_, approach, force]: &[f64; 3]| weighted(control, *approach, *force);
+    let found = limits.chain(ends).min_by(|a, b| value(a).total_cmp(&value(b)));
+    let [contact_radius, approach, force] = found.unwrap_or([f64::NAN; 3]);
     // No energy is asked for here.
     State { contact_radius, approach, force, energy: f64::NAN }
 }
@@ -292,12 +307,11 @@ impl Work<'_> {
     fn path(&mut self, control: Control) -> Result<&Path, Fault> {
         let known = self.paths.iter().position(|(known, _)| *known == control);
         let at = known.unwrap_or_else(|| {
-            // A copy: an unstable start moves the beginning of the curve.
             let made = self.line().map(|line| line.curve.clone());
             let go_on = self.go_on;
-            let made = made.and_then(|mut curve| {
+            let made = made.and_then(|curve| {
                 let case = &self.start()?.case;
-                let unloading = case.unload_while(&mut curve, control, Losses::Once, go_on);
+                let unloading = case.unload_while(&curve, control, Losses::Once, go_on);
                 Ok(Path { unloading: unloading.map_err(|e| Fault::of_case(&e))? })
             });
             self.paths.push((control, made));
@@ -309,7 +323,7 @@ impl Work<'_> {
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {
         let pieces = self.path(control)?.unloading.pieces.clone();
         let go_on = self.go_on;
-        let passed = passed_while(&self.line()?.curve.equilibrium, &pieces, &mut || go_on());
+        let passed = passed_while(&self.line()?.curve, &pieces, &mut || go_on());
         let length = |sum: f64, [from, to]: [f64; 2]| sum + (from - to);
         let whole = pieces.iter().copied().fold(0.0, length);
         let lost =

@@ -1,10 +1,11 @@
 //! Parts of a sweep joined: to the byte the results of a single run.
 
 use super::output::{Existing, OutputError};
-use super::record;
+use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
-use crate::preset::atomic::{Overwrite, WriteError, write_atomically, write_filled};
+use crate::preset::atomic::{Overwrite, WriteError, explained, write_atomically, write_filled};
+use crate::preset::stream;
 use crate::preset::text::show_path;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
@@ -77,12 +78,14 @@ pub enum MergeError {
         shard: Shard,
     },
     /// A row that is not the one that belongs there.
-    #[error("{path}:{line}: is not the row that belongs there: the file was changed")]
+    #[error("{path}:{line}: {what}: the file was changed")]
     Changed {
         /// The part.
         path: String,
         /// The line, from 1.
         line: u64,
+        /// What is wrong with it.
+        what: Wrong,
     },
     /// A part cannot be read.
     #[error("{path}: cannot read: {cause}")]
@@ -130,6 +133,11 @@ impl Part {
         self.lines += 1;
         Ok(Some(&self.line))
     }
+
+    /// The fault of the line read last.
+    fn changed(&self, what: Wrong) -> MergeError {
+        MergeError::Changed { path: show_path(&self.path), line: self.lines, what }
+    }
 }
 
 /// Joins `parts`, in any order, to `results`; says how many rows there are.
@@ -144,6 +152,7 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
         move |cause| MergeError::NotOurs { path, cause }
     };
     let (side, text) = Side::read(first).map_err(not_ours(first))?;
+    let layout = side.layout(first, &text).map_err(not_ours(first))?;
     let of = side.shard().of;
     let whole = side::of_whole(&text, side.shard());
     let mut found: Vec<Option<&PathBuf>> = vec![None; usize::try_from(of).unwrap_or_default()];
@@ -170,11 +179,20 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
     if !missing.is_empty() {
         return Err(MergeError::Missing(listed(&missing)));
     }
-    let open = |(number, path): (u64, &PathBuf)| Part::open(path, Shard { number, of });
-    let mut open: Vec<Part> =
-        (1..=of).zip(found.into_iter().flatten()).map(open).collect::<Result<_, _>>()?;
+    let open = || -> Result<Vec<Part>, MergeError> {
+        let part = |(number, path): (u64, &&PathBuf)| Part::open(path, Shard { number, of });
+        (1..=of).zip(found.iter().flatten()).map(part).collect()
+    };
+    if stream::is_stream(results) {
+        // What is written there cannot be taken back: everything is read once before.
+        fill(&mut io::sink(), results, &mut open()?, &layout, side.rows)?;
+        let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
+        fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, side.rows)?;
+        return Ok(side.rows);
+    }
+    let mut open = open()?;
     let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
-    write_filled(results, overwrite, |file| fill(file, results, &mut open, side.rows))?;
+    write_filled(results, overwrite, |file| fill(file, results, &mut open, &layout, side.rows))?;
     write_atomically(&side::path(results), whole.as_bytes(), Overwrite::Always)?;
     Ok(side.rows)
 }
@@ -189,20 +207,23 @@ fn listed(names: &[String]) -> String {
 }
 
 /// The rows of all parts, taken in turn.
-fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Result<(), MergeError> {
-    let failed = |cause| OutputError::Io { path: show_path(results), doing: "write", cause }.into();
+fn fill(
+    file: &mut dyn Write,
+    results: &Path,
+    parts: &mut [Part],
+    layout: &Layout,
+    rows: u64,
+) -> Result<(), MergeError> {
+    let failed = |cause| {
+        OutputError::Io { path: stream::shown(results), doing: "write", cause: explained(cause) }.into()
+    };
     let mut out = BufWriter::new(file);
-    let mut header: Vec<u8> = Vec::new();
     for part in parts.iter_mut() {
-        let line = part.next()?.unwrap_or_default().to_vec();
-        if header.is_empty() {
-            out.write_all(&line).map_err(failed)?;
-            header = line;
-        } else if line != header {
-            return Err(MergeError::Changed { path: show_path(&part.path), line: 1 });
-        }
+        // A torn line alone has no rows, as is said below.
+        let checked = part.next()?.map_or(Ok(()), |line| layout.check_header(line));
+        checked.map_err(|wrong| part.changed(wrong))?;
     }
-    let columns = record::fields(&header).map_or(0, |fields| fields.len());
+    out.write_all(layout.header().as_bytes()).map_err(failed)?;
     let mut row = 0;
     while row < rows {
         for part in parts.iter_mut() {
@@ -215,9 +236,8 @@ fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Resul
                 let (path, of) = (show_path(&part.path), shard.len(rows));
                 return Err(MergeError::Incomplete { path, rows: had, of, shard });
             };
-            let is_whole = record::fields(line).is_some_and(|fields| fields.len() == columns);
-            if !(is_whole && line.starts_with(format!("{row},").as_bytes())) {
-                return Err(MergeError::Changed { path: show_path(&part.path), line: part.lines });
+            if let Err(wrong) = layout.fault(row, line) {
+                return Err(part.changed(wrong));
             }
             out.write_all(line).map_err(failed)?;
             row += 1;
@@ -225,7 +245,7 @@ fn fill(file: &mut File, results: &Path, parts: &mut [Part], rows: u64) -> Resul
     }
     for part in parts {
         if part.next()?.is_some() {
-            return Err(MergeError::Changed { path: show_path(&part.path), line: part.lines });
+            return Err(part.changed(Wrong::behind_the_last()));
         }
     }
     out.flush().map_err(failed)

@@ -2,15 +2,15 @@
 //!
 //! Rows are only ever appended, whole lines at a time, so whatever ends the program leaves whole rows and at most one
 //! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
-//! of ours and are not touched.
+//! of ours and are not touched. Standard output, a pipe or a device takes the rows as they come, and nothing else.
 
-use super::record::{self, Found};
+use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
 use super::spec::Spec;
-use crate::preset::atomic::{Overwrite, WriteError, write_atomically};
-use crate::preset::file::kind_of;
+use crate::preset::atomic::{Overwrite, WriteError, check_growing, explained, write_atomically};
 use crate::preset::lock::lock_file;
+use crate::preset::stream;
 use crate::preset::text::show_path;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -77,14 +77,14 @@ pub enum OutputError {
         wanted: Shard,
     },
     /// A whole line that is not what this sweep writes there.
-    #[error(
-        "{path}:{line}: is not the row that belongs there: the file was changed; --overwrite begins anew"
-    )]
+    #[error("{path}:{line}: {what}: the file was changed; --overwrite begins anew")]
     Changed {
         /// The file.
         path: String,
         /// The line, from 1.
         line: u64,
+        /// What is wrong with it.
+        what: Wrong,
     },
     /// No threads.
     #[error("cannot start the threads: {0}")]
@@ -99,6 +99,8 @@ pub type Faults = BTreeMap<&'static str, u64>;
 pub struct Output {
     file: File,
     path: String,
+    /// Whether it goes straight to its reader: then there is nothing to go on with.
+    is_stream: bool,
     /// Whole lines that are not in the file yet.
     buffer: Vec<u8>,
     flushed: Instant,
@@ -123,11 +125,10 @@ impl Output {
             let path = shown.clone();
             move |cause| OutputError::Io { path, doing, cause }
         };
-        if let Ok(metadata) = path.metadata()
-            && !metadata.is_file()
-        {
-            return Err(WriteError::NotRegular { path: shown, what: kind_of(&metadata) }.into());
+        if stream::is_stream(path) {
+            return Self::straight(path, spec);
         }
+        check_growing(path)?;
         let file =
             OpenOptions::new().read(true).append(true).create(true).open(path).map_err(failed("open"))?;
         if !lock_file(&file, Duration::ZERO).map_err(failed("lock"))? {
@@ -141,20 +142,34 @@ impl Output {
         } else {
             write_atomically(&side::path(path), side::text(spec, shard).as_bytes(), Overwrite::Always)?;
         }
-        let flushed = Instant::now();
-        let (buffer, faults) = (Vec::new(), Faults::new());
-        let mut output = Self { file, path: shown, buffer, flushed, rows: 0, faults };
+        let mut output = Self::new(file, shown);
         output.scan(spec, shard)?;
         Ok(output)
     }
 
+    /// Begins the results in standard output, a pipe or a device.
+    fn straight(path: &Path, spec: &Spec) -> Result<Self, OutputError> {
+        let shown = stream::shown(path);
+        let file = stream::open(path);
+        let file = file.map_err(|cause| OutputError::Io { path: shown.clone(), doing: "open", cause })?;
+        let mut output = Self { is_stream: true, ..Self::new(file, shown) };
+        output.append(&Layout::of(spec).header())?;
+        Ok(output)
+    }
+
+    fn new(file: File, path: String) -> Self {
+        let (buffer, flushed, faults) = (Vec::new(), Instant::now(), Faults::new());
+        Self { file, path, is_stream: false, buffer, flushed, rows: 0, faults }
+    }
+
     fn failed(&self, doing: &'static str) -> impl FnOnce(io::Error) -> OutputError {
         let path = self.path.clone();
-        move |cause| OutputError::Io { path, doing, cause }
+        move |cause| OutputError::Io { path, doing, cause: explained(cause) }
     }
 
     /// Finds the rows that are there, and cuts a torn line off.
     fn scan(&mut self, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
+        let layout = Layout::of(spec);
         let mut whole = 0_u64;
         let (mut line, mut number) = (Vec::new(), 0);
         let mut reader = BufReader::new(&self.file);
@@ -167,25 +182,21 @@ impl Output {
             }
             number += 1;
             let found = if number == 1 {
-                if line == record::header(spec).as_bytes() { Found::Row(None) } else { Found::Other }
+                layout.check_header(&line).map(|()| None)
             } else {
                 let row = shard.row(self.rows);
                 self.rows += 1;
-                if row < spec.rows { record::found(spec, row, &line) } else { Found::Other }
+                if row < spec.rows { layout.fault(row, &line) } else { Err(Wrong::behind_the_last()) }
             };
-            match found {
-                Found::Other => return Err(OutputError::Changed { path: self.path.clone(), line: number }),
-                Found::Row(reason) => {
-                    if let Some(reason) = reason {
-                        *self.faults.entry(reason).or_default() += 1;
-                    }
-                }
+            let changed = |what| OutputError::Changed { path: self.path.clone(), line: number, what };
+            if let Some(reason) = found.map_err(changed)? {
+                *self.faults.entry(reason).or_default() += 1;
             }
             whole += length as u64;
         }
         self.file.set_len(whole).map_err(self.failed("cut a torn line off"))?;
         if whole == 0 {
-            self.append(&record::header(spec))?;
+            self.append(&layout.header())?;
             self.flush()?;
         }
         Ok(())
@@ -217,7 +228,7 @@ impl Output {
     /// They cannot be written.
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.flush()?;
-        self.file.sync_all().map_err(self.failed("write"))
+        if self.is_stream { Ok(()) } else { self.file.sync_all().map_err(self.failed("write")) }
     }
 }
 

@@ -2,14 +2,45 @@
 //!
 //! Numbers have every digit, so the values of a row bring back its problem. A line never holds a line end but its own.
 
+use super::axis::Axis;
 use super::fault::Fault;
 use super::measure::Measured;
-use super::spec::Spec;
+use super::spec::{Design, Spec, values};
+use crate::preset::text::quote;
+use std::fmt;
 
 /// The name of the first column.
 pub const ROW: &str = "row";
 /// The name of the last column.
 pub const ERROR: &str = "error";
+
+/// What is known of the rows without computing them: the values of the axes in each, and the names of all columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// The axes.
+    pub axes: Vec<Axis>,
+    /// How they make rows.
+    pub design: Design,
+    /// The names of all columns, in their order.
+    pub columns: Vec<String>,
+}
+
+/// Why a line is not the one that belongs there, in words that are safe to show.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Wrong(String);
+
+impl Wrong {
+    /// A line behind that of the last row.
+    pub(super) fn behind_the_last() -> Self {
+        Self("there are more lines than rows".to_owned())
+    }
+}
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
 
 /// Fields as a line of CSV.
 fn line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
@@ -27,18 +58,14 @@ pub fn names(spec: &Spec) -> Vec<String> {
     std::iter::once(ROW.to_owned()).chain(axes).chain(columns).chain([ERROR.to_owned()]).collect()
 }
 
-/// The first line.
-#[must_use]
-pub fn header(spec: &Spec) -> String {
-    line(names(spec).iter().map(String::as_str))
+/// What the line of a row begins with: its number and the values of its axes.
+fn known(axes: &[Axis], design: Design, row: u64) -> Vec<String> {
+    let values = values(axes, design, row);
+    std::iter::once(row.to_string()).chain(values.iter().map(ToString::to_string)).collect()
 }
 
-/// What the line of a row begins with: its number and the values of its axes.
-#[must_use]
-pub fn beginning(spec: &Spec, row: u64) -> String {
-    let values = spec.values(row);
-    let fields: Vec<String> =
-        std::iter::once(row.to_string()).chain(values.iter().map(ToString::to_string)).collect();
+/// Fields as the beginning of a line.
+fn beginning(fields: &[String]) -> String {
     let mut text = line(fields.iter().map(String::as_str));
     text.pop();
     text.push(',');
@@ -51,39 +78,77 @@ pub fn record(spec: &Spec, row: u64, measured: &Measured) -> String {
     let cells = measured.cells.iter().map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
     let fault = measured.fault.as_ref().map_or_else(String::new, Fault::to_string);
     let fields: Vec<String> = cells.chain([fault]).collect();
-    format!("{}{}", beginning(spec, row), line(fields.iter().map(String::as_str)))
+    let beginning = beginning(&known(&spec.axes, spec.design, row));
+    format!("{beginning}{}", line(fields.iter().map(String::as_str)))
 }
 
 /// The fields of a line; none where it is no CSV.
-#[must_use]
-pub fn fields(line: &[u8]) -> Option<csv::StringRecord> {
+fn fields(line: &[u8]) -> Option<csv::StringRecord> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line);
     reader.records().next()?.ok()
 }
 
-/// What a line says of its row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Found {
-    /// It is not the line of that row: another row, too few fields, no numbers.
-    Other,
-    /// It is, with the reason of its fault, if there is one.
-    Row(Option<&'static str>),
+impl Layout {
+    /// The layout of the results of a spec.
+    #[must_use]
+    pub fn of(spec: &Spec) -> Self {
+        Self { axes: spec.axes.clone(), design: spec.design, columns: names(spec) }
+    }
+
+    /// The first line.
+    #[must_use]
+    pub fn header(&self) -> String {
+        line(self.columns.iter().map(String::as_str))
+    }
+
+    /// Looks at the first line.
+    ///
+    /// # Errors
+    /// It has other columns.
+    pub fn check_header(&self, line: &[u8]) -> Result<(), Wrong> {
+        if line == self.header().as_bytes() {
+            return Ok(());
+        }
+        let names: Vec<&str> = self.columns.iter().map(String::as_str).collect();
+        Err(Wrong(format!("the columns are not {}", names.join(", "))))
+    }
+
+    /// The reason of the fault of a row, if it has one, from its whole line.
+    ///
+    /// # Errors
+    /// It is not the line of that row: another row or value of an axis, too few fields, no numbers.
+    pub fn fault(&self, row: u64, line: &[u8]) -> Result<Option<&'static str>, Wrong> {
+        let known = known(&self.axes, self.design, row);
+        let wrong = |what: &str| Wrong(format!("row {row}: {what}"));
+        let fields = fields(line).ok_or_else(|| wrong("is no CSV"))?;
+        let wrong_field = |at: usize, expected: &str| {
+            let column = self.columns.get(at).map_or("", String::as_str);
+            let found = fields.get(at).unwrap_or_default();
+            wrong(&format!("column {} is {}, expected {expected}", quote(column), shown(found)))
+        };
+        if let Some(at) = (0..known.len()).find(|at| fields.get(*at) != Some(&known[*at])) {
+            return Err(wrong_field(at, &shown(&known[at])));
+        }
+        if fields.len() != self.columns.len() {
+            return Err(wrong(&format!("has {} fields, expected {}", fields.len(), self.columns.len())));
+        }
+        if !line.starts_with(beginning(&known).as_bytes()) {
+            return Err(wrong("is not written as a sweep writes it"));
+        }
+        let last = fields.len() - 1;
+        let is_cell = |at: usize| fields[at].is_empty() || fields[at].parse::<f64>().is_ok();
+        if let Some(at) = (known.len()..last).find(|at| !is_cell(*at)) {
+            return Err(wrong_field(at, "a number or nothing"));
+        }
+        match (&fields[last], Fault::reason_of(&fields[last])) {
+            ("", _) => Ok(None),
+            (_, Some(reason)) => Ok(Some(reason)),
+            _ => Err(wrong_field(last, "a fault or nothing")),
+        }
+    }
 }
 
-/// What a whole line says of this row of the spec.
-#[must_use]
-pub fn found(spec: &Spec, row: u64, line: &[u8]) -> Found {
-    let Some(fields) = line.starts_with(beginning(spec, row).as_bytes()).then(|| fields(line)).flatten()
-    else {
-        return Found::Other;
-    };
-    let cells = 1 + spec.axes.len()..1 + spec.axes.len() + spec.columns.len();
-    let is_cell =
-        |at: usize| fields.get(at).is_some_and(|cell| cell.is_empty() || cell.parse::<f64>().is_ok());
-    let fault = fields.get(cells.end).filter(|_| fields.len() == cells.end + 1 && cells.clone().all(is_cell));
-    match (fault, fault.and_then(Fault::reason_of)) {
-        (Some(""), _) => Found::Row(None),
-        (Some(_), Some(reason)) => Found::Row(Some(reason)),
-        _ => Found::Other,
-    }
+/// A field in a message.
+fn shown(field: &str) -> String {
+    if field.is_empty() { "empty".to_owned() } else { quote(field) }
 }

@@ -3,9 +3,10 @@
 //! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
 //! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
 
-use super::record;
+use super::document::Document;
+use super::record::{self, Layout};
 use super::shard::Shard;
-use super::spec::Spec;
+use super::spec::{Spec, of_canonical};
 use crate::preset::file::{self, FileError, read_text};
 use crate::preset::text::{greek, sanitize, show_path};
 use crate::units::{Quantity, UnitSystem};
@@ -228,6 +229,19 @@ impl Side {
         let side: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
         side.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
         Ok((side, text))
+    }
+
+    /// The layout of the results beside `text`, that of this file.
+    ///
+    /// # Errors
+    /// The sweep in it is none of ours.
+    pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SideError> {
+        let path = path(results);
+        let document = Document { name: &path.to_string_lossy(), text };
+        let (axes, design) = of_canonical(document)
+            .map_err(|error| SideError::Unknown { path: error.origin.to_string(), what: error.what })?;
+        let columns = self.columns.iter().map(|column| column.name.clone()).collect();
+        Ok(Layout { axes, design, columns })
     }
 
     /// The keys of the axes, which are the names of their columns.

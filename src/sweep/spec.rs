@@ -1,20 +1,23 @@
 //! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
 
 use super::MOST_ROWS;
-use super::axis::{Axis, Points, rival};
+use super::axis::{Axis, Points, overrides, rival};
 use super::document::{Document, Entry, Section, SpecError};
 use super::fault::Fault;
 use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
 use crate::contact::Shape;
 use crate::contact::shapes::split_mix::SplitMix64;
-use crate::preset::file::{self, FileError, read_text};
+use crate::preset::file::{self, FileError};
 use crate::preset::schema::CHOOSERS;
 use crate::preset::text::quote;
-use crate::preset::{Preset, Store, Value, atomic, write};
+use crate::preset::{Preset, Store, Value, atomic, stream, write};
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// How the axes make rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,17 +61,21 @@ pub enum LoadError {
     Spec(#[from] SpecError),
 }
 
+/// What `set` is.
+const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
 /// The words of `combine`.
 const DESIGNS: [&str; 2] = ["grid", "pairs"];
 
 impl Spec {
-    /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec.
+    /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
+    /// one where the spec comes through a pipe.
     ///
     /// # Errors
     /// The file cannot be read, or the first mistake in it.
     pub fn load(store: &Store, path: &Path) -> Result<Self, LoadError> {
-        let (text, _) = read_text(path, file::LARGEST)?;
-        Ok(Self::read(store, atomic::folder_of(path), &path.to_string_lossy(), &text)?)
+        let (name, text) = stream::read_given(path, file::LARGEST)?;
+        let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
+        Ok(Self::read(store, folder, &name, &text)?)
     }
 
     /// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
@@ -81,6 +88,7 @@ impl Spec {
         let section = document.section(&table);
         section.only(&["preset", "set", "combine", "random", "quantities", "axis"])?;
         let preset = preset(store, folder, &section)?;
+        let assigned = assigned(&section)?;
         let axes = section.need("axis", "one or more tables [[axis]]")?;
         let given = axes.array("one or more tables [[axis]]")?;
         let tables: Vec<Section<'_>> =
@@ -93,6 +101,14 @@ impl Spec {
             let axis = Axis::read(table, &preset, fixed)?;
             if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
                 return Err(table.fault(&format!("the axis {} is at odds with the axis {other}", axis.key)));
+            }
+            if let Some((entry, key)) = assigned.iter().find(|(_, key)| overrides(&axis.key, key)) {
+                let what = format!(
+                    "set gives {} a value that no row has: the axis {} gives every row its own; remove one of them",
+                    quote(key),
+                    axis.key
+                );
+                return Err(entry.fault(&what));
             }
             read.push(axis);
         }
@@ -107,28 +123,7 @@ impl Spec {
     /// The values of the axes in a row below [`rows`](Self::rows), in the order of the axes.
     #[must_use]
     pub fn values(&self, row: u64) -> Vec<Value> {
-        let mut index = row;
-        let mut random = match self.design {
-            Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
-            Design::Grid | Design::Pairs => None,
-        };
-        // Drawn in the order of the axes; counted from the last, which runs fastest.
-        if let Some(random) = &mut random {
-            let draw = |axis: &Axis| match &axis.points {
-                Points::Drawn(distribution) => Some(distribution.draw(random)),
-                _ => None,
-            };
-            return self.axes.iter().filter_map(draw).collect();
-        }
-        let mut values: Vec<Value> = Vec::with_capacity(self.axes.len());
-        for axis in self.axes.iter().rev() {
-            let count = axis.count().unwrap_or(1).max(1);
-            let own = if self.design == Design::Grid { index % count } else { index };
-            values.extend(axis.value(own));
-            index = if self.design == Design::Grid { index / count } else { index };
-        }
-        values.reverse();
-        values
+        values(&self.axes, self.design, row)
     }
 
     /// The preset of a row.
@@ -204,6 +199,44 @@ impl Spec {
     }
 }
 
+/// The values of the axes in a row, in the order of the axes.
+pub(super) fn values(axes: &[Axis], design: Design, row: u64) -> Vec<Value> {
+    let mut index = row;
+    let mut random = match design {
+        Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
+        Design::Grid | Design::Pairs => None,
+    };
+    // Drawn in the order of the axes; counted from the last, which runs fastest.
+    if let Some(random) = &mut random {
+        let draw = |axis: &Axis| match &axis.points {
+            Points::Drawn(distribution) => Some(distribution.draw(random)),
+            _ => None,
+        };
+        return axes.iter().filter_map(draw).collect();
+    }
+    let mut values: Vec<Value> = Vec::with_capacity(axes.len());
+    for axis in axes.iter().rev() {
+        let count = axis.count().unwrap_or(1).max(1);
+        let own = if design == Design::Grid { index % count } else { index };
+        values.extend(axis.value(own));
+        index = if design == Design::Grid { index / count } else { index };
+    }
+    values.reverse();
+    values
+}
+
+/// The axes of a canonical form, as [`Spec::canonical`] writes it, and how they make rows.
+///
+/// # Errors
+/// It is none, which is told with its line; `document` names it.
+pub(super) fn of_canonical(document: Document<'_>) -> Result<(Vec<Axis>, Design), SpecError> {
+    let table = document.parse()?;
+    let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;
+    let axes = sweep.need("axis", "tables")?.array("tables")?;
+    let axes = axes.iter().map(|entry| Axis::of_canonical(&entry.section("a table")?));
+    Ok((axes.collect::<Result<_, _>>()?, design(&sweep)?))
+}
+
 /// A hash of the rows of a measured profile.
 fn digest(preset: &Preset) -> Option<String> {
     let Shape::Profile(measured) = &preset.gap else { return None };
@@ -233,15 +266,41 @@ fn preset(store: &Store, folder: &Path, section: &Section<'_>) -> Result<Preset,
         store.resolve(name)
     };
     let source = source.map_err(|error| entry.fault(&format!("preset: {error}")))?;
-    let wanted = "an array of texts \"KEY=VALUE\"";
-    let set: Vec<Entry<'_>> = section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(wanted))?;
-    let set: Vec<&str> = set.iter().map(|entry| entry.text(wanted)).collect::<Result<_, _>>()?;
+    let set: Vec<Entry<'_>> =
+        section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(ASSIGNMENTS))?;
+    let set: Vec<&str> = set.iter().map(|entry| entry.text(ASSIGNMENTS)).collect::<Result<_, _>>()?;
     // The preset itself first, so that a mistake is told where it is made.
     store.load(&source, &[] as &[&str]).map_err(|error| entry.fault(&format!("preset: {error}")))?;
     let loaded = store
         .load(&source, &set)
         .map_err(|error| section.get("set").unwrap_or_else(|| entry.clone()).fault(&error.to_string()))?;
     Ok(loaded.preset)
+}
+
+/// The keys to which `set` gives values, each with its place.
+fn assigned<'a>(section: &Section<'a>) -> Result<Vec<(Entry<'a>, String)>, SpecError> {
+    let mut keys = Vec::new();
+    let Some(set) = section.get("set") else { return Ok(keys) };
+    for entry in set.array(ASSIGNMENTS)? {
+        // Whatever is no assignment was refused when it was made.
+        let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
+        let value = DeValue::parse(text.trim()).ok();
+        let table = value.as_ref().and_then(|value| value.get_ref().as_table());
+        let inner = keys_of(key.trim(), table);
+        keys.extend(inner.into_iter().map(|key| (entry.clone(), key)));
+    }
+    Ok(keys)
+}
+
+/// `key`, or the keys below it that an inline table gives values.
+fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
+    let Some(table) = table else { return vec![key.to_owned()] };
+    let below = |(name, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| match &**name.get_ref() {
+        // A parameter is its value, and more.
+        "value" => vec![key.to_owned()],
+        name => keys_of(&format!("{key}.{name}"), value.get_ref().as_table()),
+    };
+    table.iter().flat_map(below).collect()
 }
 
 fn design(section: &Section<'_>) -> Result<Design, SpecError> {
