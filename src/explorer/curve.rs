@@ -15,7 +15,7 @@ use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
 use crate::quasistatic::{
-    Admissibility, Curve, Equilibrium, Limit, Losses, Overlap, Point, Stiffness, Unloading,
+    Admissibility, Curve, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
 };
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
@@ -104,10 +104,10 @@ impl Sweep {
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &mut |share| go_on(Progress::Basis(share)))?;
-        let (of, mut asked) = (case.sweep_points(), 0);
-        let mut curve = case.sweep(|| {
+        let mut asked = 0;
+        let mut curve = case.curve(|| {
             asked += 1;
-            go_on(Progress::Curve { done: asked - 1, of })
+            go_on(Progress::Curve(asked))
         })?;
         for control in SHOWN {
             if !go_on(Progress::Limits) {
@@ -115,15 +115,15 @@ impl Sweep {
             }
             curve.hold(control);
         }
-        let start = curve.branch.points.first().map(|point| curve.equilibrium.admissibility(point));
+        let start = curve.equilibrium.explicit(curve.outermost());
         Ok(Self {
             preset: preset.clone(),
-            start,
+            start: start.as_ref().map(|point| curve.equilibrium.admissibility(point)),
             inadmissible: None,
-            theory: Theory::of(&case),
+            theory: Theory::of(&case, &curve),
             groups: Groups::of(&case.problem, preset.range_of_action()),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
-            stiffness: curve.branch.points.first().map(|point| curve.equilibrium.stiffness(point)),
+            stiffness: start.as_ref().map(|point| curve.equilibrium.stiffness(point)),
             critical_force: case.critical_force().unwrap_or(0.0),
             warnings: case.warnings(curve.outermost()),
             notes: case.notes(curve.outermost()),
@@ -139,17 +139,16 @@ impl Sweep {
 
     /// An inadmissible part of the curve with its states.
     fn part(&self, overlap: &Overlap, report: OverlapReport) -> Inadmissible {
-        let (equilibrium, units) = (&self.curve.equilibrium, self.case.units());
-        let between = |point: &&Point| {
-            let s = equilibrium.contact_radius(point);
-            overlap.to < s && s < overlap.from
-        };
-        let inner = self.curve.branch.points.iter().filter(between).cloned();
-        let [from, to] = [overlap.from, overlap.to].map(|s| equilibrium.explicit(s));
-        let place = |point: Point| {
-            let [delta, force, s] = equilibrium.quantities(&point.y);
-            [delta * units.length, force * units.force, s * units.length]
-        };
+        let units = self.case.units();
+        let between = |at: &&Sample| overlap.to < at.contact_radius && at.contact_radius < overlap.from;
+        let place =
+            |[delta, force, s]: [f64; 3]| [delta * units.length, force * units.force, s * units.length];
+        let inner = self.curve.samples.iter().filter(between);
+        let inner = inner.map(|at| [at.approach, at.force, at.contact_radius]);
+        let [from, to] = [overlap.from, overlap.to].map(|s| {
+            let at = self.curve.solution.at(self.curve.solution.place(s)?);
+            Some([at.approach, at.force, s])
+        });
         Inadmissible { report, places: from.into_iter().chain(inner).chain(to).map(place).collect() }
     }
 }
@@ -174,48 +173,48 @@ impl CurveData {
         preset: &Preset,
         mut go_on: impl FnMut(Progress) -> bool,
     ) -> Result<Self, CaseError> {
-        // The unloading may extend its curve to find a landing; the one on the screen ends where asked.
-        let mut longer = sweep.curve.clone();
-        let curve = &sweep.curve;
+        let mut curve = sweep.curve.clone();
         let units = *sweep.case.units();
         let control = preset.path.control.in_units(units.stiffness);
         let case = Case { control, ..sweep.case.clone() };
-        let shown_of = |equilibrium: &Equilibrium, point: &Point, control: Control| {
-            let [delta, force, s] = equilibrium.quantities(&point.y);
-            CurvePoint {
-                approach: delta * units.length,
-                force: force * units.force,
-                contact_radius: s * units.length,
-                stable: equilibrium.stability(point).under(control),
-            }
+        let shown = |at: &Sample| CurvePoint {
+            approach: at.approach * units.length,
+            force: at.force * units.force,
+            contact_radius: at.contact_radius * units.length,
+            stable: at.slopes.under(control),
         };
-        let shown = |point: &Point, control: Control| shown_of(&curve.equilibrium, point, control);
-        longer.hold(control);
-        let limits = longer.limit_points(control);
+        curve.hold(control);
+        let limits = curve.limit_points(control);
         let other_limits = SHOWN
             .into_iter()
             .filter(|other| *other != control)
-            .flat_map(|other| curve.limit_points(other).into_iter().map(move |limit| (other, limit.point)))
-            .map(|(other, point)| (other, shown(&point, other)))
+            .flat_map(|other| curve.limit_points(other))
+            .map(|limit| {
+                let Limit { contact_radius, approach, force, .. } = limit;
+                let slopes = Stability { approach: 0.0, force: 0.0 };
+                (limit.control, shown(&Sample { contact_radius, approach, force, slopes }))
+            })
             .collect();
         let mut asked = 0;
         let next = || {
             asked += 1;
             go_on(Progress::Events(asked - 1))
         };
-        let unloading = match case.unload_while(&mut longer, control, Losses::Twice, next) {
+        let unloading = match case.unload_while(&curve, control, Losses::Twice, next) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };
         // Where the path of an unstable start begins further out, the curve drawn reaches to there.
-        let outward = longer
-            .branch
-            .points
-            .iter()
-            .take_while(|p| longer.equilibrium.contact_radius(p) > curve.outermost() * (1.0 + 1e-12))
-            .filter(|_| unloading.is_ok())
-            .map(|p| shown_of(&longer.equilibrium, p, control));
-        let points = outward.chain(curve.branch.points.iter().map(|p| shown(p, control))).collect();
+        let start = unloading.as_ref().map_or(0.0, |path| path.start.contact_radius);
+        let outward = if start > curve.outermost() * (1.0 + 1e-12) {
+            let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
+            Curve::new(case.reduced.clone(), basis, table, start, curve.outermost(), || true)
+        } else {
+            None
+        };
+        let outward = outward.map_or_else(Vec::new, |outward| outward.samples);
+        let own = outward.len().saturating_sub(1);
+        let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         Ok(Self { sweep, case, setting, points, limits, other_limits, unloading, report })
@@ -223,12 +222,11 @@ impl CurveData {
 
     /// δ, P and s of the limit points under the chosen control in the user's units, from the start inward.
     pub fn shown_limits(&self) -> Vec<[f64; 3]> {
-        let (equilibrium, units) = (&self.sweep.curve.equilibrium, self.case.units());
-        let shown = |point: &Point| {
-            let [delta, force, s] = equilibrium.quantities(&point.y);
-            [delta * units.length, force * units.force, s * units.length]
+        let units = self.case.units();
+        let shown = |limit: &Limit| {
+            [limit.approach * units.length, limit.force * units.force, limit.contact_radius * units.length]
         };
-        self.limits.iter().map(|limit| shown(&limit.point)).collect()
+        self.limits.iter().map(shown).collect()
     }
 
     /// Whether it is known which of its states, and of its path's, are admissible.
@@ -250,8 +248,10 @@ impl CurveData {
         }
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
-            let passed = passed_while(&sweep.curve.equilibrium, &unloading.pieces, go_on)?;
-            report = Some(unchecked.clone().checked(&self.case, unloading, &passed));
+            let passed = passed_while(&sweep.curve, &unloading.pieces, go_on)?;
+            let mut checked = unchecked.clone().checked(&self.case, unloading, &passed);
+            checked.warnings.extend(self.case.unsettled(unloading));
+            report = Some(checked);
         }
         Some(Self { sweep, report, ..self.clone() })
     }

@@ -15,6 +15,7 @@ use super::update::answer;
 use super::walk::{self, Made, Outcome, Request};
 use crate::case::CaseError;
 use crate::fault;
+use crate::mend::Reason;
 use crate::preset::{Preset, Store};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -74,7 +75,7 @@ pub enum Reply {
         /// Its number.
         id: u64,
         /// The curve.
-        result: Result<Arc<CurveData>, String>,
+        result: Result<Arc<CurveData>, Reason>,
     },
     /// How far a curve is that takes long.
     Progress {
@@ -171,7 +172,7 @@ fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
     match result {
         Err(CaseError::Cancelled) => None,
         result => {
-            let result = result.map(Arc::new).map_err(|error| error.to_string());
+            let result = result.map(Arc::new).map_err(|error| Reason::of("", &error));
             Some(Reply::Curve { id: wish.id, result })
         }
     }

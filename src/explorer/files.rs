@@ -8,17 +8,21 @@ use super::journal::Start;
 use super::script;
 use crate::contact::Control;
 use crate::contact::shapes::Rows;
+use crate::mend::Reason;
 use crate::preset::changes::{changes, differences};
 use crate::preset::measured;
 use crate::preset::text::{quote, show_path};
 use crate::preset::{
-    Fingerprint, Listing, Loaded, Overwrite, Preset, Source, Store, StoreError, WriteError, write_atomically,
+    Fingerprint, Key, Listing, Loaded, Overwrite, Preset, Row, Source, Store, StoreError, WriteError,
+    write_atomically,
 };
 use crate::print::Format;
 use crate::report::trace::StableReport;
 use crate::report::unload::{EventReport, StateReport};
 use crate::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
 use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -100,12 +104,12 @@ pub enum Page {
 
 impl Page {
     /// The bytes of its file `path`.
-    fn bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+    fn bytes(&self, path: &str) -> Result<Vec<u8>, Reason> {
         match self {
             Self::Screen(text) => Ok(text.as_bytes().to_vec()),
             Self::Figure(svg) => {
-                let format = Format::of(Path::new(path)).map_err(|error| error.to_string())?;
-                format.bytes(svg).map_err(|error| error.to_string())
+                let format = Format::of(Path::new(path)).map_err(|error| Reason::of("", &error))?;
+                format.bytes(svg).map_err(|error| Reason::of("", &error))
             }
         }
     }
@@ -167,6 +171,8 @@ pub enum Job {
         replace: bool,
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
+        /// Where it was read from.
+        from: Source,
     },
     /// Write a page.
     Write {
@@ -224,8 +230,8 @@ pub enum Done {
     FileExists(Document, String),
     /// The same of this page, at this path.
     PageExists(Page, String),
-    /// It failed, in words; nothing was changed.
-    Failed(String),
+    /// It failed; nothing was changed.
+    Failed(Reason),
 }
 
 /// Does a job.
@@ -236,65 +242,77 @@ pub fn run(store: &Store, job: Job) -> Done {
         Job::Assign { mut preset, assignments } => {
             match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
                 Ok(()) => Done::Assigned(preset),
-                Err(invalid) => Done::Failed(invalid.to_string()),
+                Err(invalid) => Done::Failed(Reason::mendable(invalid.to_string())),
             }
         }
         Job::Open { name, assignments } => {
             let assignments: Vec<String> =
                 assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
             let loaded = store.resolve(&name).and_then(|source| store.load(&source, &assignments));
-            loaded.map_or_else(|e| Done::Failed(e.to_string()), |loaded| Done::Opened(Box::new(loaded)))
+            loaded.map_or_else(|e| Done::Failed(Reason::of("", &e)), |loaded| Done::Opened(Box::new(loaded)))
         }
         Job::Delete(name) => match store.delete(&name) {
             Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
-            Err(error) => Done::Failed(format!("not deleted: {error}")),
+            Err(error) => Done::Failed(Reason::of("not deleted: ", &error)),
         },
         Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
             Ok(folder) => Done::Browsed(Box::new(folder)),
-            Err(reason) => Done::Failed(reason),
+            Err(reason) => Done::Failed(Reason::mendable(reason)),
         },
         Job::Read { folder, name } => {
             let path = target(&name).to_string_lossy().into_owned();
             match measured::load(folder.as_deref(), &path) {
                 Ok(rows) => Done::Read(Arc::new(rows)),
-                Err(reason) => Done::Failed(reason),
+                Err(reason) => Done::Failed(Reason::mendable(reason)),
             }
         }
         Job::Save { source, preset, overwrite } => {
             let Some(path) = source.path() else {
-                return Done::Failed("shipped presets are read-only; save it under a name".to_owned());
+                let why = "the preset has no file of its own; save it under a name";
+                return Done::Failed(Reason::mendable(why));
             };
-            match crate::preset::store::save_file(path, &preset, overwrite) {
+            match crate::preset::store::save_file(path, &preset, Some(&source), overwrite) {
                 Ok(fingerprint) => Done::Saved { source, fingerprint, preset },
                 Err(StoreError::Write(WriteError::Changed { .. })) => Done::Conflict,
-                Err(error) => Done::Failed(format!("not saved: {error}")),
+                Err(error) => Done::Failed(Reason::of("not saved: ", &error)),
             }
         }
-        Job::SaveAs { name, preset, replace, with_data } => save_as(store, name, preset, replace, with_data),
+        Job::SaveAs { name, preset, replace, with_data, from } => {
+            save_as(store, name, preset, replace, with_data, &from)
+        }
         Job::Write { page, path, replace } => match page.bytes(&path) {
             Ok(bytes) => match put(&path, &bytes, replace) {
                 Err(WriteError::Exists { .. }) => Done::PageExists(page, path),
                 result => exported(path, result),
             },
-            Err(reason) => Done::Failed(format!("not exported: {reason}")),
+            Err(reason) => Done::Failed(Reason::of("not exported: ", &reason)),
         },
         Job::Export { content, path, replace } => export(store, &content, path, replace),
     }
 }
 
 /// Saves under a name, the data of a profile beside it where they are to be.
-fn save_as(store: &Store, name: String, preset: Box<Preset>, replace: bool, with_data: bool) -> Done {
+fn save_as(
+    store: &Store,
+    name: String,
+    preset: Box<Preset>,
+    replace: bool,
+    with_data: bool,
+    from: &Source,
+) -> Done {
     let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
     let saved = if with_data {
-        let saved = store.save_with_data(&name, &preset, overwrite);
+        let saved = store.save_with_data(&name, &preset, Some(from), overwrite);
         saved.map(|(source, fingerprint, preset)| (source, fingerprint, Box::new(preset)))
     } else {
-        store.save(&name, &preset, overwrite).map(|(source, fingerprint)| (source, fingerprint, preset))
+        store
+            .save(&name, &preset, Some(from), overwrite)
+            .map(|(source, fingerprint)| (source, fingerprint, preset))
     };
     match saved {
         Ok((source, fingerprint, preset)) => Done::Saved { source, fingerprint, preset },
         Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name, with_data),
-        Err(error) => Done::Failed(format!("not saved: {error}")),
+        Err(error) => Done::Failed(Reason::of("not saved: ", &error)),
     }
 }
 
@@ -302,12 +320,14 @@ fn save_as(store: &Store, name: String, preset: Box<Preset>, replace: bool, with
 fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done {
     let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let text = match content {
-        Content::Script(start, lines) => script_text(store, start, lines),
-        numbers => text(numbers, as_json).map_err(|error| error.to_string()),
+        Content::Script(start, lines) => script_text(store, start, lines).map_err(Reason::mendable),
+        numbers => {
+            text(numbers, as_json).map_err(|error| Reason { text: error.to_string(), can_be_mended: false })
+        }
     };
     let text = match text {
         Ok(text) => text,
-        Err(error) => return Done::Failed(format!("not exported: {error}")),
+        Err(reason) => return Done::Failed(Reason::of("not exported: ", &reason)),
     };
     match put(&path, text.as_bytes(), replace) {
         Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
@@ -323,7 +343,7 @@ fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteErro
 fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
     match result {
         Ok(_) => Done::Exported(path),
-        Err(error) => Done::Failed(format!("not exported: {error}")),
+        Err(error) => Done::Failed(Reason::of("not exported: ", &error)),
     }
 }
 
@@ -372,9 +392,13 @@ pub struct WalkRow {
     pub wavelength: Option<f64>,
     /// Whether it is admissible; nothing once the bodies are apart.
     pub admissible: Option<bool>,
+    /// The keys of the preset that changed during the walk, with their values when it was solved: null where the preset had
+    /// none.
+    #[serde(flatten)]
+    pub changed: BTreeMap<String, Value>,
 }
 
-/// The columns of the walk as CSV.
+/// The columns of the walk as CSV; behind them stand the keys that changed during it.
 pub const WALK_COLUMNS: &[&str] = &[
     "step",
     "kind",
@@ -397,8 +421,31 @@ pub const WALK_COLUMNS: &[&str] = &[
     "admissible",
 ];
 
+/// The keys whose value is not the same in all states of a walk, in the order in which they changed. How the preset is
+/// called and shown is of no state.
+fn changed_keys(walk: &[Node]) -> Vec<Key> {
+    // States of one problem share it.
+    let mut presets: Vec<&Preset> = Vec::new();
+    for nodes in walk.chunk_by(|a, b| Arc::ptr_eq(&a.setting, &b.setting)) {
+        presets.push(&nodes[0].setting.preset);
+    }
+    let Some((first, rest)) = presets.split_first() else { return Vec::new() };
+    let mut keys: Vec<Key> = Vec::new();
+    for preset in rest {
+        // A key may be of one of the two alone.
+        let is_of_states =
+            |row: &Row| !(row.is_part() || row.key == "title" || row.key.starts_with("display."));
+        for row in first.rows().chain(preset.rows()).filter(is_of_states) {
+            if first.get(&row.key) != preset.get(&row.key) && !keys.contains(&row.key) {
+                keys.push(row.key.clone());
+            }
+        }
+    }
+    keys
+}
+
 impl WalkRow {
-    fn new(node: &Node) -> Self {
+    fn new(node: &Node, changed: &[Key]) -> Self {
         let setting = &node.setting;
         let state = node.state.in_units(setting.units());
         let stability = node.stability();
@@ -430,7 +477,18 @@ impl WalkRow {
             amplitude: wave.map(|(a, _)| a),
             wavelength: wave.map(|(_, l)| l),
             admissible: Some(node.admissibility.holds).filter(|_| !apart),
+            changed: changed.iter().map(|key| (key.to_string(), value_of(&setting.preset, key))).collect(),
         }
+    }
+}
+
+/// The value of a key as it stands in a cell: numbers in SI or reduced units, a control as it is typed.
+fn value_of(preset: &Preset, key: &str) -> Value {
+    match preset.get(key) {
+        None => Value::Null,
+        Some(crate::preset::Value::Number(x)) => Value::from(x),
+        Some(crate::preset::Value::Integer(n)) => Value::from(n),
+        Some(other) => Value::from(other.to_string()),
     }
 }
 
@@ -471,6 +529,10 @@ fn script_text(store: &Store, start: &Start, lines: &[String]) -> Result<String,
         Source::File(path) => {
             std::path::absolute(path).unwrap_or_else(|_| path.clone()).display().to_string()
         }
+        Source::Piped { .. } => {
+            let why = "the preset came through a pipe, and a script cannot open it: save it under a name, and open that";
+            return Err(why.to_owned());
+        }
     };
     let none = &[] as &[&str];
     let source = store.resolve(&name).map_err(|error| error.to_string())?;
@@ -510,12 +572,21 @@ fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
     };
     Ok(match content {
         Content::Curve(curve) => {
-            let report = TraceReport::new(&curve.setting.preset, &curve.case, &curve.sweep.curve);
+            let (drawn, of) = (&curve.sweep.curve, &curve.sweep.curve.equilibrium);
+            let points: Vec<_> =
+                drawn.samples.iter().filter_map(|at| of.explicit(at.contact_radius)).collect();
+            let report = TraceReport::new(&curve.setting.preset, &curve.case, drawn, &points, drawn.stop);
             if as_json { json(&report)? } else { report.csv()? }
         }
         Content::Walk(curve, walk) => {
-            let points: Vec<WalkRow> = walk.iter().map(WalkRow::new).collect();
-            if as_json { walked(curve, &points, &[])? } else { rows::csv(WALK_COLUMNS, &points)? }
+            let changed = changed_keys(walk);
+            let points: Vec<WalkRow> = walk.iter().map(|node| WalkRow::new(node, &changed)).collect();
+            if as_json {
+                walked(curve, &points, &[])?
+            } else {
+                let columns = WALK_COLUMNS.iter().copied().chain(changed.iter().map(AsRef::as_ref));
+                rows::csv(&columns.collect::<Vec<_>>(), &points)?
+            }
         }
         Content::Events(curve, events) => {
             if as_json {

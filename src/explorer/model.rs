@@ -10,6 +10,7 @@ use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::view::{Overlays, View, Window};
 use crate::contact::Control;
+use crate::mend::Reason;
 use crate::preset::groups::GROUPS;
 use crate::preset::{Fingerprint, Listing, Loaded, Preset, Row, Source, Value};
 use crate::report::unload::EventReport;
@@ -112,8 +113,22 @@ pub enum Checking {
 pub enum Level {
     /// For information.
     Info,
-    /// Something could not be done.
+    /// Something could not be done as it was asked for.
     Error,
+    /// Something failed that other words do not mend: the computation, or the system.
+    Failure,
+}
+
+impl Level {
+    /// That of something that could not be done for this reason.
+    pub fn of(reason: &Reason) -> Self {
+        if reason.can_be_mended { Self::Error } else { Self::Failure }
+    }
+
+    /// Whether something could not be done.
+    pub fn is_bad(self) -> bool {
+        self != Self::Info
+    }
 }
 
 /// A session.
@@ -386,9 +401,7 @@ impl Model {
             return None;
         }
         let s = node.state.contact_radius;
-        curve.limits.iter().position(|limit| {
-            (curve.sweep.curve.equilibrium.contact_radius(&limit.point) - s).abs() <= 1e-7 * s
-        })
+        curve.limits.iter().position(|limit| (limit.contact_radius - s).abs() <= 1e-7 * s)
     }
 
     /// Whether the edge can run from here: at a limit point of the control, or in an unstable state.

@@ -49,18 +49,11 @@ pub fn nudge(
             }
             Value::Number(tidy(if up == (x > 0.0) { x * (1.0 + share) } else { x / (1.0 + share) }))
         }
-        (Kind::Integer { .. } | Kind::Count { .. }, Some(Value::Integer(n))) => {
+        (Kind::Integer { .. }, Some(Value::Integer(n))) => {
             // Exact for every count; at least one, so that small counts move too.
             #[expect(clippy::cast_possible_truncation)]
             let by = ((n as f64 * share).round() as i64).max(1);
             Value::Integer(if up { n + by } else { n - by })
-        }
-        (Kind::Count { .. }, Some(_)) => {
-            return Err(format!(
-                "{} is chosen by the program; {} types a number",
-                row.label,
-                Id::Edit.named()
-            ));
         }
         (Kind::Choice(words), Some(Value::Text(word))) => {
             let at = words.iter().position(|w| *w == word).unwrap_or(0);
@@ -151,7 +144,7 @@ mod tests {
         assert!(nudge(&preset, rings, false, Amount::Fine, 1.0).unwrap_err().contains('4'));
         let kind = &parameter("basis.kind").unwrap();
         let other = nudge(&preset, kind, true, Amount::Fine, 1.0).unwrap();
-        assert_eq!(other.get("basis.functions"), Some("auto".into()));
+        assert_eq!((other.get("basis.kind"), other.get("basis.rings")), (Some("exact".into()), None));
         let back = nudge(&other, kind, true, Amount::Fine, 1.0).unwrap();
         assert_eq!(back.get("basis.rings"), Some(Value::Integer(200)));
         preset.set("gap.shape", "power-law".into()).unwrap();

@@ -2,7 +2,8 @@
 
 use super::curve::CurveData;
 use crate::contact::{Control, Gap, Units};
-use crate::quasistatic::jump::{Nodes, Run};
+use crate::quasistatic::admissible::Judge;
+use crate::quasistatic::jump::Run;
 use crate::quasistatic::{Landscape, Profile, State};
 use crate::theory::Exact;
 use std::f64::consts::FRAC_PI_2;
@@ -67,11 +68,12 @@ impl Inside {
         let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
         let landscape = landscape(ask);
+        let judge = Judge::new(&case.reduced, &case.table);
         Self {
             id: ask.id,
             units: *case.units(),
             wave: case.reduced.gap.wavelength(),
-            profile: Profile::of(&case.reduced, case.basis.as_ref(), s, approach),
+            profile: Profile::of(&case.reduced, case.basis.as_ref(), &judge, s, approach),
             exact: if ask.exact { exact_pressure(ask) } else { Vec::new() },
             barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),
             landscape,
@@ -84,9 +86,8 @@ fn landscape(ask: &Ask) -> Option<Landscape> {
     let wave = ask.curve.case.reduced.gap.feature_length();
     let [inward, outward] = wave
         .map_or(SHARES.map(|share| share * s), |wave| WAVES.map(|waves| (waves * wave).min(SHARES[0] * s)));
-    let nodes = Nodes::new(curve, control, &ask.curve.limits);
     let value = control.value(ask.state.approach, ask.state.force);
-    Landscape::of(curve, &nodes, value, s, [s - inward, s + outward])
+    Landscape::of(curve, control, value, s, [s - inward, s + outward])
 }
 
 /// The exact (r, p) in the problem's own units, made reduced; dense towards the edge.

@@ -55,7 +55,7 @@ mod tests {
         let store = Store::at(folder.path(), &[]);
         let wavy = read("wavy-sphere", shipped::find("wavy-sphere").unwrap().text).unwrap();
         let called = |title: &str| Preset { title: title.to_owned(), ..wavy.clone() };
-        let (source, first) = store.save("mine", &wavy, Overwrite::Never).unwrap();
+        let (source, first) = store.save("mine", &wavy, None, Overwrite::Never).unwrap();
         let mut saves = Saves::default();
         let mut save = |title: &str, known| {
             let (source, preset) = (source.clone(), Box::new(called(title)));

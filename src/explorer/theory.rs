@@ -1,8 +1,8 @@
 //! The theory drawn over a curve, computed with it.
 
 use crate::case::Case;
-use crate::contact::{Gap, Shape};
-use crate::quasistatic::curve::{SWEEP_STEPS_PER_WAVE, radii};
+use crate::contact::Shape;
+use crate::quasistatic::Curve;
 use crate::theory::guduru::Guduru;
 use crate::theory::kesari_lew::{KesariLew, Side};
 use crate::theory::{Disc, Exact};
@@ -43,7 +43,7 @@ pub struct Envelope {
 
 impl Theory {
     /// The theory of `case` between its start and its end.
-    pub fn of(case: &Case) -> Self {
+    pub fn of(case: &Case, curve: &Curve) -> Self {
         let units = case.units();
         let (from, to) = (case.start * units.length, case.end * units.length);
         let smooth: Vec<f64> = (0..=SMOOTH_POINTS)
@@ -53,7 +53,7 @@ impl Theory {
                 (from.sqrt() + (to.sqrt() - from.sqrt()) * x).powi(2)
             })
             .collect();
-        let fine = radii(from, to, case.problem.shape.feature_length(), SWEEP_STEPS_PER_WAVE);
+        let fine: Vec<f64> = curve.samples.iter().map(|at| at.contact_radius * units.length).collect();
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
         Self {
             smooth: jkr.map_or_else(Vec::new, |jkr| along(&jkr, &smooth)),

@@ -137,7 +137,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Delete(name) => vec![file(Job::Delete(name))],
         Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
-            vec![file(Job::SaveAs { name, preset, replace, with_data })]
+            vec![file(Job::SaveAs { name, preset, replace, with_data, from: model.source.clone() })]
         }
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
@@ -378,7 +378,7 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
         return Vec::new();
     };
     let away = |s: f64| (s - event.before.contact_radius).abs();
-    let radius = |i: &usize| curve.sweep.curve.equilibrium.contact_radius(&curve.limits[*i].point);
+    let radius = |i: &usize| curve.limits[*i].contact_radius;
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
     model.inward = true;
     let event = model.event;

@@ -7,13 +7,14 @@ use super::curve::CurveData;
 use super::history::{Ahead, NodeKind, Setting};
 use crate::case::Case;
 use crate::contact::Control;
-use crate::continuation::{Stepper, Work, events, locate, step_size};
+use crate::continuation::{Stepper, step_size};
+use crate::disc::Place;
 use crate::quasistatic::curve::settings;
-use crate::quasistatic::energy;
-use crate::quasistatic::jump::{Nodes, Run};
-use crate::quasistatic::landscape;
-use crate::quasistatic::unload::INWARD_REACH;
-use crate::quasistatic::{Admissibility, Equilibrium, Event, Losses, Point, State, Stiffness};
+use crate::quasistatic::jump::{self, Run};
+use crate::quasistatic::{
+    Admissibility, Curve, Equilibrium, Event, Limit, Losses, Monotone, Point, State, Stiffness, Turn,
+};
+use crate::quasistatic::{energy, landscape};
 use crate::ritz::{self, NewtonSettings};
 use crate::theory::Exact;
 use std::sync::Arc;
@@ -22,6 +23,10 @@ use std::sync::Arc;
 pub const RUN_POINTS: usize = 5000;
 /// A walk leaves the range of the curve by at most this factor in the contact radius.
 pub(super) const ROOM: f64 = 3.0;
+
+/// A landing outward is looked for further out by this factor, and up to this multiple of the radius.
+const OUTWARD_STEP: f64 = 1.5;
+const OUTWARD_REACH: f64 = 1000.0;
 
 /// A state solved again lies within this share of a wave, or of its radius, of the old one.
 const NEAR: f64 = 0.5;
@@ -133,7 +138,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         },
         Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => {
-                emit(Made { begins: true, ..made(request, NodeKind::Limit, limit.point.clone()) });
+                let Some(point) = request.equilibrium().explicit(limit.contact_radius) else {
+                    return Outcome::Stopped("there is no equilibrium at the limit point".to_owned());
+                };
+                emit(Made { begins: true, ..made(request, NodeKind::Limit, point) });
                 Outcome::AtLimit
             }
             None => Outcome::Stopped("the curve has changed meanwhile".to_owned()),
@@ -176,8 +184,66 @@ fn made(request: &Request, kind: NodeKind, point: Point) -> Made {
     }
 }
 
+/// A place at which a step by hand ends: a limit point of the control, or a corner of the curve.
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    contact_radius: f64,
+    is_limit: bool,
+    is_corner: bool,
+}
+
+/// The stop just left is where the walker stands, to this share of its radius.
+const LEFT: f64 = 1e-12;
+
+/// The stops on the curve of `request` up to the radius `reach`, ascending.
+fn stops(request: &Request, reach: f64) -> Vec<Stop> {
+    let mut curve = request.curve.sweep.curve.clone();
+    curve.reach(reach);
+    let monotone = curve.monotone(request.control);
+    let limits = monotone.limits.iter().map(|at| Stop {
+        contact_radius: at.contact_radius,
+        is_limit: true,
+        is_corner: at.corner,
+    });
+    let mut stops: Vec<Stop> = limits.collect();
+    for contact_radius in curve.corners() {
+        if stops.iter().all(|stop| stop.contact_radius.to_bits() != contact_radius.to_bits()) {
+            stops.push(Stop { contact_radius, is_limit: false, is_corner: true });
+        }
+    }
+    stops.sort_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius));
+    stops
+}
+
+/// A stop as a table no larger than it needs has it: to the last bit the same, however far the walk has been.
+fn located(request: &Request, stop: Stop) -> Stop {
+    const ROOM: f64 = 1.05;
+    let away = |other: &Stop| (other.contact_radius - stop.contact_radius).abs();
+    let found = stops(request, ROOM * stop.contact_radius).into_iter();
+    let mut found = found.min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(stop);
+    if !found.is_corner {
+        // A limit point is known to the root of rounding: the digits beyond differ from table to table, and a replay would too.
+        const KNOWN: u64 = 1 << 8;
+        let bits = found.contact_radius.to_bits();
+        found.contact_radius = f64::from_bits((bits + KNOWN / 2) & !(KNOWN - 1));
+    }
+    found
+}
+
+/// The first of `stops`, which ascend, on the way from one radius to another, the latter included.
+fn first_between(stops: &[Stop], from: f64, to: f64) -> Option<Stop> {
+    if to < from {
+        let from = from * (1.0 - LEFT);
+        stops.iter().rev().find(|stop| to <= stop.contact_radius && stop.contact_radius < from).copied()
+    } else {
+        let from = from * (1.0 + LEFT);
+        stops.iter().find(|stop| from < stop.contact_radius && stop.contact_radius <= to).copied()
+    }
+}
+
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let equilibrium = request.equilibrium();
+    let curve = &request.curve.sweep.curve;
     let Some(from) = &request.from else {
         return Outcome::Stopped("there is no state to walk from".to_owned());
     };
@@ -185,43 +251,51 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
     if !run {
         settings.longest = request.length;
     }
-    let row = equilibrium.control_row(request.control);
-    let unit = row.normalize();
-    let mut stepper = Stepper::new(settings.clone());
+    let mut stepper = Stepper::new(settings);
     stepper.length = request.length;
-    let shrinking = |p: &Point| p.frame.tangent[2] < 0.0;
-    let mut here = from.clone();
-    if shrinking(&here) != request.inward {
-        here = here.reversed();
-    }
+    let turned = |point: Point| {
+        let shrinking = point.frame.tangent[2] < 0.0;
+        if shrinking == request.inward { point } else { point.reversed() }
+    };
+    let mut here = turned(from.clone());
     let case = &request.curve.case;
-    let mut just_left = request.on_limit;
+    let start = equilibrium.contact_radius(&here).max(case.start);
+    let mut stops = stops(request, start);
+    let mut known = start.max(curve.solution.reach());
     for _ in 0..count {
         if !run {
             // In steps by hand the length asked for counts, not the one the last step would allow.
             stepper.length = request.length;
         }
-        let next = match stepper.step(equilibrium, &here) {
-            Ok(next) => next,
-            Err(failure) => return Outcome::Stopped(failure.to_string()),
+        let before = equilibrium.contact_radius(&here);
+        let next = match next(request, &stops, &mut stepper, &here) {
+            Ok(next) => turned(next),
+            Err(failure) => return Outcome::Stopped(failure),
         };
-        let piece = [here.clone(), next.clone()];
-        let mut work = Work::default();
-        let limit = events::brackets(equilibrium, &piece, &unit, &settings, &mut work)
-            .iter()
-            .filter_map(|bracket| locate::limit_point(equilibrium, bracket, &unit, &settings, &mut work))
-            // The slope at the limit point just left is zero to rounding, of either sign: not a new one.
-            .find(|found| !just_left || (found.point.y - here.y).norm() > 1e-3 * next.length);
-        if let Some(found) = limit {
-            let mut point = found.point;
+        let s = equilibrium.contact_radius(&next);
+        if s > known {
+            known = 1.2 * s;
+            stops = self::stops(request, known);
+        }
+        if let Some(stop) = first_between(&stops, before, s) {
+            let stop = located(request, stop);
+            let Some(mut point) = equilibrium.explicit(stop.contact_radius).map(turned) else {
+                return Outcome::Stopped("there is no equilibrium at the next limit point".to_owned());
+            };
             point.length = (point.y - here.y).norm();
             point.turning = step_size::turning(&here, &point);
             point.rounds = next.rounds;
-            emit(made(request, NodeKind::Limit, point));
-            return Outcome::AtLimit;
+            let kind = if stop.is_limit { NodeKind::Limit } else { NodeKind::Step };
+            here = point.clone();
+            let wanted = emit(made(request, kind, point));
+            if stop.is_limit {
+                return Outcome::AtLimit;
+            }
+            if !wanted {
+                return Outcome::Paused;
+            }
+            continue;
         }
-        just_left = false;
-        let s = equilibrium.contact_radius(&next);
         here = next.clone();
         if !emit(made(request, NodeKind::Step, next)) {
             return Outcome::Paused;
@@ -238,82 +312,118 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
     Outcome::Done
 }
 
-fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+/// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
+///
+/// # Errors
+/// Why there is none, in words.
+fn next(request: &Request, stops: &[Stop], stepper: &mut Stepper, here: &Point) -> Result<Point, String> {
     let equilibrium = request.equilibrium();
+    let s = equilibrium.contact_radius(here);
+    let towards = if request.inward { 0.0 } else { f64::INFINITY };
+    let on_corner = stops.iter().any(|stop| stop.is_corner && (stop.contact_radius / s - 1.0).abs() <= LEFT);
+    if on_corner && !request.inward {
+        let mut curve = request.curve.sweep.curve.clone();
+        curve.reach(1.1 * s);
+        let left = curve.beyond_corner(s, stepper.length);
+        return left.ok_or_else(|| "there is no equilibrium beyond the corner".to_owned());
+    }
+    let ahead = first_between(stops, s, towards).filter(|stop| stop.is_corner);
+    let corner = ahead.and_then(|stop| equilibrium.explicit(stop.contact_radius));
+    if let Some(corner) = corner.filter(|corner| (corner.y - here.y).norm() <= stepper.length) {
+        return Ok(corner);
+    }
+    stepper.step(equilibrium, here).map_err(|failure| failure.to_string())
+}
+
+fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let Some(from) = &request.from else {
         return Outcome::Stopped("there is no state to jump from".to_owned());
     };
-    // Away from the stable side of a limit point; from an unstable state, as walked.
-    let as_walked = if request.inward { Run::Inward } else { Run::Outward };
-    let run = if request.on_limit { away(request, from) } else { as_walked };
-    let landing = match landing(request, from, run) {
-        Ok(landing) => landing,
+    let (curve, leaves, landing) = match landing(request, from) {
+        Ok(found) => found,
         Err(reason) => return Outcome::Stopped(reason.to_owned()),
     };
-    let value = equilibrium.control_row(request.control).dot(&from.y);
-    let before = equilibrium.state(from);
-    let event = Event::new(equilibrium, request.control, value, before, landing.as_ref(), Losses::Twice);
-    let point = landing.unwrap_or_else(|| from.clone());
+    let event = Event::new(&curve, request.control, leaves, landing, Losses::Twice);
+    let point = match landing {
+        Some(place) => request.equilibrium().explicit(curve.solution.at(place).contact_radius),
+        None => Some(from.clone()),
+    };
+    let Some(point) = point else {
+        return Outcome::Stopped("there is no equilibrium at the landing".to_owned());
+    };
     emit(made(request, NodeKind::Jump(Box::new(event)), point));
     Outcome::Done
 }
 
-/// Where the edge comes to rest when it runs from `from` at constant control: `None` where the bodies come apart.
+/// The place that the edge leaves at constant control from `from`, and where it comes to rest: nowhere where the bodies come
+/// apart; with a curve that reaches there.
 ///
 /// # Errors
 /// Why the landing is not known.
-fn landing(request: &Request, from: &Point, run: Run) -> Result<Option<Point>, &'static str> {
+fn landing(request: &Request, from: &Point) -> Result<(Curve, Place, Option<Place>), &'static str> {
     let equilibrium = request.equilibrium();
     let control = request.control;
-    let value = equilibrium.control_row(control).dot(&from.y);
     let s = equilibrium.contact_radius(from);
     let mut curve = request.curve.sweep.curve.clone();
-    let mut limits = request.curve.limits.clone();
-    // The walker itself may be beyond the curve on the screen, and so may be the landing.
-    let here = if s > curve.outermost() { s * 1.01 } else { s };
-    let further = [0.1, INWARD_REACH].map(|share| match run {
-        Run::Inward => s * share,
-        Run::Outward => s / share.max(1e-3),
-    });
-    for reach in [here].into_iter().chain(further) {
-        let beyond = reach < curve.innermost() || reach > curve.outermost();
-        if beyond && curve.extend(reach) {
-            limits = curve.limit_points(control);
-        }
-        let nodes = Nodes::new(&curve, control, &limits);
-        let tolerance = s * 1e-9;
-        let node = nodes.points().iter().rposition(|p| equilibrium.contact_radius(p) >= s - tolerance);
-        if let Some(landing) = nodes.run(&curve, node.unwrap_or(0), value, run) {
-            let to = equilibrium.contact_radius(&landing.point);
-            if !landscape::falls(&curve.equilibrium, control, value, s, to) {
-                return Err("the edge cannot run to the next stable state: on the way the potential rises");
+    curve.reach(s * (1.0 + 1e-9));
+    let mut reach = s;
+    loop {
+        let monotone = curve.monotone(control);
+        let Some(place) = curve.solution.place(s.min(curve.solution.reach())) else {
+            return Err("the basis has no equilibrium here");
+        };
+        // Away from the stable side of a limit point; from any other state, as walked.
+        let limit = if request.on_limit { nearest_limit(&monotone, s) } else { None };
+        let (place, stretch, run) = match limit {
+            Some((index, limit)) => match limit.turn {
+                Turn::Minimum => (limit.place, index + 1, Run::Inward),
+                Turn::Maximum => (limit.place, index, Run::Outward),
+            },
+            None if request.inward => (place, monotone.stretch_of(s), Run::Inward),
+            None => (place, monotone.stretch_of(s), Run::Outward),
+        };
+        let value = monotone.value(&curve.solution.at(place));
+        match jump::run(&curve, &monotone, stretch, value, run) {
+            Ok(Some(landing)) => {
+                let to = curve.solution.at(landing.place).contact_radius;
+                let held = curve.solution.at(place);
+                let held = control.value(held.approach, held.force);
+                if !landscape::falls(&curve, control, held, s, to) {
+                    return Err(
+                        "the edge cannot run to the next stable state: on the way the potential rises",
+                    );
+                }
+                return Ok((curve, place, Some(landing.place)));
             }
-            return Ok(Some(landing.point));
+            Ok(None) if run == Run::Inward => return Ok((curve, place, None)),
+            Ok(None) => {
+                reach *= OUTWARD_STEP;
+                if reach > OUTWARD_REACH * s || !curve.reach(reach) {
+                    return Err("no stable state lies outward at this control value");
+                }
+            }
+            Err(_) => return Err("the basis has no equilibrium further in: the landing is not known"),
         }
     }
-    if run == Run::Outward {
-        return Err("no stable state lies outward at this control value");
-    }
-    if curve.innermost() > s * INWARD_REACH * (1.0 + 1e-9) {
-        return Err("the basis has no equilibrium further in: the landing is not known");
-    }
-    Ok(None)
+}
+
+/// The limit point nearest to the radius `s`, with its number.
+fn nearest_limit(monotone: &Monotone, s: f64) -> Option<(usize, Limit)> {
+    let away = |limit: &Limit| (limit.contact_radius - s).abs();
+    let limits = monotone.limits.iter().copied().enumerate();
+    let (_, limit) = limits.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)))?;
+    // The stretch that ends there.
+    let inner = monotone.stretches.iter().position(|stretch| stretch.outer == limit.place)?;
+    Some((inner, limit))
 }
 
 /// Where the edge runs from the limit point `from`, and what that costs; `None` where it is not known.
 fn ahead(request: &Request, from: &Point) -> Option<Ahead> {
-    let equilibrium = request.equilibrium();
-    let after = landing(request, from, away(request, from)).ok()?.map(|point| equilibrium.state(&point));
-    let value = equilibrium.control_row(request.control).dot(&from.y);
-    let dissipated = energy::loss(request.control, value, &equilibrium.state(from), after.as_ref());
+    let on_limit = Request { on_limit: true, ..request.clone() };
+    let (curve, leaves, landing) = landing(&on_limit, from).ok()?;
+    let after = landing.map(|place| curve.state(place));
+    let dissipated = energy::loss(request.control, &curve.state(leaves), after.as_ref());
     Some(Ahead { after, dissipated })
-}
-
-/// The way the edge runs from a limit point: away from its stable side.
-fn away(request: &Request, limit: &Point) -> Run {
-    let bend = request.equilibrium().control_row(request.control).dot(&limit.frame.curvature);
-    // A minimum of the control along the curve is left inward, a maximum outward.
-    if bend > 0.0 { Run::Inward } else { Run::Outward }
 }
 
 /// The state at the old control value after a change, from the old contact radius.
@@ -353,28 +463,21 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
 
 /// The state nearest to the radius `s` at which the curve takes the control value.
 fn nearest_crossing(request: &Request, value: f64, s: f64) -> Option<Point> {
-    let equilibrium = request.equilibrium();
     let curve = &request.curve.sweep.curve;
-    let row = equilibrium.control_row(request.control);
-    let nodes = Nodes::new(curve, request.control, &curve.limit_points(request.control));
-    let settings = settings(equilibrium);
-    nodes
-        .points()
-        .windows(2)
-        .filter(|pair| (row.dot(&pair[0].y) > value) != (row.dot(&pair[1].y) > value))
-        .min_by(|a, b| {
-            let away = |pair: &[Point]| (equilibrium.contact_radius(&pair[0]) - s).abs();
-            away(a).total_cmp(&away(b))
-        })
-        .and_then(|pair| {
-            locate::control_value(
-                equilibrium,
-                &pair[0],
-                &pair[1],
-                &row,
-                value,
-                &settings,
-                &mut Work::default(),
-            )
-        })
+    let solution = &*curve.solution;
+    let monotone = curve.monotone(request.control);
+    let value = match request.control {
+        Control::Displacement | Control::Force => value,
+        // As the stretches have it, whatever the stiffness.
+        Control::Stiffness(k) => value * (k / (1.0 + k)),
+    };
+    let radius = |place: Place| solution.at(place).contact_radius;
+    let on_curve = |s: &f64| curve.innermost() <= *s && *s <= curve.outermost();
+    monotone
+        .crossings(solution, value)
+        .into_iter()
+        .map(|(place, _)| radius(place))
+        .filter(on_curve)
+        .min_by(|a, b| (a - s).abs().total_cmp(&(b - s).abs()))
+        .and_then(|s| request.equilibrium().explicit(s))
 }

@@ -164,7 +164,7 @@ impl App {
         let Some(Over::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
         // What is asked instead says the reason itself.
         if model.question.is_none()
-            && let Some((_, reason)) = model.message.take_if(|(level, _)| *level == Level::Error)
+            && let Some((_, reason)) = model.message.take_if(|(level, _)| level.is_bad())
         {
             (prompt.waits, prompt.error) = (false, Some(self.keymap.spelled(&reason)));
         } else {
@@ -174,7 +174,7 @@ impl App {
 
     /// A prompt whose line was taken: it stays with the reason if that was refused, and while it waits for a file.
     fn taken(&mut self, mut prompt: Prompt, effects: Vec<Effect>) -> Vec<Effect> {
-        let refused = self.model.message.take_if(|(level, _)| *level == Level::Error);
+        let refused = self.model.message.take_if(|(level, _)| level.is_bad());
         prompt.error = refused.map(|(_, reason)| self.keymap.spelled(&reason));
         prompt.waits =
             prompt.error.is_none() && effects.iter().any(|effect| matches!(effect, Effect::File(_)));
@@ -304,7 +304,7 @@ impl App {
                 self.ask(question, Id::Quit.into());
                 Vec::new()
             }
-            Id::Save if matches!(self.model.source, Source::Shipped(_)) => self.ask_name(),
+            Id::Save if self.model.source.path().is_none() => self.ask_name(),
             Id::SaveAs => self.ask_name(),
             Id::Export => self.ask_export(),
             Id::Copy => self.ask_copy(),

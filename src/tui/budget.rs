@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::converse;
-use super::terminal::{Display, Inbox, Incoming, Sink};
+use super::terminal::{Display, Inbox, Incoming, Pace, Sink};
 use super::theme::{Charts, Palette, Theme};
 use super::view::Pictures;
 use crate::explorer::{Effect, Inline, Reply};
@@ -12,6 +12,7 @@ use std::cell::RefCell;
 use std::io;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
 
 /// A terminal that counts, and tells of each frame; with a gate it takes each only when let.
 struct Counter {
@@ -221,4 +222,59 @@ fn keys_that_come_while_a_frame_is_written_make_one_frame() {
     let frames = counter.take().len();
     assert!(frames == 2 || frames == 3, "{frames} frames for 202 keys");
     assert_ne!(session.app.model.selected_knob().map(|(row, _)| row.key.clone()), row, "the last key counts");
+}
+
+/// A pace that lets no frame follow another while a test runs.
+const STANDSTILL: Pace = Pace {
+    shortest: Duration::from_secs(3600),
+    rate: 16_000.0,
+    longest_for_size: Duration::ZERO,
+    write_factor: 0,
+    longest_for_write: Duration::ZERO,
+};
+
+/// What a frame may take to come on a loaded machine, when it need not wait for anything.
+const SOON: Duration = Duration::from_secs(20);
+
+#[test]
+fn the_first_curve_waits_for_no_pace_and_every_frame_after_it_does() {
+    let (told, frame_begun) = channel();
+    let counter = Counter::leak((120, 40), Some(told), None);
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path(), &[]);
+    let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
+    let (mut app, effects) = App::new(loaded, THEMES[0]);
+    let inbox = Inbox::<Reply>::new();
+    let (typist, sender) = (inbox.typist(), inbox.sender());
+    let driving = std::thread::spawn(move || {
+        // The empty screen is there before the curve.
+        frame_begun.recv_timeout(SOON).unwrap();
+        let driver = Inline::new(store);
+        for reply in effects.into_iter().filter_map(|effect| driver.run(effect)) {
+            assert!(sender.send(reply), "the inbox is gone");
+        }
+        let curve = frame_begun.recv_timeout(SOON);
+        // Drawn only when it is due, long after the test.
+        typist(Incoming::Key(KeyCode::Char('j').into()));
+        typist(Incoming::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
+        curve.is_ok()
+    });
+    let mut display = Display::paced(counter, STANDSTILL).unwrap();
+    converse(&mut app, &mut display, &inbox, &|_| {}, &mut |_| {});
+    assert!(driving.join().unwrap(), "the curve waited for the pace");
+    assert!(app.model.curve.is_some());
+    let frames = counter.take();
+    assert!(frames.len() == 2 && frames[1] > 1000, "{frames:?}");
+}
+
+#[test]
+fn a_frame_drawn_early_leaves_its_wait_to_the_next() {
+    let counter = Counter::leak((80, 24), None, None);
+    let mut display = Display::paced(counter, STANDSTILL).unwrap();
+    let mut session = Session::new("wavy-sphere", THEMES[0]);
+    session.draw(&mut display);
+    let due = display.due();
+    session.app.key(KeyCode::Char('j').into());
+    session.draw(&mut display);
+    assert_eq!(display.due(), due + STANDSTILL.shortest);
 }

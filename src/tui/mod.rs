@@ -103,8 +103,11 @@ fn begin(start: Start, theme: Theme, keeper: &Keeper) -> (App, Vec<Effect>, Opti
             (app, effects, Some(held))
         }
         Start::Resume(held) => {
-            let text = format!("resumed {} ({})", held.claim.name(), told(&held));
+            let mut text = format!("resumed {} ({})", held.claim.name(), told(&held));
             let (mut app, effects) = App::resumed(held.snapshot, theme);
+            if let Some((_, note)) = app.model.message.take() {
+                text = format!("{text}; {note}");
+            }
             app.model.message = Some((Level::Info, text));
             keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             (app, effects, None)
@@ -187,6 +190,9 @@ fn converse<S: Sink>(
 ) {
     let (mut pictures, mut late) = (Pictures::default(), Late::default());
     let mut dirty = true;
+    // Whether the first curve is still to come. Its frame does not wait until a slow line has carried the empty one
+    // before it: a person has waited for nothing else.
+    let mut awaits_curve = true;
     // Until when the first change since the last frame may wait for the step that it began.
     let mut grace = None;
     while !app.model.quit {
@@ -224,13 +230,15 @@ fn converse<S: Sink>(
         if let Some(text) = app.clipboard.take() {
             display.copy(&text);
         }
-        if dirty && display.is_due() && grace.is_none_or(|until| until <= Instant::now()) {
+        let is_due = display.is_due() || (awaits_curve && app.model.curve.is_some());
+        if dirty && is_due && grace.is_none_or(|until| until <= Instant::now()) {
             let (mut views, mut screen) = (0, app.screen);
             display.draw(|frame| {
                 screen = frame.area();
                 views = view::draw(frame, app, &mut pictures);
             });
             (dirty, grace) = (false, None);
+            awaits_curve &= app.model.curve.is_none();
             submit(app.make_room(screen, views));
         }
     }

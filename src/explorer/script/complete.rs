@@ -75,7 +75,6 @@ fn assignments(word: &str, preset: &Preset) -> Vec<String> {
     };
     let values: Vec<&str> = match preset.row(key).map(|row| row.kind) {
         Some(Kind::Choice(words)) => words.to_vec(),
-        Some(Kind::Count { .. }) => vec![AUTO],
         Some(Kind::Smoothing) => vec![AUTO, NONE],
         Some(Kind::Control) => vec!["displacement", "force", "stiffness="],
         _ => Vec::new(),

@@ -27,17 +27,20 @@
 //! | `parse` | words → a command |
 //! | `print` | a command → its line |
 //! | `complete` | what a line begun could go on with |
+//! | `former` | the lines of a session of before, as they read now |
 //! | [`mod@play`] | a script driven through a model, without a terminal |
 //! | `borders` | where a script may write |
 
 mod borders;
 mod complete;
+mod former;
 mod parse;
 pub mod play;
 mod print;
 mod words;
 
 pub use complete::{Completion, complete};
+pub(super) use former::without_former;
 pub use parse::{for_script, parse};
 pub use play::{Failed, Permission, play};
 pub use print::line;

@@ -8,6 +8,7 @@ use crate::explorer::files::{Document, ends_in};
 use crate::explorer::model::LENGTHS;
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
+use crate::preset::former;
 use crate::preset::groups::{self, GROUPS};
 use crate::preset::suggest::{closest, closest_key};
 use crate::preset::text::quote;
@@ -261,6 +262,9 @@ fn assignment(word: &Word) -> Result<Assignment, Fault> {
         return Err(Fault::new(word.column, what));
     };
     if parameter(key).is_none() && groups::row(key).is_none() {
+        if let Some(former) = former::key(key) {
+            return Err(Fault::new(word.column, former.to_string()));
+        }
         let known = PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(key, known);
         let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));

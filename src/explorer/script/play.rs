@@ -6,6 +6,7 @@ use crate::explorer::command::{Command, by_name};
 use crate::explorer::driver::{Effect, Inline};
 use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
+use crate::mend::Reason;
 use thiserror::Error;
 
 /// What a script may do to files.
@@ -25,8 +26,8 @@ pub struct Failed {
     pub number: usize,
     /// The command.
     pub command: String,
-    /// Why it failed, in words.
-    pub reason: String,
+    /// Why it failed.
+    pub reason: Reason,
 }
 
 /// Does `effects`, and then the lines one after another; `told` hears of each that was done.
@@ -69,8 +70,8 @@ pub fn opens(command: &Command) -> bool {
     matches!(command, Command::Open(_) | Command::OpenWith { .. })
 }
 
-fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission) -> Result<(), String> {
-    let command = allowed(model, line.command.clone(), permission)?;
+fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission) -> Result<(), Reason> {
+    let command = allowed(model, line.command.clone(), permission).map_err(Reason::mendable)?;
     let effects = update(model, command);
     driver.settle(model, effects);
     // What a screen would ask now, nobody answers.
@@ -79,9 +80,10 @@ fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission)
 }
 
 /// What was told, if it is an error.
-fn refusal(model: &Model) -> Option<String> {
-    let (_, text) = model.message.as_ref().filter(|(level, _)| *level == Level::Error)?;
+fn refusal(model: &Model) -> Option<Reason> {
+    let (level, text) = model.message.as_ref().filter(|(level, _)| level.is_bad())?;
     // Nothing is computed any more: where there is no curve, it could not be.
     let cause = model.curve_error.as_ref().filter(|_| model.curve.is_none());
-    Some(by_name(cause.map_or(text, CurveError::text)))
+    let text = by_name(cause.map_or(text, CurveError::text));
+    Some(Reason { text, can_be_mended: *level == Level::Error })
 }

@@ -3,10 +3,11 @@
 //! What a list of sessions shows stands first; it is read without the rest being understood.
 
 use super::number::{Real, floats, reals};
-use super::problems::{Collector, Place, Problems};
+use super::problems::{Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
 use crate::explorer::journal::{Kept, Replay, Start};
+use crate::explorer::script;
 use crate::preset::{Fingerprint, Preset, Source, shipped};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -135,12 +136,13 @@ impl Script {
         let start = self.start.map(|(source, at)| Ok(Start { source: source.back()?, preset: preset(at)? }));
         let replay =
             self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
+        let (lines, left_out) = script::without_former(self.lines);
         Ok(Kept {
-            lines: Arc::new(self.lines),
+            lines: Arc::new(lines),
             start: start.transpose()?,
             replay: replay.transpose()?,
             steps: self.steps,
-            broken: self.broken,
+            broken: self.broken.or(left_out),
         })
     }
 }
@@ -152,6 +154,7 @@ enum Origin {
     Shipped(String),
     User { name: String, path: Place },
     File(Place),
+    Piped { name: String, text: String },
 }
 
 impl Origin {
@@ -160,6 +163,7 @@ impl Origin {
             Source::Shipped(shipped) => Self::Shipped(shipped.name.to_owned()),
             Source::User { name, path } => Self::User { name: name.clone(), path: Place::of(path) },
             Source::File(path) => Self::File(Place::of(path)),
+            Source::Piped { name, text } => Self::Piped { name: name.clone(), text: text.to_string() },
         }
     }
 
@@ -172,6 +176,7 @@ impl Origin {
             }
             Self::User { name, path } => Source::User { name, path: path.path() },
             Self::File(path) => Source::File(path.path()),
+            Self::Piped { name, text } => Source::Piped { name, text: text.into() },
         })
     }
 }
@@ -244,7 +249,7 @@ impl Document {
     /// # Errors
     /// [`Unreadable::Damaged`].
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
-        let (presets, settings) = self.problems.back()?;
+        let Restored { presets, settings, was_former } = self.problems.back()?;
         let preset = |number: usize| {
             let found = presets.get(number).cloned();
             found.ok_or_else(|| Unreadable::Damaged("a preset is missing".to_owned()))
@@ -263,6 +268,7 @@ impl Document {
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
             journal: self.journal.back(preset)?,
+            was_former,
         })
     }
 }

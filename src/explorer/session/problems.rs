@@ -146,14 +146,23 @@ impl Profile {
             radii: numbers(self.radii),
             gaps: numbers(self.gaps),
             unit: self.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
+            header: None,
             notes: self.notes,
         }
     }
 }
 
+/// What is read back.
+pub(super) struct Restored {
+    pub(super) presets: Vec<Preset>,
+    pub(super) settings: Vec<Arc<Setting>>,
+    /// Whether any preset has keys or words of before.
+    pub(super) was_former: bool,
+}
+
 impl Problems {
     /// The presets and settings, none of them made ready.
-    pub(super) fn back(self) -> Result<(Vec<Preset>, Vec<Arc<Setting>>), Unreadable> {
+    pub(super) fn back(self) -> Result<Restored, Unreadable> {
         let profiles: Vec<Arc<Rows>> =
             self.profiles.into_iter().map(|saved| Arc::new(saved.rows())).collect();
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
@@ -163,12 +172,13 @@ impl Problems {
             preset.map_err(|error| Unreadable::Damaged(error.to_string()))
         };
         let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;
+        let (presets, former): (Vec<_>, Vec<_>) = presets.into_iter().unzip();
         let setting = |saved: Scaled| {
             let preset: &Preset = presets.get(saved.preset).ok_or_else(|| missing("preset"))?;
             let [approach, force, contact_radius] = floats(saved.scales);
             Ok(Arc::new(Setting::new(preset.clone(), Scales { approach, force, contact_radius })))
         };
         let settings = self.settings.into_iter().map(setting).collect::<Result<Vec<_>, Unreadable>>()?;
-        Ok((presets, settings))
+        Ok(Restored { presets, settings, was_former: former.contains(&true) })
     }
 }

@@ -4,7 +4,7 @@ use crate::contact::Control;
 use crate::explorer::driver::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
-use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Model, Panel};
+use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Level, Model, Panel};
 use crate::explorer::pins::Pins;
 use crate::explorer::update::want_curve;
 use crate::explorer::view::{Overlays, View, Window};
@@ -34,7 +34,12 @@ pub struct Snapshot {
     pub look: Look,
     /// The script that leads here.
     pub journal: Kept,
+    /// Whether it was read from a session that calls the exact basis spectral, as programs before this one did.
+    pub was_former: bool,
 }
+
+/// What is said of a session of before when it goes on.
+const FORMER: &str = "its basis spectral is exact now";
 
 /// How a session is looked at and walked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -118,6 +123,7 @@ impl Snapshot {
             pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
             look: Look::of(model),
             journal: model.journal.kept(),
+            was_former: false,
         }
     }
 
@@ -167,6 +173,9 @@ impl Snapshot {
         }
         if let Some(before) = before {
             model.follow(before);
+        }
+        if self.was_former {
+            model.message = Some((Level::Info, FORMER.to_owned()));
         }
         let mut effects = vec![want_curve(&mut model)];
         effects

@@ -40,6 +40,8 @@ pub(super) struct Saved {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     least_pressure: Option<[Real; 2]>,
     admissible: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    known_to: Option<Real>,
     digits: Real,
     from_exact: Real,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -150,6 +152,7 @@ impl Saved {
             crest: admissibility.nearest.map(|crest| (Real(crest.radius), Real(crest.gap), crest.wave)),
             least_pressure: admissibility.least_pressure.map(|(radius, least)| reals([radius, least])),
             admissible: admissibility.holds,
+            known_to: admissibility.known_to.map(Real),
             digits: Real(node.digits),
             from_exact: Real(node.from_exact),
             begins: node.begins,
@@ -191,6 +194,7 @@ impl Saved {
                 nearest: self.crest.map(|(radius, gap, wave)| Crest { radius: radius.0, gap: gap.0, wave }),
                 least_pressure: self.least_pressure.map(|[radius, least]| (radius.0, least.0)),
                 holds: self.admissible,
+                known_to: self.known_to.map(|radius| radius.0),
             },
             digits: self.digits.0,
             from_exact: self.from_exact.0,

@@ -14,9 +14,13 @@ use crate::print::Format;
 use std::path::{Path, PathBuf};
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
-    if let Source::Shipped(_) = model.source {
-        let text =
-            format!("shipped presets are read-only: {} saves under a name of your own", Id::SaveAs.named());
+    let why = match model.source {
+        Source::Shipped(_) => Some("shipped presets are read-only"),
+        Source::Piped { .. } => Some("the preset came through a pipe and has no file"),
+        Source::User { .. } | Source::File(_) => None,
+    };
+    if let Some(why) = why {
+        let text = format!("{why}: {} saves under a name of your own", Id::SaveAs.named());
         tell(model, Level::Error, text);
         return Vec::new();
     }
@@ -113,7 +117,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             tell(model, Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplacePage(page, path));
         }
-        Done::Failed(reason) => tell(model, Level::Error, reason),
+        Done::Failed(reason) => tell(model, Level::of(&reason), reason.text),
     }
     Vec::new()
 }

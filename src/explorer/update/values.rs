@@ -15,6 +15,7 @@ use crate::explorer::model::{Checking, CurveError, Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::walk::Action;
+use crate::mend::Reason;
 use crate::preset::family::is_parameter;
 use crate::preset::invalid::Invalid;
 use crate::preset::schema::{Kind, RADIUS_OVER_CURVATURE, START_KEYS};
@@ -64,7 +65,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
     vec![Effect::StopCurve(model.curve_wanted)]
 }
 
-pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveData>, String>) -> Vec<Effect> {
+pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveData>, Reason>) -> Vec<Effect> {
     if id <= model.curve_shown {
         return Vec::new();
     }
@@ -73,7 +74,7 @@ pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveDat
         Err(reason) => {
             model.queue.clear();
             let text = format!("no curve for these values: {reason}");
-            tell(model, Level::Error, text.clone());
+            tell(model, Level::of(&reason), text.clone());
             model.curve_error = Some(CurveError::Failed(text));
             Vec::new()
         }

@@ -95,9 +95,9 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
             if unsolved {
                 mark_stale(model, id, &reason);
-                tell(model, Level::Error, format!("{reason}; {} restarts", Id::Restart.named()));
+                tell(model, Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
             } else {
-                tell(model, Level::Error, reason);
+                tell(model, Level::Failure, reason);
             }
         }
     }
@@ -256,7 +256,8 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
 }
 
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
-    let Some(point) = curve.sweep.curve.branch.points.first().cloned() else { return };
+    let drawn = &curve.sweep.curve;
+    let Some(point) = drawn.equilibrium.explicit(drawn.outermost()) else { return };
     let (Some(stiffness), Some(admissibility)) = (curve.sweep.stiffness, curve.sweep.start) else { return };
     let state = curve.sweep.curve.equilibrium.state(&point);
     let control = curve.case.control;

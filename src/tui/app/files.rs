@@ -17,7 +17,7 @@ impl App {
         let suggestion = match &self.model.source {
             Source::User { name, .. } => name.clone(),
             Source::Shipped(shipped) => format!("my-{}", shipped.name),
-            Source::File(_) => String::new(),
+            Source::File(_) | Source::Piped { .. } => String::new(),
         };
         let prompt = |with_data| {
             let note = "small letters, digits, - and _";
@@ -40,6 +40,7 @@ impl App {
         let base = match &self.model.source {
             Source::User { name, .. } => name.clone(),
             Source::Shipped(shipped) => shipped.name.to_owned(),
+            Source::Piped { .. } => "preset".to_owned(),
             Source::File(path) => {
                 path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
             }

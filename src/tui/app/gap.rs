@@ -4,7 +4,6 @@ use super::App;
 use crate::contact::Shape;
 use crate::contact::formula::{Formula, FormulaError};
 use crate::explorer::data::Folder;
-use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, update};
 use crate::figure::Figure;
 use crate::figure::shape::undeformed;
@@ -106,7 +105,7 @@ impl App {
         }
         let command = Command::Try { key: key.clone(), text: prompt.input.value().to_owned() };
         let effects = update(&mut self.model, command);
-        let refusal = self.model.message.take_if(|(level, _)| *level == Level::Error);
+        let refusal = self.model.message.take_if(|(level, _)| level.is_bad());
         prompt.error = refusal.map(|(_, reason)| reason);
         effects
     }

@@ -69,23 +69,24 @@ pub struct Display<S: Sink + 'static> {
 
 impl<S: Sink> Display<S> {
     pub(in crate::tui) fn new(line: &'static S) -> io::Result<Self> {
-        Ok(Self {
-            terminal: Terminal::new(Screen::new(line))?,
-            line,
-            pace: Pace::default(),
-            due: Instant::now(),
-        })
+        Self::paced(line, Pace::default())
+    }
+
+    pub(in crate::tui) fn paced(line: &'static S, pace: Pace) -> io::Result<Self> {
+        Ok(Self { terminal: Terminal::new(Screen::new(line))?, line, pace, due: Instant::now() })
     }
 
     /// Draws a frame and writes what has changed, in one write; nothing if nothing has.
     ///
     /// Inside `render` only the frame's own area counts: the window may have another size by then. Returns once
-    /// the terminal has taken the bytes; if it has gone away, the program ends here.
+    /// the terminal has taken the bytes; if it has gone away, the program ends here. A frame drawn before it is due
+    /// leaves the next one what was left of the wait: the line has both to carry.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) {
         if self.terminal.draw(render).is_err() {
             end(HUNG_UP);
         }
-        self.due = Instant::now() + self.pace.gap(self.terminal.backend().last_written());
+        let gap = self.pace.gap(self.terminal.backend().last_written());
+        self.due = self.due.max(Instant::now()) + gap;
     }
 
     /// When the next frame may be drawn.

@@ -53,11 +53,10 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     }
     let warnings = model.curve.iter().flat_map(|curve| &curve.sweep.warnings);
     let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
-    for (key, name) in [("basis.rings", "rings"), ("basis.functions", "functions")] {
-        // What is under way and a warning need the room more than what the Problem panel says as well.
-        if let (Some(count), true) = (model.preset.get(key), warnings.is_empty() && app.late.is_none()) {
-            spans.push(Span::raw(format!("  {name} {count}")));
-        }
+    // What is under way and a warning need the room more than what the Problem panel says as well.
+    if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())
+    {
+        spans.push(Span::raw(format!("  rings {count}")));
     }
     if model.is_computing() {
         let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));

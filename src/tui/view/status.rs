@@ -44,7 +44,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let is_reading = reading.is_some();
     let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let text = app.keymap.spelled(&text);
-    let style = if level == Level::Error { theme.error() } else { ratatui::style::Style::new() };
+    let style = if level.is_bad() { theme.error() } else { ratatui::style::Style::new() };
     let count = app.count.map_or_else(|| " ".to_owned(), |count| format!(" {count} "));
     let room = usize::from(status.width).saturating_sub(count.len());
     // The help has the status whole, and can be opened while nothing else is open.

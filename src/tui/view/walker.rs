@@ -117,6 +117,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     // Where there is room: what the basis' own estimate is worth.
     lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
     lines.extend(stiffness(theme, node));
+    lines.extend(known_to(theme, node));
     lines
 }
 
@@ -127,12 +128,26 @@ fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
+/// Said of a possible state whose gap is not known, or not looked at, beyond a radius.
+fn known_to(theme: Theme, node: &Node) -> Option<Line<'static>> {
+    let radius = node.admissibility.known_to.filter(|_| node.admissibility.holds)?;
+    let radius = shown(theme, node, Quantity::Length, radius * node.setting.units().length, 4);
+    Some(Line::from(pair(theme, " admissible up to r ", &radius).to_vec()))
+}
+
 /// dP/dδ, `P_δ` and dA/dδ; and the iterations, which nobody needs where there is no room.
 fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 3] {
     let stiffness = node.stiffness.in_units(node.setting.units());
     // At a limit point of the approach the slopes have no bound.
     let slope = |quantity, x: f64| {
-        if x.is_infinite() { "infinite".to_owned() } else { shown(theme, node, quantity, x, 4) }
+        if x.is_nan() {
+            // At a corner they differ from side to side.
+            "none".to_owned()
+        } else if x.is_infinite() {
+            "infinite".to_owned()
+        } else {
+            shown(theme, node, quantity, x, 4)
+        }
     };
     let tangent = pair(theme, " dP/dδ ", &slope(Quantity::ForcePerLength, stiffness.tangent));
     let contact = pair(theme, "   with s held ", &slope(Quantity::ForcePerLength, stiffness.contact));

@@ -262,7 +262,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
 fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     let mut screen = screen("wavy-sphere");
     let store = Store::at(screen.folder.path(), &[]);
-    let (_, _) = store.save("mine", &screen.app.model.preset, Overwrite::Never).unwrap();
+    let (_, _) = store.save("mine", &screen.app.model.preset, None, Overwrite::Never).unwrap();
     screen.keys("oD");
     assert!(screen.text(120, 40).contains("Open a preset: Enter takes, Esc closes"), "a shipped one stays");
     for _ in 0..crate::preset::shipped::SHIPPED.len() {
