@@ -1,4 +1,4 @@
-//! What the engine costs, over a fixed table of ring numbers and with eigenfunctions.
+//! What the engine costs, over a fixed table of ring numbers and in the exact basis.
 //!
 //! `cargo bench --no-default-features`; the numbers are for comparing two versions on one machine.
 
@@ -7,9 +7,11 @@
 use divan::{Bencher, black_box};
 use pulloff::case::Case;
 use pulloff::contact::Control;
-use pulloff::preset::{BasisSpec, Functions, Store};
-use pulloff::ritz::moments::EdgeRules;
-use pulloff::ritz::{Evaluation, Grading, Order, Rings};
+use pulloff::contact::{Problem, Shape};
+use pulloff::disc::{Basis, Evaluation, Exact, Order, Table};
+use pulloff::preset::{BasisSpec, Store};
+use pulloff::ritz::{Grading, Rings};
+use std::sync::Arc;
 
 /// The ring numbers.
 const SIZES: [usize; 3] = [50, 200, 800];
@@ -27,9 +29,9 @@ fn fig_9(rings: usize) -> Case {
     fig_9_in(BasisSpec::Rings { rings, grading: Grading::Uniform })
 }
 
-/// Fig. 9 with enough eigenfunctions.
-fn fig_9_spectral() -> Case {
-    fig_9_in(BasisSpec::Spectral { functions: Functions::Auto })
+/// Fig. 9 in the exact basis.
+fn fig_9_exact() -> Case {
+    fig_9_in(BasisSpec::Exact)
 }
 
 fn fig_9_in(basis: BasisSpec) -> Case {
@@ -53,26 +55,25 @@ fn evaluation(bencher: Bencher, rings: usize) {
     bencher.bench_local(|| case.basis.evaluate(&case.reduced, black_box(0.3), black_box(-0.01)));
 }
 
-/// The curve through the explicit root, 500 points.
+/// The equilibria over all radii, with the states to draw.
 #[divan::bench(args = SIZES, max_time = 5)]
-fn sweep(bencher: Bencher, rings: usize) {
+fn curve(bencher: Bencher, rings: usize) {
     let case = fig_9(rings);
-    bencher.bench_local(|| case.sweep(|| true).unwrap());
+    bencher.bench_local(|| case.curve(|| true).unwrap());
 }
 
 /// The curve by arc-length continuation.
 #[divan::bench(args = TRACED, max_time = 5)]
 fn trace(bencher: Bencher, rings: usize) {
     let case = fig_9(rings);
-    bencher.bench_local(|| case.trace().unwrap());
+    let curve = case.curve(|| true).unwrap();
+    bencher.bench_local(|| case.trace(&curve).unwrap());
 }
 
-/// Every jump of the swept curve with its two losses.
+/// Every jump of the curve with its two losses.
 fn unload(bencher: Bencher, case: &Case, control: Control) {
-    let curve = case.sweep(|| true).unwrap();
-    bencher
-        .with_inputs(|| curve.clone())
-        .bench_local_values(|mut curve| case.unload(&mut curve, control).unwrap());
+    let curve = case.curve(|| true).unwrap();
+    bencher.bench_local(|| case.unload(&curve, control).unwrap());
 }
 
 #[divan::bench(args = SIZES, max_time = 5)]
@@ -108,45 +109,40 @@ fn dense_curve(bencher: Bencher, rings: usize) {
     bencher.bench_local(|| dense(&case, black_box(&radii)));
 }
 
+/// The same in the exact basis, the table made anew.
 #[divan::bench]
-fn spectral_dense_curve(bencher: Bencher) {
-    let (case, radii) = (fig_9_spectral(), dense_radii());
-    bencher.bench_local(|| dense(&case, black_box(&radii)));
-}
-
-/// The gap alone, sampled where the dense curve samples it: what no basis can go below.
-#[divan::bench]
-fn spectral_dense_curve_floor(bencher: Bencher) {
-    let (case, radii) = (fig_9_spectral(), dense_radii());
-    let rules = EdgeRules::new(case.basis.size());
-    let gap = case.reduced.gap.as_ref();
-    let mut values = vec![0.0; case.basis.size() + 16];
+fn exact_dense_curve(bencher: Bencher) {
+    let (problem, radii) = (problem(), dense_radii());
     bencher.bench_local(|| {
-        for &s in black_box(&radii) {
-            let nodes = rules.nodes(gap, s);
-            gap.values(s, &nodes, &mut values[..nodes.len()]);
-            black_box(&mut values);
-        }
+        let basis = Exact::of(&problem, 0.5).unwrap();
+        basis.equilibria(&problem, black_box(&radii), Order::State, &mut || true)
     });
 }
 
-/// The limit points under displacement, force and a spring, on a curve that is there.
-#[divan::bench(max_time = 5)]
-fn spectral_limit_points(bencher: Bencher) {
-    let curve = fig_9_spectral().sweep(|| true).unwrap();
-    let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
-    bencher.bench_local(|| controls.map(|control| curve.limit_points(control).len()));
+/// The table alone.
+#[divan::bench]
+fn exact_table(bencher: Bencher) {
+    let problem = problem();
+    bencher.bench_local(|| Table::new(Arc::clone(&problem.gap), black_box(0.5), &mut || true).unwrap());
 }
 
-/// The same, and every jump and loss of the three unloadings, from one swept curve.
+/// The problem of Fig. 9, reduced.
+fn problem() -> pulloff::contact::Reduced {
+    let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
+    let work_of_adhesion = 0.025 / std::f64::consts::TAU;
+    Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced()
+}
+
+/// The limit points under displacement, force and a spring, and every jump and both losses of the three unloadings, on a
+/// curve that is there.
 fn events(bencher: Bencher, case: &Case) {
-    let curve = case.sweep(|| true).unwrap();
+    let curve = case.curve(|| true).unwrap();
+    let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
     bencher.with_inputs(|| curve.clone()).bench_local_values(|mut curve| {
-        let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
         for control in controls {
             curve.hold(control);
         }
-        controls.map(|control| case.unload(&mut curve.clone(), control).unwrap())
+        controls.map(|control| case.unload(&curve, control).unwrap())
     });
 }
 
@@ -156,51 +152,40 @@ fn all_events(bencher: Bencher, rings: usize) {
 }
 
 #[divan::bench(max_time = 5)]
-fn spectral_all_events(bencher: Bencher) {
-    events(bencher, &fig_9_spectral());
-}
-
-/// The smallest automatic number of functions, its tail checked.
-#[divan::bench]
-fn spectral_case() -> Case {
-    fig_9_spectral()
+fn exact_all_events(bencher: Bencher) {
+    events(bencher, &fig_9_exact());
 }
 
 #[divan::bench]
-fn spectral_evaluation(bencher: Bencher) {
-    let case = fig_9_spectral();
+fn exact_evaluation(bencher: Bencher) {
+    let case = fig_9_exact();
     bencher.bench_local(|| case.basis.evaluate(&case.reduced, black_box(0.3), black_box(-0.01)));
 }
 
-#[divan::bench]
-fn spectral_energy(bencher: Bencher) {
-    let case = fig_9_spectral();
-    bencher.bench_local(|| case.basis.energy(&case.reduced, black_box(0.3), black_box(-0.01)));
+#[divan::bench(max_time = 5)]
+fn exact_curve(bencher: Bencher) {
+    let case = fig_9_exact();
+    bencher.bench_local(|| case.curve(|| true).unwrap());
 }
 
 #[divan::bench(max_time = 5)]
-fn spectral_sweep(bencher: Bencher) {
-    let case = fig_9_spectral();
-    bencher.bench_local(|| case.sweep(|| true).unwrap());
+fn exact_trace(bencher: Bencher) {
+    let case = fig_9_exact();
+    let curve = case.curve(|| true).unwrap();
+    bencher.bench_local(|| case.trace(&curve).unwrap());
 }
 
 #[divan::bench(max_time = 5)]
-fn spectral_trace(bencher: Bencher) {
-    let case = fig_9_spectral();
-    bencher.bench_local(|| case.trace().unwrap());
+fn exact_unload_by_displacement(bencher: Bencher) {
+    unload(bencher, &fig_9_exact(), Control::Displacement);
 }
 
 #[divan::bench(max_time = 5)]
-fn spectral_unload_by_displacement(bencher: Bencher) {
-    unload(bencher, &fig_9_spectral(), Control::Displacement);
+fn exact_unload_by_force(bencher: Bencher) {
+    unload(bencher, &fig_9_exact(), Control::Force);
 }
 
 #[divan::bench(max_time = 5)]
-fn spectral_unload_by_force(bencher: Bencher) {
-    unload(bencher, &fig_9_spectral(), Control::Force);
-}
-
-#[divan::bench(max_time = 5)]
-fn spectral_unload_by_spring(bencher: Bencher) {
-    unload(bencher, &fig_9_spectral(), Control::Stiffness(0.15));
+fn exact_unload_by_spring(bencher: Bencher) {
+    unload(bencher, &fig_9_exact(), Control::Stiffness(0.15));
 }

@@ -111,10 +111,10 @@ fn parse_and_bind() -> Bound {
     wavy()
 }
 
-/// 4096 nodes for what is finite and for the wavelength.
-#[divan::bench]
-fn survey(bencher: Bencher) {
-    let bound = wavy();
+/// Where it is finite, its breaks and its wavelength.
+#[divan::bench(args = [WAVY, "sqrt(4 - r^2)", "max(0.0008 - abs(r - 0.3), 0)", "abs(sin(100*r))", "r^1.5"])]
+fn survey(bencher: Bencher, text: &str) {
+    let bound = bind(text);
     bencher.bench_local(|| bound.clone().over(black_box(0.4)).unwrap());
 }
 

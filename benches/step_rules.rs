@@ -5,9 +5,11 @@
 //! `continuation::settings` were chosen from it.
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::continuation::Settings;
+use pulloff::continuation::{Settings, Work, events};
+use pulloff::disc::Basis;
+use pulloff::quasistatic::curve::settings;
 use pulloff::quasistatic::{Curve, CurveStop};
-use pulloff::ritz::{Basis, Rings};
+use pulloff::ritz::Rings;
 use std::sync::Arc;
 
 const FROM: f64 = 1.0;
@@ -36,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let problems = problems();
     let truth: Vec<Vec<usize>> = problems
         .iter()
-        .filter_map(|problem| Curve::swept(problem.clone(), basis.clone(), FROM, TO, || true))
+        .filter_map(|problem| Curve::of(problem.clone(), basis.clone(), FROM, TO))
         .map(|curve| CONTROLS.map(|control| curve.limit_points(control).len()).to_vec())
         .collect();
     let all: usize = truth.iter().flatten().sum();
@@ -69,21 +71,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 settings.longest = longest;
                 settings.points = 5000;
             };
-            let Some(curve) = Curve::traced(problem.clone(), basis.clone(), FROM, TO, adjust, || true) else {
-                continue;
-            };
-            at_end += usize::from(curve.stop == CurveStop::End);
+            let Some(curve) = Curve::of(problem.clone(), basis.clone(), FROM, TO) else { continue };
+            let Some((branch, stop)) = curve.traced(adjust, || true) else { continue };
+            at_end += usize::from(stop == CurveStop::End);
             let counts = CONTROLS.map(|control| {
-                let adjust = |settings: &mut Settings| {
-                    settings.grazing = if grazing { settings.grazing } else { -1.0 };
-                };
-                curve.limits_with(control, &adjust).len()
+                let mut settings = settings(&curve.equilibrium);
+                settings.grazing = if grazing { settings.grazing } else { -1.0 };
+                let row = curve.equilibrium.control_row(control);
+                let mut work = Work::default();
+                events::brackets(&curve.equilibrium, &branch.points, &row, &settings, &mut work).len()
             });
             found += counts.iter().sum::<usize>();
             complete += usize::from(counts.to_vec() == *truth);
-            points.push(curve.branch.points.len());
-            evaluations += curve.branch.work.evaluations;
-            rejections += curve.branch.work.rejections;
+            points.push(branch.points.len());
+            evaluations += branch.work.evaluations;
+            rejections += branch.work.rejections;
         }
         points.sort_unstable();
         let median = points.get(points.len() / 2).copied().unwrap_or(0);

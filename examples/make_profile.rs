@@ -83,10 +83,7 @@ mod tests {
 
     #[test]
     fn reading_and_smoothing_bring_the_truth_back() {
-        let columns = parse(SHIPPED.as_bytes()).unwrap();
-        let columns =
-            columns.in_units(|unit| [("um", 1.0), ("nm", 1e-3)].iter().find(|u| u.0 == unit).map(|u| u.1));
-        let columns = columns.unwrap();
+        let (columns, _) = parse(SHIPPED.as_bytes()).unwrap().in_one_unit().unwrap();
         let profile = Profile::new(&columns.radii, &columns.gaps, Smoothing::Auto).unwrap();
         assert!((profile.removed() / 2e-3 - 1.0).abs() < 0.1, "{}", profile.removed());
         let truth = truth().unwrap();

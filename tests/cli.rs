@@ -467,7 +467,7 @@ fn any_consistent_units_give_the_same_reduced_answer() {
             0.5 * length
         ),
     );
-    for kind in ["basis.kind=spectral", "basis.kind=rings"] {
+    for kind in ["basis.kind=exact", "basis.kind=rings"] {
         let unload = |preset: &str| home.json(&["unload", preset, "--set", kind]);
         let (ours, reduced) = (unload(&si), unload("fig-9"));
         assert_eq!(kinds(&ours), kinds(&reduced));
@@ -503,7 +503,7 @@ fn the_states_of_the_paper_are_all_possible() {
 }
 
 /// Fig. 9 with adhesion so weak that the next crest would touch.
-const WEAK: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=1e-4", "--set", "basis.kind=spectral"];
+const WEAK: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=1e-4", "--set", "basis.kind=exact"];
 /// Without adhesion, where the disc would have to pull.
 const BARE: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=0"];
 
@@ -632,10 +632,50 @@ fn a_dash_is_standard_output() {
 }
 
 #[test]
-fn an_output_that_cannot_be_written_is_a_failure() {
+fn csv_of_an_si_preset_has_its_units_beside_it() {
+    let home = Home::new();
+    let note = |arguments: &[&str]| {
+        let ended = home.run(arguments);
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        let is_csv = ended.out.starts_with("step,") || ended.out.starts_with("kind,");
+        assert!(!is_csv || !ended.out.contains('#'), "{}", ended.out);
+        ended
+            .err
+            .lines()
+            .filter(|line| line.contains("units of the CSV"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let states = "contact_radius, approach, area_slope in m; force in N; energy in J; contact_stiffness, \
+                  tangent_stiffness in N/m";
+    assert_eq!(note(&["trace", "fig-9-si"]), [format!("pulloff: note: units of the CSV: {states}")]);
+    assert_eq!(note(&["trace", "fig-9-si", "-o", "x.csv"]).len(), 1);
+    let theory = &note(&["trace", "fig-9-si", "--theory"])[0];
+    assert!(theory.contains("force, exact_force in N"), "{theory}");
+    let events = &note(&["unload", "fig-9-si", "--format", "csv", "--control", "force"])[0];
+    assert!(
+        events.ends_with(
+            "control_value, before_force, after_force in N; before_contact_radius, before_approach, \
+        after_contact_radius, after_approach in m; dissipated, dissipated_by_area in J"
+        ),
+        "{events}"
+    );
+    // JSON and tables have them inside, and reduced numbers have none.
+    for arguments in [
+        &["trace", "fig-9-si", "--format", "json"][..],
+        &["unload", "fig-9-si"],
+        &["trace", "fig-9"],
+        &["unload", "fig-9", "--format", "csv"],
+    ] {
+        assert_eq!(note(arguments), [""; 0], "{arguments:?}");
+    }
+}
+
+#[test]
+fn an_output_in_no_folder_is_refused() {
     let home = Home::new();
     let ended = home.run(&short("unload", &["-o", "nowhere/events.csv"]));
-    assert_eq!((ended.status, ended.out.as_str()), (1, ""));
+    assert_eq!((ended.status, ended.out.as_str()), (2, ""));
     assert!(ended.err.contains("nowhere"), "{}", ended.err);
 }
 

@@ -129,7 +129,7 @@ fn a_preset_file_needs_only_its_required_keys() {
     let document = home.json(&["unload", &file]);
     assert_eq!(kinds(&document), ["pull-off"]);
     let basis = &document["problem"]["preset"]["basis"];
-    assert_eq!(*basis, serde_json::json!({"kind": "spectral", "functions": "auto"}));
+    assert_eq!(*basis, serde_json::json!({"kind": "exact"}));
     let end = document["problem"]["end_contact_radius"].as_f64().unwrap();
     assert!((end - 0.002).abs() < 1e-15, "{end}");
     // Relative, without a slash: it is a file because it ends in .toml.
@@ -312,4 +312,41 @@ fn a_profile_without_units_in_si_is_taken_in_metres_with_a_warning() {
     assert!((force(&bare) / force(&named) - 1.0).abs() < 1e-9, "{bare} {named}");
     home.file("scan.csv", &format!("h [um],r [um]\n{}", rows(1.0)));
     home.refused(&["unload", &preset], &["the header names the gap \"h\" first", "scan.csv"]);
+}
+
+#[test]
+fn many_rows_are_averaged_with_a_note_and_holes_refused_with_a_smoothing_that_works() {
+    let home = Home::new();
+    let preset = home.file(
+        "scan.toml",
+        "units = \"SI\"\n[material]\neffective_modulus = \"1 MPa\"\nwork_of_adhesion = \"50 mJ/m^2\"\n[gap]\n\
+         shape = \"profile\"\nfile = \"scan.csv\"\n[path]\nstart_contact_radius = \"100 um\"\n",
+    );
+    let rows = |wanted: fn(f64) -> bool| -> String {
+        let radii = (0..=20_000).map(|i| f64::from(i) * 0.03).filter(|r| wanted(*r));
+        let rows = radii.map(|r| format!("{r:.2} {:.9}\n", r * r / 2000.0));
+        format!("r [um] h [um]\n{}", rows.collect::<Vec<_>>().concat())
+    };
+    let notes = |arguments: &[&str]| {
+        let document = home.json(&[&["unload", &preset], arguments].concat());
+        let notes = document["notes"].as_array().unwrap();
+        notes.iter().map(|note| note.as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    home.file("scan.csv", &rows(|_| true));
+    let smooth = ["--set", "gap.smoothing=20 um"];
+    assert_eq!(
+        notes(&[]),
+        [
+            "20 001 rows averaged in 4000 cells of 0.15 um: waves shorter than 0.6 um are not in the gap",
+            "whether the bodies stay apart outside the disc is known up to r = 600 um, and unknown beyond"
+        ]
+    );
+    let said = notes(&smooth);
+    assert_eq!(said[0], "20 001 rows averaged in 240 cells of 2.5 um");
+    assert!(said[1].starts_with("smoothing: waves of 20 um pass by half"), "{said:?}");
+    home.file("scan.csv", &rows(|r| !(200.0..202.0).contains(&r)));
+    let hole =
+        ["scan.csv: no row lies between the radii 199.98 um and 202.02 um", "gap.smoothing = \"19 um\""];
+    home.refused(&["unload", &preset], &hole);
+    assert_eq!(notes(&["--set", "gap.smoothing=19 um"]).len(), 3);
 }

@@ -3,8 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::ritz::spectral::FUNCTION_RANGE;
-use pulloff::ritz::{Basis, Grading, NewtonSettings, Rings, Solved, Spectral, solve};
+use pulloff::disc::{Basis, Exact};
+use pulloff::ritz::{Grading, NewtonSettings, Rings, Solved, solve};
+use pulloff::theory;
 use pulloff::theory::{hertz, jkr::Jkr};
 
 /// The smooth sphere E* = R = 1.
@@ -165,15 +166,16 @@ fn newton_at_given_force_from_a_threefold_radius() {
     }
 }
 
-/// Newton in eigenfunctions, exact for a sphere, from three times the true radius.
+/// Newton in the exact basis from three times the true radius.
 fn exactly_from_threefold(gamma: f64, control: Control, value: f64, exact: f64) -> Solved {
-    let (basis, settings) = (Spectral::new(4).unwrap(), NewtonSettings::default());
-    solve(&basis, &sphere(gamma), control, value, 3.0 * exact, settings)
+    let (problem, settings) = (sphere(gamma), NewtonSettings::default());
+    let basis = Exact::of(&problem, 1.0).unwrap();
+    solve(&basis, &problem, control, value, 3.0 * exact, settings)
         .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
 }
 
 #[test]
-fn eigenfunctions_need_at_most_six_rounds_to_jkr_at_given_approach() {
+fn the_exact_basis_needs_at_most_six_rounds_to_jkr_at_given_approach() {
     for gamma in [1e-12, 1e-8, 1e-5, 1e-4, 1e-3, 0.01, 0.1] {
         let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
         let smallest = jkr.approach(jkr.fixed_grips_radius());
@@ -189,7 +191,7 @@ fn eigenfunctions_need_at_most_six_rounds_to_jkr_at_given_approach() {
 }
 
 #[test]
-fn eigenfunctions_reach_hertz_to_rounding() {
+fn the_exact_basis_reaches_hertz_to_rounding() {
     for delta in [1e-4, 0.1, 0.5] {
         let (radius, force) = (hertz::contact_radius(1.0, delta), hertz::force(1.0, 1.0, delta));
         for (control, value) in [(Control::Displacement, delta), (Control::Force, force)] {
@@ -204,51 +206,24 @@ fn eigenfunctions_reach_hertz_to_rounding() {
 }
 
 #[test]
-fn eigenfunctions_converge_beyond_any_order_once_they_resolve_the_waves() {
-    let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
-    let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 0.004, shape }.reduced();
-    let at = |n: usize| {
-        let basis = Spectral::new(n).unwrap();
-        let e = basis.equilibrium(&problem, 0.5).unwrap();
-        [e.approach, e.force, basis.energy(&problem, 0.5, e.approach), basis.trusted_digits(&problem, 0.5)]
-    };
-    let exact = at(300);
-    for (n, bound) in [(16, 1.0), (24, 0.3), (32, 1e-1), (40, 1e-8), (48, 1e-12), (56, 1e-12), (1000, 1e-12)]
-    {
-        let [approach, force, energy, digits] = at(n);
-        let error = |ours: f64, exact: f64| (ours / exact - 1.0).abs();
-        let errors = [error(approach, exact[0]), error(force, exact[1]), error(energy, exact[2])];
-        println!(
-            "n = {n}: δ {:.1e}, P {:.1e}, U {:.1e}; digits {digits:.1}",
-            errors[0], errors[1], errors[2]
-        );
-        assert!(errors.iter().all(|e| *e < bound), "n = {n}: {errors:?}");
-        // Never more digits promised than there are, down to rounding.
-        let worst = errors.iter().copied().fold(1e-13, f64::max);
-        assert!(digits.min(12.0) <= 0.7 - worst.log10(), "n = {n}: {digits} digits, {errors:?}");
-    }
-}
-
-#[test]
-fn an_automatic_number_of_functions_is_enough_for_hundreds_of_waves() {
+fn hundreds_of_waves_are_resolved_to_rounding() {
     for (wavelength, s) in [(0.05, 0.1), (0.05, 5.0), (0.001, 0.5)] {
         let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.05 * wavelength, wavelength };
-        let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 1e-3, shape }.reduced();
-        let automatic = Spectral::resolving(&problem, s).unwrap();
-        let finer = Spectral::new((2 * automatic.size()).min(*FUNCTION_RANGE.end())).unwrap();
-        let at = |basis: &Spectral| {
-            let e = basis.equilibrium(&problem, s).unwrap();
-            [
-                e.approach,
-                e.force,
-                e.residual_gradient[1],
-                e.force_gradient[1],
-                basis.energy(&problem, s, e.approach),
-            ]
-        };
-        let errors: Vec<f64> =
-            at(&automatic).iter().zip(at(&finer)).map(|(ours, exact)| (ours / exact - 1.0).abs()).collect();
-        println!("{} waves, {} functions: {errors:?}", s / wavelength, automatic.size());
+        let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 1e-3, shape };
+        let exact = theory::Exact::of(&problem);
+        let reduced = problem.reduced();
+        let ours = Exact::of(&reduced, s).unwrap().equilibrium(&reduced, s).unwrap();
+        let truth = exact.curve(&[s])[0];
+        let slopes = exact.slopes(s);
+        let errors = [
+            (ours.approach, truth.approach),
+            (ours.force, truth.force),
+            (ours.energy, truth.energy),
+            (ours.slopes()[0], slopes.0),
+            (ours.slopes()[1], slopes.1),
+        ]
+        .map(|(ours, exact)| (ours / exact - 1.0).abs());
+        println!("{} waves: {errors:?}", s / wavelength);
         assert!(errors.iter().all(|e| *e < 1e-10), "{errors:?}");
     }
 }

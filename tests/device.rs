@@ -21,8 +21,7 @@ fn on_control_knob(preset: &str) -> Session {
 }
 
 fn radii(curve: &CurveData) -> Vec<f64> {
-    let equilibrium = &curve.sweep.curve.equilibrium;
-    curve.limits.iter().map(|limit| equilibrium.contact_radius(&limit.point)).collect()
+    curve.limits.iter().map(|limit| limit.contact_radius).collect()
 }
 
 /// What belongs to the control is as if the whole curve had been computed for it.

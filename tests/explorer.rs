@@ -563,7 +563,7 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
     // Saved beside the data, the preset names it by its path from there.
     let target = folder.join("mine.toml");
-    save_file(&target, &session.model.preset, Overwrite::Never).unwrap();
+    save_file(&target, &session.model.preset, None, Overwrite::Never).unwrap();
     assert!(std::fs::read_to_string(&target).unwrap().contains("file = \"good.csv\""));
     // With its data elsewhere: the preset of the session names the copy.
     session.does(Command::SaveAs { name: "scan".to_owned(), replace: false, with_data: true });

@@ -114,15 +114,15 @@ fn how_far_a_curve_is_belongs_to_the_newest_one() {
     let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
     let effects = update(&mut session.model, set);
     let id = session.model.curve_wanted;
-    let far = |id| Reply::Progress { id, progress: Progress::Curve { done: 3, of: 70 } };
+    let far = |id| Reply::Progress { id, progress: Progress::Curve(70) };
     assert!(answer(&mut session.model, far(id - 1)).is_empty());
     assert_eq!(session.model.progress, None);
     answer(&mut session.model, far(id));
-    assert!(session.status().ends_with("point 3 of 70; cancel gives up"), "{}", session.status());
+    assert!(session.status().ends_with("point 70; cancel gives up"), "{}", session.status());
     session.driver.settle(&mut session.model, effects);
     // Late, as from a thread: it is no longer computed.
     answer(&mut session.model, far(id));
-    assert!(!session.model.is_computing() && !session.status().contains("of 70"));
+    assert!(!session.model.is_computing() && !session.status().contains("point 70"));
 }
 
 #[test]

@@ -6,8 +6,8 @@
 use pulloff::contact::{Control, Shape, Start};
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
 use pulloff::explorer::{CurveData, NodeKind};
-use pulloff::preset::{BasisSpec, Functions, Material, PathSpec, Preset};
-use pulloff::quasistatic::curve::Turn;
+use pulloff::preset::{BasisSpec, Material, PathSpec, Preset};
+use pulloff::quasistatic::Turn;
 use std::sync::Arc;
 
 const START: f64 = 0.45;
@@ -18,7 +18,7 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
         units: pulloff::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
-        basis: BasisSpec::Spectral { functions: Functions::Auto },
+        basis: BasisSpec::Exact,
         path: PathSpec { start: Start::ContactRadius(START), control, end_contact_radius: None },
     }
 }
@@ -34,7 +34,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             id: 0,
             action: Action::Jump,
             curve: Arc::clone(&curve),
-            from: Some(limit.point.clone()),
+            from: curve.sweep.curve.equilibrium.explicit(limit.contact_radius),
             on_limit: true,
             control: curve.case.control,
             inward,

@@ -38,7 +38,7 @@ fn a_kill_at_any_moment_leaves_a_whole_preset() {
     let home = tempfile::tempdir().expect("a home");
     let store = Store::at(home.path().join("pulloff/presets"), &[]);
     let preset = read("wavy-sphere", shipped::find("wavy-sphere").expect("shipped").text).expect("shipped");
-    let (source, _) = store.save("mine", &preset, Overwrite::Never).expect("a preset");
+    let (source, _) = store.save("mine", &preset, None, Overwrite::Never).expect("a preset");
     let Source::User { path, .. } = source else { panic!("not saved by name") };
     let folder = path.parent().expect("a folder");
     let env = [("XDG_CONFIG_HOME", home.path().to_str().expect("Unicode"))];
@@ -69,7 +69,7 @@ fn a_kill_at_any_moment_leaves_a_whole_preset() {
         between += usize::from(!left.is_empty());
         swept += usize::from(!left.is_empty() && kill + 1 < kills);
     }
-    store.save("mine", &preset, Overwrite::Always).expect("a preset");
+    store.save("mine", &preset, None, Overwrite::Always).expect("a preset");
     assert_eq!(leftovers(folder), [] as [&str; 0]);
     assert_eq!(whole(&path), preset);
     println!(

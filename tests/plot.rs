@@ -150,7 +150,7 @@ fn data_replace_nothing_but_data_of_a_figure() {
     std::fs::create_dir(file("folder.csv")).unwrap();
     let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "folder.svg"]);
     assert!(
-        status == Some(1) && said.contains("not a regular file") && !file("folder.svg").exists(),
+        status == Some(2) && said.contains("not a regular file") && !file("folder.svg").exists(),
         "{said}"
     );
 }
@@ -205,6 +205,8 @@ fn a_range_of_an_axis_is_shown_in_its_own_units() {
     }
     for (range, words) in [
         (&["--x", "1"][..], "expected LO..HI, two numbers in the units of the axis"),
+        (&["--x", "0.02..0.0200001"], "--x <LO..HI>': the range is too narrow to draw"),
+        (&["--y", "0.9999999..1"], "it must be at least 0.0001 wide"),
         (&["--x", "2..1"], "a number up to a larger one, not from 2 to 1"),
         (&["--y", "1000.."], "--y 1000..: shows nothing of the figure, where P/Pc goes from "),
         (&["--sweep", "r.csv", "--x", "0..1"], "cannot be used with"),
@@ -367,7 +369,7 @@ fn a_sweep_over_two_axes_is_a_map() {
 fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     let folder = tempfile::tempdir().unwrap();
     let spec = "preset = \"fig-9-si\"\nquantities = [\"kesari_lew\"]\n\
-        set = [\"basis.kind=spectral\", \"path.start_contact_radius=1 mm\"]\n\
+        set = [\"basis.kind=exact\", \"path.start_contact_radius=1 mm\"]\n\
         [[axis]]\nkey = \"gap.amplitude\"\nvalues = [\"3 um\", \"1 um\", \"2 um\", \"2.5 um\", \"4 um\"]\n";
     std::fs::write(folder.path().join("s.toml"), spec).unwrap();
     let output = pulloff(folder.path(), &["sweep", "s.toml", "-o", "r.csv"]);

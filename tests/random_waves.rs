@@ -1,14 +1,16 @@
 //! Every limit point of sixty random wavy spheres is found by the arc-length trace.
 //!
 //! The truth is the explicit curve δ(s), P(s) of the same discretization: sign changes of its exact slopes on
-//! a grid of a hundredth of a wave. With eigenfunctions that is the exact solution.
+//! a grid of a hundredth of a wave. In the exact basis that is the exact solution.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::continuation::trace::Stop;
-use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Limit};
-use pulloff::ritz::{Basis, Rings, Spectral};
+use pulloff::continuation::{Work, events, locate};
+use pulloff::disc::{Basis, Exact};
+use pulloff::quasistatic::curve::settings;
+use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Point};
+use pulloff::ritz::Rings;
 use std::sync::Arc;
 
 const FROM: f64 = 1.0;
@@ -45,8 +47,15 @@ fn sign_changes(problem: &Reduced, basis: &Arc<dyn Basis>, wavelength: f64) -> [
     found
 }
 
-fn radii(equilibrium: &Equilibrium, limits: &[Limit]) -> Vec<f64> {
-    limits.iter().map(|l| equilibrium.contact_radius(&l.point)).collect()
+/// The radii of the limit points of `control` on an arc-length trace, by the tracer's own search and location.
+fn located(equilibrium: &Equilibrium, points: &[Point], control: Control) -> Vec<f64> {
+    let (settings, row) = (settings(equilibrium), equilibrium.control_row(control));
+    let mut work = Work::default();
+    let brackets = events::brackets(equilibrium, points, &row, &settings, &mut work);
+    let found = brackets.iter().map(|bracket| {
+        locate::limit_point(equilibrium, bracket, &row.normalize(), &settings, &mut work).unwrap()
+    });
+    found.map(|limit| equilibrium.contact_radius(&limit.point)).collect()
 }
 
 #[test]
@@ -55,10 +64,8 @@ fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_rings() {
 }
 
 #[test]
-fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_eigenfunctions() {
-    every_limit_point_is_found("eigenfunctions", |problem| {
-        Arc::new(Spectral::resolving(problem, FROM).unwrap())
-    });
+fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_the_exact_basis() {
+    every_limit_point_is_found("exact basis", |problem| Arc::new(Exact::of(problem, FROM).unwrap()));
 }
 
 fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Basis>) {
@@ -68,13 +75,13 @@ fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Ba
         let (problem, wavelength) = draw(&mut random);
         let basis = basis(&problem);
         let truth = sign_changes(&problem, &basis, wavelength);
-        let traced = Curve::traced(problem.clone(), basis.clone(), FROM, TO, |_| {}, || true).unwrap();
-        assert_eq!(traced.stop, CurveStop::End, "{problem_number}");
-        assert_ne!(traced.stop, CurveStop::Tracer(Stop::Cancelled));
-        let swept = Curve::swept(problem, basis.clone(), FROM, TO, || true).unwrap();
+        let curve = Curve::of(problem, basis, FROM, TO).unwrap();
+        let (branch, stop) = curve.traced(|_| {}, || true).unwrap();
+        assert_eq!(stop, CurveStop::End, "{problem_number}");
         for (control, truth) in [Control::Displacement, Control::Force].into_iter().zip(truth) {
-            let by_trace = radii(&traced.equilibrium, &traced.limit_points(control));
-            let by_sweep = radii(&swept.equilibrium, &swept.limit_points(control));
+            let by_trace = located(&curve.equilibrium, &branch.points, control);
+            let by_panels: Vec<f64> =
+                curve.limit_points(control).iter().map(|limit| limit.contact_radius).collect();
             for (lo, hi) in &truth {
                 let inside = by_trace.iter().any(|s| lo <= s && s <= hi);
                 assert!(
@@ -82,16 +89,16 @@ fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Ba
                     "problem {problem_number}, {control}: none between {lo} and {hi}: {by_trace:?}"
                 );
             }
-            // Both tracers make the same branch: the same limit points, to rounding.
-            assert_eq!(by_trace.len(), by_sweep.len(), "problem {problem_number}, {control}");
-            for (a, b) in by_trace.iter().zip(&by_sweep) {
+            // By the panels without a trace: the same limit points, to rounding.
+            assert_eq!(by_trace.len(), by_panels.len(), "problem {problem_number}, {control}");
+            for (a, b) in by_trace.iter().zip(&by_panels) {
                 assert!((a / b - 1.0).abs() < 1e-8, "problem {problem_number}, {control}: {a} {b}");
             }
             total += by_trace.len();
         }
-        points.push(traced.branch.points.len());
-        evaluations += traced.branch.work.evaluations;
-        rejections += traced.branch.work.rejections;
+        points.push(branch.points.len());
+        evaluations += branch.work.evaluations;
+        rejections += branch.work.rejections;
     }
     points.sort_unstable();
     let median = points[30];

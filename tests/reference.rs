@@ -6,9 +6,10 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::contact::{Control, Problem, Shape};
+use pulloff::disc::{Basis, Exact};
 use pulloff::quasistatic::unload::unload;
 use pulloff::quasistatic::{Curve, EventKind};
-use pulloff::ritz::{Basis, Rings, Spectral};
+use pulloff::ritz::Rings;
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -49,9 +50,8 @@ fn rings(number: usize) -> Arc<dyn Basis> {
 
 /// The largest errors of an unloading: states relative to the range of their column, losses relative.
 fn errors(case: &Case, control: Control, basis: Arc<dyn Basis>) -> (f64, f64) {
-    let mut curve =
-        Curve::swept(case.problem.reduced(), basis, case.start, 0.004 * case.start, || true).unwrap();
-    let ours = unload(&mut curve, control).unwrap();
+    let curve = Curve::of(case.problem.reduced(), basis, case.start, 0.004 * case.start).unwrap();
+    let ours = unload(&curve, control).unwrap();
     let exact = case.data["control"][control.to_string()]["unloading"].as_array().unwrap();
     assert_eq!(ours.events.len(), exact.len(), "{control}");
     let range = |column: &str| case.data["range"][column].as_f64().unwrap();
@@ -134,13 +134,12 @@ fn seven_snaps_and_a_pull_off_under_displacement_control_four_under_force() {
 }
 
 #[test]
-fn eigenfunctions_give_curve_events_and_losses_to_rounding() {
+fn the_exact_basis_gives_curve_events_and_losses_to_rounding() {
     for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
-        let basis: Arc<dyn Basis> =
-            Arc::new(Spectral::resolving(&case.problem.reduced(), case.start).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&case.problem.reduced(), case.start).unwrap());
         for control in controls(&case) {
             let (state, loss) = errors(&case, control, Arc::clone(&basis));
-            println!("{name} {control} {} functions: states {state:.1e}, losses {loss:.1e}", basis.size());
+            println!("{name} {control}: states {state:.1e}, losses {loss:.1e}");
             assert!(state < 1e-10, "{name} {control}: states off by {state:.2e} of the range");
             assert!(loss < 1e-8, "{name} {control}: losses off by {loss:.2e}");
         }
@@ -148,10 +147,10 @@ fn eigenfunctions_give_curve_events_and_losses_to_rounding() {
 }
 
 #[test]
-fn eigenfunctions_give_the_curve_and_every_limit_point_by_either_tracer() {
+fn the_exact_basis_gives_the_curve_and_every_limit_point() {
     for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
         let problem = case.problem.reduced();
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::resolving(&problem, case.start).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, case.start).unwrap());
         let range = |column: &str| case.data["range"][column].as_f64().unwrap();
         let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
         let mut worst = 0.0_f64;
@@ -162,33 +161,28 @@ fn eigenfunctions_give_the_curve_and_every_limit_point_by_either_tracer() {
             worst = worst.max((ours.approach - approach).abs() / range("approach"));
             worst = worst.max((ours.force - force).abs() / range("force"));
             let size = range("approach") * range("force");
-            worst = worst.max((basis.energy(&problem, s, ours.approach) - energy).abs() / size);
+            worst = worst.max((ours.energy - energy).abs() / size);
         }
         println!("{name} curve: {worst:.1e} of the range");
         assert!(worst < 1e-12, "{name}: the curve is off by {worst:.1e} of the range");
 
         let end = 0.004 * case.start;
-        let swept = Curve::swept(problem.clone(), Arc::clone(&basis), case.start, end, || true).unwrap();
-        let traced =
-            Curve::traced(problem.clone(), Arc::clone(&basis), case.start, end, |_| {}, || true).unwrap();
+        let curve = Curve::of(problem.clone(), Arc::clone(&basis), case.start, end).unwrap();
         for control in controls(&case) {
             let exact = case.data["control"][control.to_string()]["limit_points"].as_array().unwrap();
-            for curve in [&swept, &traced] {
-                let ours = curve.limit_points(control);
-                assert_eq!(ours.len(), exact.len(), "{name} {control}");
-                let mut worst = 0.0_f64;
-                // The table runs outward, a curve inward.
-                for (limit, exact) in ours.iter().rev().zip(exact) {
-                    let [approach, force, s] = curve.equilibrium.quantities(&limit.point.y);
-                    let off = |ours: f64, key: &str, column: &str| {
-                        (ours - number(exact, key)).abs() / range(column)
-                    };
-                    worst = worst.max(off(approach, "delta", "approach")).max(off(force, "P", "force"));
-                    worst = worst.max(off(s, "s", "contact_radius"));
-                }
-                println!("{name} {control} limit points: {worst:.1e} of the range");
-                assert!(worst < 1e-10, "{name} {control}: limit points off by {worst:.1e} of the range");
+            let ours = curve.limit_points(control);
+            assert_eq!(ours.len(), exact.len(), "{name} {control}");
+            let mut worst = 0.0_f64;
+            // The table runs outward, a curve inward.
+            for (limit, exact) in ours.iter().rev().zip(exact) {
+                let off =
+                    |ours: f64, key: &str, column: &str| (ours - number(exact, key)).abs() / range(column);
+                worst = worst.max(off(limit.approach, "delta", "approach"));
+                worst = worst.max(off(limit.force, "P", "force"));
+                worst = worst.max(off(limit.contact_radius, "s", "contact_radius"));
             }
+            println!("{name} {control} limit points: {worst:.1e} of the range");
+            assert!(worst < 1e-10, "{name} {control}: limit points off by {worst:.1e} of the range");
         }
     }
 }

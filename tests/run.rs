@@ -86,7 +86,7 @@ fn a_script_in_si_takes_units_and_bare_si_numbers() {
 fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     let home = Scripts::new();
     let preset = ["--preset", "wavy-sphere", "--set", "path.end_contact_radius=0.39"];
-    home.fails("step\n\njump\nexport walk w.csv", &preset, 1, "standard input:3: jump: the state is stable");
+    home.fails("step\n\njump\nexport walk w.csv", &preset, 2, "standard input:3: jump: the state is stable");
     assert!(!home.at("here/w.csv").exists());
     // The end of the path, twice, and then a line that may fail.
     home.quiet("next-limit\nnext-limit\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
@@ -96,7 +96,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
         ("open wavy", "no preset is called \"wavy\""),
         ("set gap.shape=profile gap.file=none.csv", "none.csv"),
     ] {
-        home.fails(script, &[], 1, said);
+        home.fails(script, &[], 2, said);
     }
     for (script, said) in [
         ("step\nstepp", "standard input:2:1: no command is called \"stepp\"; did you mean step?"),
@@ -113,6 +113,57 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     let output = home.run("step 2\nnext-limit\n", &["--verbose"]);
     assert!(output.err.starts_with("1: step 2: Stable under"), "{}", output.err);
     assert_eq!(output.err.lines().count(), 2);
+}
+
+#[test]
+fn a_walk_records_every_key_that_changed_during_it() {
+    let home = Scripts::new();
+    let script = "step\nset material.effective_modulus=\"25 kPa\"\nstep\nset path.start_contact_radius=\"400 um\"\n\
+                  control force\nset gap.shape=sphere\nexport walk w.csv\nexport walk w.json\n";
+    home.quiet(script, &["--preset", "fig-9-si"]);
+    let text = fs::read_to_string(home.at("here/w.csv")).unwrap();
+    let mut lines = csv::Reader::from_reader(text.as_bytes());
+    let names: Vec<String> = lines.headers().unwrap().iter().map(str::to_owned).collect();
+    let known = names.iter().position(|name| name == "admissible").unwrap();
+    assert_eq!(
+        names[known + 1..],
+        [
+            "material.effective_modulus",
+            "gap.shape",
+            "gap.amplitude",
+            "gap.wavelength",
+            "path.control",
+            "path.start_contact_radius"
+        ]
+    );
+    let rows: Vec<csv::StringRecord> = lines.records().map(|row| row.unwrap()).collect();
+    let cell = |row: &csv::StringRecord, name: &str| {
+        row[names.iter().position(|known| known == name).unwrap()].to_owned()
+    };
+    let number = |row: &csv::StringRecord, name: &str| cell(row, name).parse::<f64>().unwrap();
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    // In the units of the preset's numbers: SI.
+    let modulus = |row| cell(row, "material.effective_modulus");
+    assert_ne!(modulus(first), "25000.0");
+    assert_eq!([modulus(&rows[2]), modulus(last)], ["25000.0", "25000.0"]);
+    assert_eq!(cell(last, "path.start_contact_radius"), "0.0004");
+    assert_eq!(
+        (cell(first, "path.control"), cell(last, "path.control")),
+        ("displacement".into(), "force".into())
+    );
+    // What the preset no longer has is empty, and what did not change has no column of its own.
+    assert!(number(first, "gap.amplitude") > 0.0 && cell(last, "gap.amplitude").is_empty());
+    assert_eq!(cell(last, "gap.shape"), "sphere");
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(home.at("here/w.json")).unwrap()).unwrap();
+    let points = json["points"].as_array().unwrap();
+    assert_eq!(points.len(), rows.len());
+    assert_eq!(points[0]["material.effective_modulus"].as_f64(), modulus(first).parse().ok());
+    assert!(points[points.len() - 1]["gap.amplitude"].is_null());
+    // Nothing changed: the columns are as ever.
+    home.quiet("step\nexport walk plain.csv\n", &["--preset", "fig-9-si"]);
+    let plain = fs::read_to_string(home.at("here/plain.csv")).unwrap();
+    assert!(plain.lines().next().unwrap().ends_with(",admissible"), "{plain}");
 }
 
 #[test]
@@ -133,28 +184,28 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     let outside = home.at("there/x.csv");
     for path in ["../x.csv", "link/x.csv", "file.csv", "../there/x.csv", "~/x.csv", outside.to_str().unwrap()]
     {
-        home.fails(&format!("export walk {path}"), &[], 1, "is not below the current folder");
+        home.fails(&format!("export walk {path}"), &[], 2, "is not below the current folder");
     }
     assert_eq!(fs::read_dir(home.at("there")).unwrap().count(), 0);
-    home.fails("export walk none/x.csv", &[], 1, "No such file");
+    home.fails("export walk none/x.csv", &[], 2, "No such file");
     home.quiet("export walk link/x.csv\nexport walk ../y.csv", &["--anywhere"]);
     assert!(outside.exists() && home.at("y.csv").exists());
     // Replacing.
     fs::write(here.join("a.csv"), "mine").unwrap();
-    home.fails("export walk a.csv", &[], 1, "a.csv exists: not exported");
-    home.fails("export walk a.csv replace", &[], 1, "only with --overwrite");
+    home.fails("export walk a.csv", &[], 2, "a.csv exists: not exported");
+    home.fails("export walk a.csv replace", &[], 2, "only with --overwrite");
     assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
     assert_ne!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     // Presets: by name to their folder; a file only where it may be replaced.
     home.quiet("set gap.amplitude=0.003\nsave-as mine", &[]);
-    home.fails("save-as mine", &[], 1, "a preset called mine exists");
-    home.fails("open mine\nset gap.amplitude=0.004\nsave", &[], 1, "only with --overwrite");
+    home.fails("save-as mine", &[], 2, "a preset called mine exists");
+    home.fails("open mine\nset gap.amplitude=0.004\nsave", &[], 2, "only with --overwrite");
     home.quiet("open mine\nset gap.amplitude=0.004\nsave", &["--overwrite"]);
     let mine = home.at("config/pulloff/presets/mine.toml");
     assert!(fs::read_to_string(&mine).unwrap().contains("amplitude = 0.004"));
     fs::copy(&mine, home.at("there/p.toml")).unwrap();
-    home.fails("open ../there/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 1, "is not below");
+    home.fails("open ../there/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 2, "is not below");
 }
 
 const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];

@@ -11,10 +11,12 @@ use home::Home;
 use pty::Pty;
 use pulloff::explorer::archive::Archive;
 use pulloff::explorer::branches::branches;
+use pulloff::explorer::journal::Journal;
+use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
 use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
 use pulloff::figure::{Role, Subject};
-use pulloff::preset::{Store, write};
+use pulloff::preset::{BasisSpec, Store, write};
 use rustix::process::Signal;
 use session::Session;
 use std::path::Path;
@@ -101,11 +103,55 @@ fn a_walk_in_rings_goes_on_as_if_it_had_never_been_interrupted() {
 }
 
 #[test]
-fn a_walk_in_eigenfunctions_goes_on_as_if_it_had_never_been_interrupted() {
+fn a_walk_in_the_exact_basis_goes_on_as_if_it_had_never_been_interrupted() {
     told_without_a_break_and_with_many(
         "fig-9",
-        &[("basis.kind", "spectral"), ("path.start_contact_radius", "0.4")],
+        &[("basis.kind", "exact"), ("path.start_contact_radius", "0.4")],
     );
+}
+
+/// Saved by a program that knew the basis spectral and its number of functions: walked in both bases and with two
+/// numbers, pinned, jumped and undone.
+const SPECTRAL: &[u8] = include_bytes!("data/session-spectral.json");
+
+#[test]
+fn a_session_that_calls_the_exact_basis_spectral_opens_says_so_and_goes_on() {
+    let text = std::str::from_utf8(SPECTRAL).unwrap();
+    assert!(text.contains("kind = \\\"spectral\\\"") && text.contains("functions = 48"));
+    let snapshot = read(SPECTRAL).unwrap();
+    assert_eq!(snapshot.preset.basis, BasisSpec::Exact);
+    assert_eq!((snapshot.steps(), snapshot.pins.len(), snapshot.history.cursor()), (34, 1, Some(34)));
+    let bases: Vec<_> = snapshot.history.nodes().map(|node| node.setting.preset.basis).collect();
+    let in_rings = bases.iter().filter(|basis| matches!(basis, BasisSpec::Rings { rings: 40, .. })).count();
+    // Solved again in rings, and one step.
+    assert_eq!((in_rings, bases.len()), (2, 35));
+    let (mut model, effects) = snapshot.resume(None);
+    let note = "its basis spectral is exact now";
+    assert!(model.message.as_ref().is_some_and(|(_, said)| said == note), "{:?}", model.message);
+    let mut session = Session::new("wavy-sphere");
+    session.driver.settle(&mut model, effects);
+    session.model = model;
+    let before = session.model.walker().unwrap().state;
+    session.does(Command::Steps(1));
+    let node = session.model.walker().unwrap();
+    assert_eq!((session.model.history.len(), node.step), (36, 34));
+    // The next state lies on the same curve, a step further.
+    assert!(node.state.contact_radius < before.contact_radius && node.from_exact.abs() < 1e-12, "{node:?}");
+    // What it is written as has nothing of before, and reads as any other.
+    let bytes = document(&session.model);
+    let again = String::from_utf8(bytes.clone()).unwrap();
+    assert!(!again.contains("spectral") && !again.contains("functions"));
+    let (model, _) = read(&bytes).unwrap().resume(None);
+    assert!(model.message.is_none(), "{:?}", model.message);
+    // Its walk is a script that this program plays, but for the line that has no meaning any more.
+    let lines = Journal::so_far(&session.model).unwrap();
+    assert!(
+        lines.contains(&"set basis.kind=exact".to_owned())
+            && lines.contains(&"set gap.amplitude=0.0024".to_owned())
+    );
+    for line in &lines {
+        script::parse(line).unwrap();
+    }
 }
 
 #[test]
@@ -130,7 +176,7 @@ fn the_rows_of_a_profile_are_those_of_the_session_whatever_became_of_the_file() 
     let path = folder.path().join("rough.csv");
     let radii = (0..200).map(|i| f64::from(i) / 100.0);
     let rows: Vec<String> = radii.map(|r| format!("{r} {}", r * r / 2.0)).collect();
-    std::fs::write(&path, format!("# r[um] h[um]\n{}\n", rows.join("\n"))).unwrap();
+    std::fs::write(&path, format!("# r h\n{}\n", rows.join("\n"))).unwrap();
     let mut session = Session::new("wavy-sphere");
     session.set("gap.shape", "profile").set("gap.file", path.to_str().unwrap()).does(Command::Steps(2));
     let bytes = document(&session.model);
@@ -408,7 +454,7 @@ fn sessions_are_listed_shown_and_deleted() {
     assert_eq!(back.preset, session.model.preset);
 
     let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1"]);
-    assert_eq!((status, &*said), (2, "pulloff: nobody to ask: --yes deletes without asking\n"));
+    assert_eq!((status, &*said), (2, "pulloff: nobody can be asked: --yes deletes without a question\n"));
     let held = home.archive().load("wavy-sphere-1").unwrap();
     let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]);
     assert!(status == 2 && said.contains("is running in another pulloff"), "{said}");

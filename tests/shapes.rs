@@ -6,9 +6,10 @@
 
 use pulloff::contact::shapes::{ExactSphere, Harmonic, Harmonics, PowerLaw, Profile, RandomWaves, Smoothing};
 use pulloff::contact::{Control, Gap, Reduced, Units};
+use pulloff::disc::{Basis, Exact};
 use pulloff::quasistatic::unload::unload;
 use pulloff::quasistatic::{Curve, EventKind, PathStop};
-use pulloff::ritz::{Basis, Rings, Spectral};
+use pulloff::ritz::Rings;
 use pulloff::theory::sneddon::Sneddon;
 use pulloff::theory::{Disc, harmonics, power_law, sphere};
 use std::sync::Arc;
@@ -19,10 +20,9 @@ struct Case {
     gap: Arc<dyn Gap>,
     exact: Box<dyn Disc>,
     gamma: f64,
-    /// The largest contact, and the number of functions it takes.
+    /// The largest contact.
     from: f64,
-    functions: usize,
-    /// What δ and P are good for, whatever the number of functions that resolve the waves.
+    /// What δ and P are good for, whatever the gap.
     tolerance: f64,
     /// The same for energies, whose terms fall as a power of their number where the gap is not even.
     energy: f64,
@@ -31,7 +31,7 @@ struct Case {
 fn case<G: Gap + 'static>(name: &'static str, gap: G, exact: impl Disc + 'static, from: f64) -> Case {
     let gamma = exact.work_of_adhesion();
     let exact = Box::new(exact);
-    Case { name, gap: Arc::new(gap), exact, gamma, from, functions: 160, tolerance: 1e-11, energy: 1e-9 }
+    Case { name, gap: Arc::new(gap), exact, gamma, from, tolerance: 1e-11, energy: 1e-9 }
 }
 
 fn law(name: &'static str, factor: f64, exponent: f64, gamma: f64, [tolerance, energy]: [f64; 2]) -> Case {
@@ -137,11 +137,11 @@ fn closed_forms_are_sneddons_integrals() {
 #[test]
 fn both_bases_find_the_states() {
     for adhesive in [true, false] {
-        for Case { name, gap, exact, gamma, from, functions, tolerance, .. } in cases(adhesive) {
+        for Case { name, gap, exact, gamma, from, tolerance, .. } in cases(adhesive) {
             let problem = reduced(&gap, gamma);
-            let spectral = errors(&Spectral::new(functions).unwrap(), &problem, exact.as_ref(), from);
-            println!("{name} adhesive {adhesive}: spectral {spectral:?}");
-            assert!(spectral.iter().all(|error| *error <= tolerance), "{name}: {spectral:?}");
+            let table = errors(&Exact::of(&problem, from).unwrap(), &problem, exact.as_ref(), from);
+            println!("{name} adhesive {adhesive}: table {table:?}");
+            assert!(table.iter().all(|error| *error <= tolerance), "{name}: {table:?}");
             let [coarse, fine] =
                 [200, 400].map(|n| errors(&*Rings::shared(n).unwrap(), &problem, exact.as_ref(), from));
             println!("{name} adhesive {adhesive}: rings {coarse:?} {fine:?}");
@@ -156,14 +156,14 @@ fn both_bases_find_the_states() {
 
 #[test]
 fn limit_points_landings_and_losses_are_the_exact_ones() {
-    for Case { name, gap, exact, gamma, from, functions, tolerance, energy } in cases(true) {
+    for Case { name, gap, exact, gamma, from, tolerance, energy } in cases(true) {
         let problem = reduced(&gap, gamma);
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::new(functions).unwrap());
-        let mut curve = Curve::swept(problem, basis, from, 0.004 * from, || true).unwrap();
+        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, from).unwrap());
+        let curve = Curve::of(problem, basis, from, 0.004 * from).unwrap();
         // A limit point is where a slope vanishes: its place is good to the root of the tolerance, or to rounding.
         let tolerance = 100.0 * tolerance;
         for control in [Control::Displacement, Control::Force] {
-            let unloading = unload(&mut curve, control).unwrap();
+            let unloading = unload(&curve, control).unwrap();
             assert_eq!(unloading.stop, PathStop::PullOff, "{name} {control}");
             let snaps = unloading.events.iter().filter(|event| event.kind == EventKind::Snap).count();
             println!("{name} {control}: {snaps} snaps");
@@ -209,22 +209,24 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
     let truth = waves("source", &source, gamma, from).exact;
     let gap = rows(150);
     let (problem, own) = (reduced(&gap, gamma), sneddon(&gap, gamma));
-    // Sums broken at the rows: δ and P are exact with any number of functions.
-    let few = errors(&Spectral::new(50).unwrap(), &problem, &own, from);
-    println!("profile: spectral {few:?}");
-    assert!(few.iter().all(|error| *error <= 1e-13), "{few:?}");
+    let table = errors(&Exact::of(&problem, from).unwrap(), &problem, &own, from);
+    println!("profile: table {table:?}");
+    assert!(table.iter().all(|error| *error <= 1e-13), "{table:?}");
     let rings = errors(&*Rings::shared(400).unwrap(), &problem, &own, from);
     assert!(rings.iter().all(|error| *error <= 0.03), "{rings:?}");
     // Half the distance of the rows: an eighth to a sixteenth of the error.
-    let basis = Spectral::new(400).unwrap();
-    let [far, near] = [150, 300].map(|n| errors(&basis, &reduced(&rows(n), gamma), truth.as_ref(), from));
+    let [far, near] = [150, 300].map(|n| {
+        let problem = reduced(&rows(n), gamma);
+        errors(&Exact::of(&problem, from).unwrap(), &problem, truth.as_ref(), from)
+    });
     println!("profile: rows {far:?} {near:?}");
     assert!(near.iter().zip(far).all(|(near, far)| *near <= 0.2 * far && *near < 1e-3), "{far:?} {near:?}");
     // The unloading jumps as that of the source does.
     let unloaded = |gap: Arc<dyn Gap>| {
-        let basis: Arc<dyn Basis> = Arc::new(Spectral::new(200).unwrap());
-        let mut curve = Curve::swept(reduced(&gap, gamma), basis, from, 0.01, || true).unwrap();
-        unload(&mut curve, Control::Displacement).unwrap()
+        let problem = reduced(&gap, gamma);
+        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, from).unwrap());
+        let curve = Curve::of(problem, basis, from, 0.01).unwrap();
+        unload(&curve, Control::Displacement).unwrap()
     };
     let (ours, theirs) = (unloaded(rows(600)), unloaded(Arc::new(source.clone())));
     assert!(theirs.events.len() > 1 && theirs.stop == PathStop::PullOff);
@@ -240,10 +242,9 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
 fn beyond_the_largest_radius_there_is_no_equilibrium() {
     let ball: Arc<dyn Gap> = Arc::new(ExactSphere { radius: 1.0 });
     let problem = reduced(&ball, 0.01);
-    assert!(Spectral::new(16).unwrap().equilibrium(&problem, 0.99).is_some());
-    assert!(Spectral::new(16).unwrap().equilibrium(&problem, 1.01).is_none());
+    let exact = Exact::of(&problem, 0.5).unwrap();
+    assert!(exact.equilibrium(&problem, 0.99).is_some() && exact.equilibrium(&problem, 1.01).is_none());
     assert!(Rings::shared(20).unwrap().equilibrium(&problem, 0.99).is_some());
     assert!(Rings::shared(20).unwrap().equilibrium(&problem, 1.01).is_none());
-    let basis: Arc<dyn Basis> = Arc::new(Spectral::new(16).unwrap());
-    assert!(Curve::swept(problem, basis, 1.2, 0.1, || true).is_none());
+    assert!(Curve::of(problem, Arc::new(exact), 1.2, 0.1).is_none());
 }

@@ -266,7 +266,7 @@ fn a_drop_while_a_dialog_is_open() {
 fn a_drop_while_saving() {
     let Some(far) = Far::new() else { return };
     let store = far.presets();
-    let (source, _) = store.save("mine", &wavy(), Overwrite::Never).expect("a preset");
+    let (source, _) = store.save("mine", &wavy(), None, Overwrite::Never).expect("a preset");
     let Source::User { path, .. } = &source else { panic!("not saved by name") };
     let old = fs::read(path).expect("a preset");
     for drop in DROPS {

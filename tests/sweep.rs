@@ -132,7 +132,7 @@ fn pairs_go_together_and_units_are_read() {
         "pairs.toml",
         r#"
 preset = "fig-9-si"
-set = ["basis.kind=spectral", "path.start_contact_radius=1 mm"]
+set = ["basis.kind=exact", "path.start_contact_radius=1 mm"]
 combine = "pairs"
 quantities = ["critical_force", "start_contact_radius", "snap_loss_displacement", "inadmissible_share_force"]
 [[axis]]
@@ -165,7 +165,7 @@ values = ["displacement", "stiffness=5 N/m", "force"]
 
 const RANDOM: &str = r#"
 preset = "random-waves"
-set = ["path.start_contact_radius=0.45", "basis.functions=60"]
+set = ["path.start_contact_radius=0.45"]
 quantities = ["least_force", "limit_points"]
 [random]
 draws = 12
@@ -224,15 +224,15 @@ fn a_row_that_fails_says_why_and_stops_nothing() {
         "s.toml",
         r#"
 preset = "wavy-sphere"
-set = ["gap.wavelength=0.1"]
+set = ["gap.wavelength=0.1", "basis.kind=rings"]
 quantities = ["kesari_lew", "enhancement", "snaps"]
 combine = "pairs"
 [[axis]]
 key = "path.start_contact_radius"
 values = [0.3, 0.002, 0.1, 0.3]
 [[axis]]
-key = "basis.functions"
-values = ["auto", "auto", "auto", 4]
+key = "basis.rings"
+values = [200, 200, 200, 60]
 "#,
     );
     let said = home.sweep("s.toml", "r.csv", &[]);
@@ -370,17 +370,74 @@ fn shards_join_to_the_single_run() {
     home.file("t.toml", &GRID.replace("0.001,", "0.0011,"));
     home.sweep("t.toml", "other.csv", &["--shard", "2/3"]);
     home.refused(&merge(&["1.csv", "other.csv", "3.csv"]), "other.csv: is of another sweep than 1.csv");
-    // A part with a row that lost a field, and one that was stopped.
+    // A part with a row that was changed, and one that was stopped.
     let text = home.text("2.csv");
     let row = text.lines().nth(2).unwrap();
-    home.file("2.csv", &text.replace(row, row.split_once(',').unwrap().0));
-    let (status, _, said) = home.run(&merge(&["1.csv", "2.csv", "3.csv"]));
-    assert!(status == 1 && said.contains("2.csv:3: "), "{said}");
+    for (changed, wrong) in [
+        (row.replacen(",0.001,", ",0.0011,", 1), "row 4: column gap.amplitude is 0.0011, expected 0.001"),
+        (row.replacen("4,", "7,", 1), "row 4: column row is 7, expected 4"),
+        (row.replacen(",0.001,", ",\"0.001\",", 1), "row 4: is not written as a sweep writes it"),
+        (row.split_once(',').unwrap().0.to_owned(), "row 4: column gap.amplitude is empty, expected 0.001"),
+        (row.replacen(",0.001,0.03,", ",0.001,0.03,x", 1), "row 4: column pull_off_force is x-"),
+        (format!("{row}why"), "row 4: column error is why, expected a fault or nothing"),
+        (format!("{row},"), "row 4: has 9 fields, expected 8"),
+    ] {
+        assert_ne!(changed, row, "{wrong}");
+        home.file("2.csv", &text.replace(row, &changed));
+        home.refused(&merge(&["1.csv", "2.csv", "3.csv"]), &format!("2.csv:3: {wrong}"));
+        // Going on finds the same fault.
+        home.refused(&["sweep", "s.toml", "-o", "2.csv", "--shard", "2/3"], &format!("2.csv:3: {wrong}"));
+    }
+    home.file("2.csv", &text.replace("gap.amplitude", "gap.wavelength"));
+    home.refused(&merge(&["1.csv", "2.csv", "3.csv"]), "2.csv:1: the columns are not row, gap.amplitude, ");
+    home.file("2.csv", &format!("{text}{row}\n"));
+    home.refused(&merge(&["1.csv", "2.csv", "3.csv"]), "2.csv:5: there are more lines than rows");
     home.file("2.csv", &text[..text.len() - 3]);
-    let (status, _, said) = home.run(&merge(&["1.csv", "2.csv", "3.csv"]));
-    assert_eq!(status, 1);
-    assert!(said.contains("2.csv: has 2 of the 3 rows of shard 2/3; run it again to go on"), "{said}");
+    home.refused(
+        &merge(&["1.csv", "2.csv", "3.csv"]),
+        "2.csv: has 2 of the 3 rows of shard 2/3; run it again to go on",
+    );
     assert!(!home.path("no.csv").exists() && !home.path("no.csv.spec.toml").exists());
+}
+
+#[test]
+fn shards_of_every_kind_of_axis_join() {
+    let home = Sweeps::new();
+    let head = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]\n\
+                quantities = [\"snaps\"]\n";
+    for (name, axes) in [
+        ("values", "[[axis]]\nkey = \"path.control\"\nvalues = [\"force\", \"stiffness=0.15\"]\n"),
+        ("whole", "[[axis]]\nkey = \"basis.rings\"\nlinear = { from = 20, to = 40, count = 3 }\n"),
+        (
+            "pairs",
+            "combine = \"pairs\"\n[[axis]]\nkey = \"gap.amplitude\"\nlinear = { from = 0.001, to = 2e-3, count = 3 }\n\
+             [[axis]]\nkey = \"groups.adhesion\"\nlogarithmic = { from = 0.01, to = 0.02, count = 3 }\n",
+        ),
+        (
+            "drawn",
+            "random = { draws = 3, seed = 5 }\n[[axis]]\nkey = \"gap.amplitude\"\n\
+             distribution = { log-uniform = [1e-3, 2e-3] }\n[[axis]]\nkey = \"groups.adhesion\"\n\
+             distribution = { normal = { mean = 0.02, deviation = 0.001 } }\n[[axis]]\nkey = \"basis.rings\"\n\
+             distribution = { integers = [20, 40] }\n[[axis]]\nkey = \"path.start_contact_radius\"\n\
+             distribution = { uniform = [0.3, 0.4] }\n",
+        ),
+    ] {
+        let mut set = head.to_owned();
+        if axes.contains("rings") {
+            set = set.replace("set = [", "set = [\"basis.kind=rings\", ");
+        }
+        if axes.contains("start_contact_radius") {
+            set = set.replace("\"path.start_contact_radius=0.3\", ", "");
+        }
+        home.file("s.toml", &format!("{set}{axes}"));
+        let [whole, one, two, all] = ["whole", "1", "2", "all"].map(|part| format!("{name}-{part}.csv"));
+        home.sweep("s.toml", &whole, &[]);
+        home.sweep("s.toml", &one, &["--shard=1/2"]);
+        home.sweep("s.toml", &two, &["--shard=2/2"]);
+        let (status, _, said) = home.run(&["sweep", "merge", &one, &two, "-o", &all]);
+        assert_eq!(status, 0, "{name}: {said}");
+        assert_eq!(home.text(&all), home.text(&whole), "{name}");
+    }
 }
 
 #[test]
@@ -428,16 +485,22 @@ fn results_of_something_else_are_not_touched() {
     // A row that somebody changed, rows too many, a file that was never ours.
     home.sweep("s.toml", "r.csv", &["--overwrite"]);
     home.file("r.csv", &whole.replace("\n3,0.001,", "\n3,0.002,"));
-    home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:5: is not the row that belongs there");
+    home.refused(
+        &["sweep", "s.toml", "-o", "r.csv"],
+        "r.csv:5: row 3: column gap.amplitude is 0.002, expected 0.001: the file was changed; --overwrite begins anew",
+    );
     // A row that lost a field, or one that is no number.
     let row = whole.lines().nth(4).unwrap();
     let (kept, last) = row.trim_end_matches(',').rsplit_once(',').unwrap();
     for damaged in [format!("{kept},"), format!("{kept},x{last},"), format!("{row}lost")] {
         home.file("r.csv", &whole.replace(row, &damaged));
-        home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:5: is not the row that belongs there");
+        home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:5: row 3: ");
     }
     home.file("r.csv", &format!("{whole}10,1,1,1,1,1,1,\n"));
-    home.refused(&["sweep", "s.toml", "-o", "r.csv"], "r.csv:12: is not the row that belongs there");
+    home.refused(
+        &["sweep", "s.toml", "-o", "r.csv"],
+        "r.csv:12: there are more lines than rows: the file was changed",
+    );
     home.file("mine.csv", "a,b\n");
     home.refused(
         &["sweep", "s.toml", "-o", "mine.csv"],
@@ -480,14 +543,14 @@ fn the_quantities_are_listed_and_in_the_manual() {
     }
 }
 
-/// Rows of many small waves; `start` says where their curves begin.
-fn small_waves(home: &Sweeps, start: &str) -> Spec {
+/// Rows of many small waves; an assignment in `set` or an axis `start` says where their curves begin.
+fn small_waves(home: &Sweeps, set: &str, start: &str) -> Spec {
     let store = Store::at(home.path("presets"), &[]);
     let text = format!(
         r#"
 preset = "wavy-sphere"
 quantities = ["enhancement", "kesari_lew", "waves"]
-set = ["path.start_contact_radius=0.9", "path.end_contact_radius=0.1"]
+set = [{set}"path.end_contact_radius=0.1"]
 [random]
 draws = 60
 seed = 3
@@ -530,7 +593,7 @@ fn enhanced(spec: &Spec) -> (Vec<(u64, f64, f64)>, Vec<u64>) {
 #[test]
 fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
     let home = Sweeps::new();
-    let spec = small_waves(&home, "");
+    let spec = small_waves(&home, "\"path.start_contact_radius=0.9\", ", "");
     let (had, cut_off) = enhanced(&spec);
     assert!(cut_off.is_empty(), "{cut_off:?}");
     let many: Vec<_> = had.iter().filter(|(_, _, waves)| *waves > 8.0).collect();
@@ -545,7 +608,7 @@ fn a_start_that_cuts_the_smallest_force_off_is_said() {
     let home = Sweeps::new();
     // The same problems and one more draw, from starts on both sides of the smallest force.
     let start = "[[axis]]\nkey = \"path.start_contact_radius\"\ndistribution = { uniform = [0.12, 0.45] }\n";
-    let spec = small_waves(&home, start);
+    let spec = small_waves(&home, "", start);
     let (had, cut_off) = enhanced(&spec);
     assert!(had.len() > 10 && cut_off.len() > 10, "{} {}", had.len(), cut_off.len());
     for (row, off, waves) in had.iter().filter(|(_, _, waves)| *waves > 8.0) {

@@ -11,7 +11,7 @@ fn read(text: &str) -> Result<Spec, SpecError> {
 }
 
 fn axis(text: &str) -> String {
-    format!("preset = \"wavy-sphere\"\n[[axis]]\n{text}")
+    format!("preset = \"fig-9\"\n[[axis]]\n{text}")
 }
 
 /// The values of every row, as the results have them.
@@ -34,10 +34,9 @@ fn values_of_every_kind() {
         ["0.001", "0.01", "0.1"]
     );
     assert_eq!(
-        one("key = 'basis.functions'\nlinear = { from = 10, to = 40, count = 4 }"),
+        one("key = 'basis.rings'\nlinear = { from = 10, to = 40, count = 4 }"),
         ["10", "20", "30", "40"]
     );
-    assert_eq!(one("key = 'basis.functions'\nvalues = ['auto', 12]"), ["auto", "12"]);
     assert_eq!(
         one("key = 'path.control'\nvalues = ['force', 'displacement', 'stiffness=0.1', '2']"),
         ["force", "displacement", "stiffness=0.1", "stiffness=2"]
@@ -170,9 +169,15 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
             "s.toml:4: path.control = \"forse\" is not known",
         ),
         (
-            &axis("key = 'basis.functions'\nvalues = [3]"),
-            "s.toml:4: basis.functions = 3 is out of range: it must be",
+            &axis("key = 'basis.functions'\nvalues = [48]"),
+            "s.toml:4: basis.functions is no longer needed: the exact basis resolves every gap by itself; remove it and \
+             write kind = \"exact\"",
         ),
+        (
+            &axis("key = 'basis.kind'\nvalues = ['spectral', 'rings']"),
+            "s.toml:4: basis.kind = \"spectral\" is called \"exact\" now: write kind = \"exact\"",
+        ),
+        (&axis("key = 'basis.rings'\nvalues = [3]"), "s.toml:4: basis.rings = 3 is out of range: it must be"),
         (
             &axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2 }"),
             "s.toml:4: axis.linear.count is missing: it must be the number of values",
@@ -194,12 +199,12 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
             "s.toml:4: axis.logarithmic.from = -1.0 is out of range: path.start_approach must be above 0 to have a logarithm",
         ),
         (
-            &axis("key = 'basis.functions'\nlinear = { from = 10, to = 15, count = 4 }"),
-            "s.toml:4: basis.functions takes whole numbers: 4 values in equal steps from 10 to 15 are none",
+            &axis("key = 'basis.rings'\nlinear = { from = 10, to = 15, count = 4 }"),
+            "s.toml:4: basis.rings takes whole numbers: 4 values in equal steps from 10 to 15 are none",
         ),
         (
-            &axis("key = 'basis.functions'\nlogarithmic = { from = 10, to = 15, count = 4 }"),
-            "s.toml:4: axis.logarithmic.from: basis.functions = 10 is no real number",
+            &axis("key = 'basis.rings'\nlogarithmic = { from = 10, to = 15, count = 4 }"),
+            "s.toml:4: axis.logarithmic.from: basis.rings = 10 is no real number",
         ),
         (
             &axis("key = 'gap.amplitude'\ndistribution = { uniform = [1, 2] }"),
@@ -255,8 +260,8 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
             "s.toml:4: axis.distribution.normal.deviation = 0.0 is out of range: it must be above 0",
         ),
         (
-            &axis("key = 'basis.functions'\ndistribution = { uniform = [10, 20] }"),
-            "s.toml:4: axis.distribution.uniform: basis.functions = 10 is no real number",
+            &axis("key = 'basis.rings'\ndistribution = { uniform = [10, 20] }"),
+            "s.toml:4: axis.distribution.uniform: basis.rings = 10 is no real number",
         ),
         (
             &axis("key = 'gap.amplitude'\ndistribution = { integers = [3, 2] }"),
@@ -324,7 +329,7 @@ fn the_identity_is_that_of_what_is_computed() {
     assert_eq!(identity(&same), identity(&base));
     for other in [
         base.replace("0.001", "0.0011"),
-        base.replace("wavy-sphere", "fig-9"),
+        base.replace("fig-9", "wavy-sphere"),
         format!("combine = 'pairs'\n{base}"),
         format!("quantities = ['snaps']\n{base}"),
         format!("set = ['gap.wavelength=0.06']\n{base}"),
@@ -334,4 +339,42 @@ fn the_identity_is_that_of_what_is_computed() {
     // A measured profile is known by its data, not by its name.
     let profile = "preset = 'profile'\n[[axis]]\nkey = 'material.work_of_adhesion'\nvalues = [0.01]";
     assert!(read(profile).unwrap().canonical().contains("\ndata = [\""));
+}
+
+#[test]
+fn a_value_of_set_that_no_row_has_is_refused() {
+    for (set, axis, words) in [
+        (
+            "gap.amplitude=0.001",
+            "gap.amplitude",
+            "set gives gap.amplitude a value that no row has: the axis gap.amplitude",
+        ),
+        ("gap={amplitude=0.001}", "gap.amplitude", "set gives gap.amplitude a value"),
+        ("path.start_approach=0.1", "path.start_contact_radius", "set gives path.start_approach a value"),
+        ("path.control=force", "path.control.stiffness", "set gives path.control a value"),
+        ("path.control={stiffness=2}", "path.control.stiffness", "set gives path.control.stiffness a value"),
+        ("groups.adhesion=0.01", "material.work_of_adhesion", "set gives groups.adhesion a value"),
+        ("gap.wavelength=0.1", "groups.wavelength_over_radius", "set gives gap.wavelength a value"),
+    ] {
+        let text = |set: &str| {
+            format!(
+                "preset = 'fig-9'\nset = [\n'basis.rings=50',\n'{set}']\n[[axis]]\nkey = '{axis}'\nvalues = [0.1]"
+            )
+        };
+        let refused = read(&text(set)).unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("s.toml:4: {words}")), "{set}: {refused}");
+        assert!(refused.ends_with("gives every row its own; remove one of them"), "{refused}");
+        // Without it the sweep is fine.
+        read(&text("title=x")).unwrap();
+    }
+    // What a group holds, or is computed from, has its effect.
+    for (set, axis) in [
+        ("gap.wavelength=0.1", "groups.amplitude_over_wavelength"),
+        ("groups.amplitude_over_wavelength=0.1", "gap.wavelength"),
+        ("groups.amplitude_over_wavelength=0.1", "groups.wavelength_over_radius"),
+        ("gap.radius_of_curvature=2", "groups.adhesion"),
+    ] {
+        let text = format!("preset = 'fig-9'\nset = ['{set}']\n[[axis]]\nkey = '{axis}'\nvalues = [0.02]");
+        read(&text).unwrap();
+    }
 }

@@ -59,9 +59,7 @@ fn texts_have_their_unit_and_bare_numbers_are_si() {
     let preset = read_with("p", WAVY, &sets).unwrap();
     assert_eq!(preset.gap.wave(), Some((1e-7, 20e-6)));
     assert_eq!(preset.path.control, Control::Stiffness(80e-3));
-    // A table of display units alone says that the preset is in SI.
-    let text = format!("{}[display]\nlength = \"nm\"\n", WAVY.replace("units = \"SI\"\n", ""));
-    let units = read("p", &text).unwrap().units;
+    let units = read("p", &format!("{WAVY}[display]\nlength = \"nm\"\n")).unwrap().units;
     assert_eq!(units.shown(pulloff::units::Quantity::Length, 2e-9).to_string(), "2.0 nm");
 }
 
@@ -86,7 +84,9 @@ fn beside_a_unit_on_the_screen_a_bare_number_counts_in_it() {
 #[test]
 fn what_has_another_dimension_or_no_units_is_refused() {
     let reduced = WAVY.replace("\"SI\"", "\"reduced\"");
-    let fig_9 = shipped::find("fig-9").unwrap().text.replace("format = 1", "format = 1\nunits = \"reduced\"");
+    // Units to be shown in say nothing of what the numbers are in: they are not guessed to be in SI.
+    let fig_9 = shipped::find("fig-9").unwrap().text;
+    let said = fig_9.replace("format = 1", "format = 1\nunits = \"reduced\"");
     for (text, sets, words) in [
         (
             WAVY,
@@ -106,7 +106,16 @@ fn what_has_another_dimension_or_no_units_is_refused() {
             &[],
             "p.toml:3: material.effective_modulus: the problem is in reduced units: expected a pure number, got 2.5 MPa, a stress",
         ),
-        (&fig_9, &["display.length=nm"], "display.length belongs to SI, and the unit system is reduced"),
+        (
+            fig_9,
+            &["display.length=nm"],
+            "display.length belongs to SI, and the unit system is reduced: numbers",
+        ),
+        (
+            &said,
+            &["display.length=nm"],
+            "display.length belongs to SI, and the unit system is reduced: numbers",
+        ),
     ] {
         let message = mistake(text, sets);
         assert!(message.contains(words), "{sets:?}: {message}");
@@ -412,7 +421,7 @@ start_contact_radius = \"1 mm\"
 
 /// What computing a preset says when it refuses.
 fn refusal(preset: &Preset) -> String {
-    let unloaded = Case::new(preset).and_then(|case| case.unload(&mut case.sweep(|| true)?, case.control));
+    let unloaded = Case::new(preset).and_then(|case| case.unload(&case.curve(|| true)?, case.control));
     unloaded.unwrap_err().to_string()
 }
 
@@ -451,7 +460,7 @@ fn numbers_in_words_have_their_unit_in_si_and_none_in_reduced_units() {
             "no contact has the approach -0.2; the smallest on the curve is -",
         ),
     ] {
-        let fast = ["basis.kind=spectral", "path.start_contact_radius=1"];
+        let fast = ["basis.kind=exact", "path.start_contact_radius=1"];
         let with = |text, set| read_with("p", text, &[fast[0], set]).unwrap();
         let message = refusal(&with(si, sets[0]));
         assert!(message.starts_with(parts[0]) && message.ends_with(parts[1]), "{message}");
@@ -479,9 +488,9 @@ fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
         [report.warnings, report.notes, note, vec![report.stop]].concat()
     };
     // Adhesion so weak that crests touch, none at all, and a start that is unstable.
-    let weak = ["material.work_of_adhesion=20 mJ/m^2", "basis.kind=spectral"];
-    let same = ["material.work_of_adhesion=1e-4", "basis.kind=spectral"];
-    let none = ["material.work_of_adhesion=0", "basis.kind=spectral"];
+    let weak = ["material.work_of_adhesion=20 mJ/m^2", "basis.kind=exact"];
+    let same = ["material.work_of_adhesion=1e-4", "basis.kind=exact"];
+    let none = ["material.work_of_adhesion=0", "basis.kind=exact"];
     let starts = (["path.start_contact_radius=2.4 mm"], ["path.start_contact_radius=0.48"]);
     for (lines, word) in [
         (both(&weak, &same, traced), "s = "),
