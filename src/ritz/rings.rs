@@ -341,7 +341,9 @@ impl Basis for Rings {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Option<Arc<dyn Solution>> {
         // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
-        let range = [INWARD_REACH * from, to.min(problem.largest_contact().max(from))];
+        // It reaches to a power of 2^(1/4), so that a radius has the same series however far the curve was asked for.
+        let stage = (0.25 * (4.0 * to.log2() - 1e-9).ceil()).exp2().max(to);
+        let range = [INWARD_REACH * from, stage.min(problem.largest_contact().max(from))];
         Some(Arc::new(Sampled::new(self, problem, range, go_on)?))
     }
 
