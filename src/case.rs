@@ -334,7 +334,7 @@ fn table(
         TableError::TooFine(refused) => {
             let length = reduced.units.length;
             let (radius, largest) = (refused.radius * length, refused.largest * length);
-            let error = TableError::TooFine(Refused { radius, largest });
+            let error = TableError::TooFine(Refused { radius, largest, ..refused });
             CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
     })

@@ -87,6 +87,8 @@ pub struct Refused {
     pub radius: f64,
     /// The largest radius asked for.
     pub largest: f64,
+    /// The most panels there may be.
+    pub panels: f64,
 }
 
 impl Refused {
@@ -94,8 +96,9 @@ impl Refused {
     pub fn words(&self, units: &UnitSystem) -> String {
         let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
         format!(
-            "the gap is too rough: its slope is not resolved by {MOST} panels, which end at r = {radius} (up to r = {largest} \
-             it must be)"
+            "the gap is too rough: its slope is not resolved by {} panels, which end at r = {radius} (up to r = {largest} \
+             it must be)",
+            self.panels
         )
     }
 }
@@ -185,7 +188,7 @@ impl Divider<'_> {
                 continue;
             }
             if self.spans.len() >= MOST {
-                return Err(Refused { radius: lo, largest: self.to });
+                return Err(Refused { radius: lo, largest: self.to, panels: MOST as f64 });
             }
             self.steepest = steepest;
             self.spans.push(Span { lo, hi, variable });

@@ -36,6 +36,9 @@ const WIDER: f64 = 1.25;
 const GRADED: f64 = 1e3;
 const MOST_PARTS: f64 = 64.0;
 
+/// Panels of half a wave at most: some hundred megabytes.
+const MOST_WAVE_PANELS: f64 = 100_000.0;
+
 /// A series ends where its coefficients fall below this share of the largest.
 const CHOP: f64 = 1e-17;
 
@@ -514,7 +517,7 @@ impl Table {
                 panels.smallest = pieces.first().map_or(0.0, |piece| piece.hi);
             }
             Form::Waves { curvature, waves } if few(waves, reach) => {
-                let spans = wave_spans(waves, reach, panels.smallest);
+                let spans = wave_spans(waves, reach, panels.smallest)?;
                 let samples = waves::transform(*curvature, waves, &spans);
                 let rule = Rule::of(waves::NODES);
                 for (span, [value, slope]) in spans.into_iter().zip(samples) {
@@ -524,7 +527,7 @@ impl Table {
             form => {
                 let breaks = self.gap.breaks_up_to(reach);
                 let spans = match form {
-                    Form::Waves { waves, .. } => wave_spans(waves, reach, panels.smallest),
+                    Form::Waves { waves, .. } => wave_spans(waves, reach, panels.smallest)?,
                     _ => graded(
                         &*self.gap,
                         divide(&*self.gap, [0.0, reach], panels.smallest, &breaks)
@@ -653,13 +656,17 @@ fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
 }
 
 /// Panels of half the shortest wave, and towards the axis each a fourth of the one before.
-fn wave_spans(waves: &[Wave], reach: f64, smallest: f64) -> Vec<Span> {
+fn wave_spans(waves: &[Wave], reach: f64, smallest: f64) -> Result<Vec<Span>, TableError> {
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
     let span = |lo, hi| Span { lo, hi, variable: Variable::Radius };
     // Without waves g is a parabola, and any width will do.
     let width = if steepest > 0.0 { WAVE_SHARE * std::f64::consts::TAU / steepest } else { reach };
     // With few enough bits that its multiples are exact: panels of one width share their angles.
     let width = f64::from_bits(width.to_bits() & !0xffff);
+    let radius = MOST_WAVE_PANELS * width;
+    if radius < reach {
+        return Err(TableError::TooFine(Refused { radius, largest: reach, panels: MOST_WAVE_PANELS }));
+    }
     let mut spans = Vec::new();
     let mut lo = 0.0;
     let mut inner = vec![width];
@@ -678,7 +685,7 @@ fn wave_spans(waves: &[Wave], reach: f64, smallest: f64) -> Vec<Span> {
         spans.push(span(lo, hi));
         lo = hi;
     }
-    spans
+    Ok(spans)
 }
 
 #[cfg(test)]

@@ -144,20 +144,21 @@ impl Journal {
 
     /// It is over; nobody waits for what it might still make.
     pub(super) fn abandoned(&mut self) {
-        self.ended(&Outcome::Paused);
+        self.ended(&Outcome::Paused, false);
     }
 
-    /// It is over.
-    pub(super) fn ended(&mut self, outcome: &Outcome) {
+    /// It is over; `is_stale` where it leaves the state marked as not solved.
+    pub(super) fn ended(&mut self, outcome: &Outcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
         let preset = &walking.curve.setting.preset;
         let way = Some((walking.inward, walking.length));
-        let failed = matches!(outcome, Outcome::Stopped(_));
-        if walking.made == 0 && !(failed && matches!(walking.action, Action::Solve { .. })) {
+        let is_solve = matches!(walking.action, Action::Solve { .. });
+        // A value that could not be solved and was taken back meanwhile leaves nothing to replay.
+        if walking.made == 0 && !(is_stale && is_solve) {
             return;
         }
         match walking.action {
-            Action::Solve { .. } => self.sync(preset, None, failed),
+            Action::Solve { .. } => self.sync(preset, None, is_stale),
             Action::Steps(_) => {
                 self.sync(preset, way, false);
                 // Beyond a limit point, or the end, a further step is a walk of its own.

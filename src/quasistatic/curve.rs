@@ -171,9 +171,15 @@ impl Curve {
                 samples.extend(solution.at_four(panel, x).into_iter().take(some.len()).map(sample));
             }
         }
-        let reached = samples.last()?.contact_radius;
-        if stop == CurveStop::End && reached > to * (1.0 + 1e-9) {
-            stop = CurveStop::NoEquilibrium(reached);
+        // A radius asked for is the one answered with, not what the panel's variable makes of it.
+        samples.first_mut()?.contact_radius = from;
+        let last = samples.last_mut()?;
+        if stop == CurveStop::End {
+            if last.contact_radius > to * (1.0 + 1e-9) {
+                stop = CurveStop::NoEquilibrium(last.contact_radius);
+            } else {
+                last.contact_radius = to;
+            }
         }
         let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
         let equilibrium = Equilibrium { problem, basis, table, scales };

@@ -57,6 +57,9 @@ pub enum NewtonFailure {
     },
 }
 
+/// An iterate so many times as far out as the first has lost its way, and a basis may have to be made for it.
+const FARTHEST: f64 = 1e3;
+
 /// The weight 1/k of the force in the controlled quantity δ + P/k, and the weight of δ.
 fn weights(control: Control) -> (f64, f64) {
     match control {
@@ -80,6 +83,7 @@ pub fn solve(
 ) -> Result<Solved, NewtonFailure> {
     let (of_approach, of_force) = weights(control);
     let mut residual = f64::INFINITY;
+    let first = s;
     for round in 0..=settings.rounds {
         let mut delta = value;
         if of_force > 0.0 {
@@ -99,7 +103,7 @@ pub fn solve(
         let [p_d, p_s] = evaluation.force_gradient;
         let follows = -of_force * p_s / (of_approach + of_force * p_d);
         let next = s - evaluation.residual / (r_s + r_d * follows);
-        if !(next.is_finite() && next > 0.0) {
+        if !(next > 0.0 && next <= FARTHEST * first) {
             return Err(NewtonFailure::Left { round, s: next });
         }
         s = next;

@@ -69,7 +69,9 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
     }
     let Some(outcome) = outcome else { return Vec::new() };
     model.walking = None;
-    model.journal.ended(&outcome);
+    let is_unsolved = matches!(outcome, Outcome::Stopped(_))
+        && model.history.current().is_some_and(|node| !model.is_on_curve(node));
+    model.journal.ended(&outcome, is_unsolved);
     match outcome {
         Outcome::Done => {}
         Outcome::AtLimit => {
@@ -92,8 +94,7 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         }
         Outcome::Stopped(reason) => {
             model.queue.clear();
-            let unsolved = model.history.current().is_some_and(|node| !model.is_on_curve(node));
-            if unsolved {
+            if is_unsolved {
                 mark_stale(model, id, &reason);
                 tell(model, Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
             } else {
