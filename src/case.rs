@@ -15,7 +15,7 @@ use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::equilibrium::unknown;
 use crate::quasistatic::start::{StartError, contact_radius};
 use crate::quasistatic::unload::{UnloadError, unload_while};
-use crate::quasistatic::{Curve, CurveStop, Losses, Unloading};
+use crate::quasistatic::{Curve, CurveStop, Detail, Losses, Unloading};
 use crate::ritz::parallel::Progress;
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
@@ -172,10 +172,18 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn curve(&self, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+    pub fn curve(&self, go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+        self.curve_in(Detail::Drawn, go_on)
+    }
+
+    /// The same with as many states as asked for.
+    ///
+    /// # Errors
+    /// As [`Case::curve`].
+    pub fn curve_in(&self, detail: Detail, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
         let mut wanted = true;
         let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
-        let curve = Curve::new(self.reduced.clone(), basis, table, self.start, self.end, || {
+        let curve = Curve::new(self.reduced.clone(), basis, table, [self.start, self.end], detail, || {
             wanted = wanted && go_on();
             wanted
         });

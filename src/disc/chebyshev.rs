@@ -13,11 +13,8 @@ use wide::f64x4;
 /// The most nodes of a rule that is kept.
 const MOST: usize = 64;
 
-/// Coefficients of a function whose roots are looked for.
+/// Nodes that resolve √a and whatever power of a gap on any panel but the innermost.
 pub const ROOT_NODES: usize = 40;
-
-/// Halvings of an interval in which roots are looked for: below that its ends are neighbours.
-const HALVINGS: usize = 52;
 
 /// The n nodes with the matrix from samples to coefficients.
 #[derive(Debug)]
@@ -189,127 +186,102 @@ pub fn chop(mut series: Vec<f64>, share: f64) -> Vec<f64> {
     series
 }
 
-/// Coefficients below this share of the largest count for nothing in the search for roots.
-const NEGLIGIBLE: f64 = 3e-17;
+/// Parts into which an interval is divided until each has no root or is monotone.
+const PARTS: usize = 4;
 
-/// A series of at most [`ROOT_NODES`] coefficients.
+/// Trailing coefficients that sum up to less than this share of the rounding count for nothing.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// f and f' at four places.
+fn sums_and_slopes(series: &[f64], x: f64x4) -> [f64x4; 2] {
+    let [mut b1, mut b2, mut d1, mut d2] = [f64x4::ZERO; 4];
+    let twice = x + x;
+    for c in series.iter().skip(1).rev() {
+        // The derivative of the recurrence, with the value it has before this step.
+        (d1, d2) = (twice * d1 + (b1 + b1) - d2, d1);
+        (b1, b2) = (twice * b1 - b2 + f64x4::splat(*c), b1);
+    }
+    let first = series.first().copied().unwrap_or(0.0);
+    [x * b1 - b2 + f64x4::splat(first), x * d1 - d2 + b1]
+}
+
+/// An end of an interval in which roots are looked for.
 #[derive(Debug, Clone, Copy)]
-struct Short {
-    coefficients: [f64; ROOT_NODES],
-    len: usize,
+struct End {
+    x: f64,
+    value: f64,
+    slope: f64,
 }
 
-impl Short {
-    fn new(series: &[f64]) -> Self {
-        let largest = series.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-        let keep = series.iter().rposition(|c| c.abs() > NEGLIGIBLE * largest).map_or(1, |k| k + 1);
-        let mut short = Self { coefficients: [0.0; ROOT_NODES], len: keep.min(ROOT_NODES) };
-        short.coefficients[..short.len].copy_from_slice(&series[..short.len]);
-        short
-    }
-
-    fn series(&self) -> &[f64] {
-        &self.coefficients[..self.len]
-    }
-
-    /// Whether the constant outweighs the rest: no root.
-    fn has_none(&self) -> bool {
-        let rest: f64 = self.series()[1..].iter().map(|c| c.abs()).sum();
-        self.coefficients[0].abs() > rest
-    }
-
-    /// Whether the derivative has no root: monotone.
-    fn is_monotone(&self) -> bool {
-        // The derivative's coefficients by the recurrence of `derivative`, without their storage.
-        let (mut here, mut above, mut rest) = (0.0, 0.0, 0.0_f64);
-        for k in (1..self.len).rev() {
-            let below = above + 2.0 * k as f64 * self.coefficients[k];
-            if k == 1 {
-                return (0.5 * below).abs() > rest;
-            }
-            rest += below.abs();
-            (above, here) = (here, below);
-        }
-        false
-    }
-
-    /// The series of the same function on the left and on the right half.
-    fn halves(&self) -> [Self; 2] {
-        static MATRICES: OnceLock<[Vec<[f64; ROOT_NODES]>; 2]> = OnceLock::new();
-        let matrices = MATRICES.get_or_init(|| {
-            let rule = Rule::of(ROOT_NODES);
-            [-0.5, 0.5].map(|middle| {
-                let column = |k: usize| {
-                    let mut unit = vec![0.0; k + 1];
-                    unit[k] = 1.0;
-                    let series = rule.series(|x| sum(&unit, middle + 0.5 * x));
-                    let mut column = [0.0; ROOT_NODES];
-                    column.copy_from_slice(&series);
-                    column
-                };
-                (0..ROOT_NODES).map(column).collect()
-            })
-        });
-        // A polynomial has the same degree on a half.
-        let len = self.len;
-        matrices.each_ref().map(|columns| {
-            let mut out = [0.0; ROOT_NODES];
-            for (c, column) in self.series().iter().zip(columns) {
-                for (out, weight) in out[..len].iter_mut().zip(column) {
-                    *out += c * weight;
-                }
-            }
-            Self::new(&out[..len])
-        })
-    }
-}
-
-/// The roots of the function of at most [`ROOT_NODES`] coefficients, ascending; a double root counts as none, or two.
-///
-/// Where all values are below `rounding` there are none. An interval on which the constant outweighs all other coefficients
-/// has none; one on which that holds for the derivative is monotone, and its ends tell; any other is halved.
-pub fn roots(series: &[f64], rounding: f64) -> Vec<f64> {
-    let mut roots = Vec::new();
-    // A function that is no number has no roots, and would be halved for ever.
-    if series.iter().all(|c| c.is_finite()) {
-        let short = Short::new(series);
-        let ends = [-1.0, 1.0].map(|x| sum(short.series(), x) > 0.0);
-        within(&short, [-1.0, 1.0], ends, 0, rounding, &mut roots);
-    }
-    roots
-}
-
-/// Adds the roots from `lo` to `hi`; `ends` says whether the function is positive there. Halves share the sign of their border,
-/// so that rounding there makes no roots and loses none.
-fn within(
-    short: &Short,
-    [lo, hi]: [f64; 2],
-    ends: [bool; 2],
-    depth: usize,
+/// The search for the roots of a series.
+struct Search<'a> {
+    series: &'a [f64],
+    /// A bound of |f''|, by |T_k''| ≤ k²(k² − 1)/3.
+    bend: f64,
     rounding: f64,
-    roots: &mut Vec<f64>,
-) {
-    if short.has_none() && ends[0] == ends[1] {
-        return;
-    }
-    let series = short.series();
-    let size: f64 = series.iter().map(|c| c.abs()).sum();
-    let middle = 0.5 * (lo + hi);
-    if depth >= HALVINGS || size <= rounding || short.is_monotone() || short.has_none() {
-        if ends[0] != ends[1] {
-            roots.push(middle + 0.5 * (hi - lo) * bracketed(series, ends[1]));
-        }
-        return;
-    }
-    let between = sum(series, 0.0) > 0.0;
-    let [left, right] = short.halves();
-    within(&left, [lo, middle], [ends[0], between], depth + 1, rounding, roots);
-    within(&right, [middle, hi], [between, ends[1]], depth + 1, rounding, roots);
+    roots: Vec<f64>,
 }
 
-/// The root between −1 and 1 of a monotone function that is `rising`: Newton kept in its bracket.
-fn bracketed(series: &[f64], rising: bool) -> f64 {
-    let (mut lo, mut hi, mut x) = (-1.0, 1.0, 0.0);
+/// The roots of the function, ascending; a double root counts as none, or two.
+///
+/// Where all values are below `rounding` there are none. With |f''| ≤ M an interval of width w has no root where f has one
+/// sign at its ends and is larger there than M w²/8, and it is monotone, so that its ends tell, where the mean of f' at its
+/// ends is larger than M w/2; any other is divided.
+pub fn roots(series: &[f64], rounding: f64) -> Vec<f64> {
+    // A function that is no number has no roots, and would be divided for ever.
+    if series.iter().any(|c| !c.is_finite()) {
+        return Vec::new();
+    }
+    let mut tail = 0.0;
+    let counts = |c: &f64| {
+        tail += c.abs();
+        tail > NEGLIGIBLE * rounding
+    };
+    let last = series.iter().rposition(counts).map_or(0, |k| k + 1);
+    let series = &series[..last];
+    let square = |k: usize| (k * k) as f64;
+    let bend = series.iter().enumerate().skip(2).map(|(k, c)| c.abs() * square(k) * (square(k) - 1.0) / 3.0);
+    let mut search = Search { series, bend: bend.sum(), rounding, roots: Vec::new() };
+    let [lo, hi] = [-1.0, 1.0].map(|x| {
+        let [value, slope] = sum_and_slope(series, x);
+        End { x, value, slope }
+    });
+    search.within(lo, hi);
+    search.roots
+}
+
+impl Search<'_> {
+    /// Adds the roots between two ends. Neighbours share the sign of their border, so that rounding there makes no roots and
+    /// loses none.
+    fn within(&mut self, lo: End, hi: End) {
+        let width = hi.x - lo.x;
+        let changes = (lo.value > 0.0) != (hi.value > 0.0);
+        let bulge = 0.125 * self.bend * width * width;
+        let smallest = lo.value.abs().min(hi.value.abs());
+        let largest = lo.value.abs().max(hi.value.abs());
+        let is_monotone = (lo.slope + hi.slope).abs() > self.bend * width;
+        if is_monotone || smallest > bulge || largest + bulge <= self.rounding || width <= 4.0 * f64::EPSILON
+        {
+            if changes {
+                self.roots.push(bracketed(self.series, [lo.x, hi.x], hi.value > 0.0));
+            }
+            return;
+        }
+        let x: [f64; PARTS] = std::array::from_fn(|i| lo.x + width * (i + 1) as f64 / PARTS as f64);
+        let [values, slopes] = sums_and_slopes(self.series, f64x4::new(x)).map(f64x4::to_array);
+        let mut before = lo;
+        for i in 0..PARTS {
+            let end = if i + 1 == PARTS { hi } else { End { x: x[i], value: values[i], slope: slopes[i] } };
+            self.within(before, end);
+            before = end;
+        }
+    }
+}
+
+/// The root between `lo` and `hi` of a function that is positive at the upper end alone, or at the lower: Newton kept in its
+/// bracket.
+fn bracketed(series: &[f64], [mut lo, mut hi]: [f64; 2], rising: bool) -> f64 {
+    let mut x = 0.5 * (lo + hi);
     for _ in 0..100 {
         let [value, slope] = sum_and_slope(series, x);
         if (value > 0.0) == rising {
@@ -321,7 +293,7 @@ fn bracketed(series: &[f64], rising: bool) -> f64 {
         if !(next > lo && next < hi) {
             next = 0.5 * (lo + hi);
         }
-        if (next - x).abs() <= 4.0 * f64::EPSILON || next <= lo || next >= hi {
+        if (next - x).abs() <= 2.0 * f64::EPSILON || next <= lo || next >= hi {
             return next;
         }
         x = next;

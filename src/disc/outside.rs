@@ -13,7 +13,7 @@
 //! (2/π)√(r² − q²) ∫_s^q t gap(t)/((r² − t²)√(q² − t²)) dt ≥ 0, so beyond the edge the gap can become negative for the first
 //! time only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
 
-use super::chebyshev::{self, ROOT_NODES, Rule};
+use super::chebyshev::{self, Rule};
 use super::span::Place;
 use super::table::{Panel, Panels};
 use crate::contact::panels::Variable;
@@ -189,7 +189,6 @@ pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64;
         }
         let start = if index == from.panel { from.x } else { -1.0 };
         let mut series = panels.value_series(index);
-        series.resize(series.len().max(ROOT_NODES), 0.0);
         let size: f64 = series.iter().map(|c| c.abs()).sum();
         series[0] -= delta;
         let mut edges = vec![start];
@@ -263,7 +262,7 @@ fn least_on(panels: &Panels, s: f64, delta: f64, index: usize, [lo, hi]: [f64; 2
     let radius = |x: f64| span.radius(0.5 * (lo + hi) + 0.5 * (hi - lo) * x);
     let gap = |x: f64| gap_from(panels, s, delta, radius(x));
     let least = |a: [f64; 2], b: [f64; 2]| if b[1] < a[1] { b } else { a };
-    let mut series = Rule::of(SEARCHED).series(gap);
+    let series = Rule::of(SEARCHED).series(gap);
     let largest = series.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let tail: f64 = series.iter().rev().take(3).map(|c| c.abs()).sum();
     if tail > TAIL * largest && depth > 0 {
@@ -272,9 +271,7 @@ fn least_on(panels: &Panels, s: f64, delta: f64, index: usize, [lo, hi]: [f64; 2
             [[lo, middle], [middle, hi]].map(|piece| least_on(panels, s, delta, index, piece, depth - 1));
         return least(left, right);
     }
-    series.resize(ROOT_NODES, 0.0);
-    let mut slope = chebyshev::derivative(&series);
-    slope.resize(ROOT_NODES, 0.0);
+    let slope = chebyshev::derivative(&series);
     // The series tells where; only what may be the smallest is computed.
     let inner = chebyshev::roots(&slope, 0.0);
     let by_series = |x: &f64| chebyshev::sum(&series, *x);

@@ -5,7 +5,7 @@
 //! are too coarse for the gap, is a hole.
 
 use super::basis::{Basis, Order};
-use super::chebyshev::{self, ROOT_NODES, Rule};
+use super::chebyshev::{self, Rule};
 use super::solution::{Local, Solution};
 use super::span::Place;
 use crate::contact::panels::{Span, Variable};
@@ -163,10 +163,9 @@ impl Solution for Sampled {
     fn tendency(&self, panel: usize, control: Control) -> (Vec<f64>, f64) {
         let [.., delta, force, _] = &self.panels[panel].series;
         let (of_delta, of_force) = control.weights();
-        let mut series: Vec<f64> =
+        let series: Vec<f64> =
             delta.iter().zip(force).map(|(delta, force)| of_delta * delta + of_force * force).collect();
         let size = series.iter().map(|c| c.abs()).sum();
-        series.resize(ROOT_NODES, 0.0);
         (series, size)
     }
 }

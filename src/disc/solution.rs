@@ -1,6 +1,5 @@
 //! The equilibria of one disc over all its radii, panel by panel: what limit points, landings and losses are found on.
 
-use super::chebyshev::ROOT_NODES;
 use super::span::Place;
 use super::table::Panels;
 use crate::contact::Control;
@@ -168,7 +167,6 @@ impl Solution for ExactSolution {
         }
         let of = &self.panels.list()[panel];
         let mut series = self.panels.slope_series(panel);
-        series.resize(series.len().max(ROOT_NODES), 0.0);
         let size: f64 = series.iter().map(|c| c.abs()).sum();
         let edge = Self::edge(self.work_of_adhesion);
         let own;
@@ -183,6 +181,7 @@ impl Solution for ExactSolution {
                 (&own[..], edge)
             }
         };
+        series.resize(series.len().max(weights.len()), 0.0);
         for (c, weight) in series.iter_mut().zip(weights) {
             *c -= factor * weight;
         }

@@ -15,7 +15,7 @@ use crate::contact::{Control, Groups};
 use crate::preset::Preset;
 use crate::quasistatic::overlap::{overlaps_while, passed_while};
 use crate::quasistatic::{
-    Admissibility, Curve, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
+    Admissibility, Curve, Detail, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
 };
 use crate::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
@@ -208,7 +208,7 @@ impl CurveData {
         let start = unloading.as_ref().map_or(0.0, |path| path.start.contact_radius);
         let outward = if start > curve.outermost() * (1.0 + 1e-12) {
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
-            Curve::new(case.reduced.clone(), basis, table, start, curve.outermost(), || true)
+            Curve::new(case.reduced.clone(), basis, table, [start, curve.outermost()], Detail::Drawn, || true)
         } else {
             None
         };

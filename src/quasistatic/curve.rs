@@ -112,9 +112,18 @@ pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
     radii
 }
 
+/// How many states a curve has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// Enough to be drawn.
+    Drawn,
+    /// Those between panels, where only limit points and unloadings are wanted.
+    Borders,
+}
+
 /// The places of a curve's states from the radius `from` inward to `to`: every panel of the solution with as many, the
 /// borders at which it has a corner from both sides.
-fn places(solution: &dyn Solution, from: f64, to: f64) -> Vec<Place> {
+fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Place> {
     let [first, last] = [from, to].map(|s| solution.place(s));
     let Some(first) = first else { return Vec::new() };
     let last = last.map_or(0, |place| place.panel);
@@ -123,7 +132,10 @@ fn places(solution: &dyn Solution, from: f64, to: f64) -> Vec<Place> {
     for panel in (last..=first.panel).rev() {
         let span = solution.span(panel);
         let (outer, inner) = (span.hi.min(from), span.lo.max(to));
-        let steps = radii(outer, inner, RATIO, (span.hi - span.lo) / per_panel);
+        let steps = match detail {
+            Detail::Drawn => radii(outer, inner, RATIO, (span.hi - span.lo) / per_panel),
+            Detail::Borders => Vec::new(),
+        };
         let inside = steps.iter().skip(1).take(steps.len().saturating_sub(2));
         places.extend(inside.map(|s| Place { panel, x: span.place(*s) }));
         // The outer side of a border that is a corner, and then the border itself.
@@ -148,8 +160,8 @@ impl Curve {
         problem: Reduced,
         basis: Arc<dyn Basis>,
         table: Arc<Table>,
-        from: f64,
-        to: f64,
+        [from, to]: [f64; 2],
+        detail: Detail,
         mut go_on: impl FnMut() -> bool,
     ) -> Option<Self> {
         let solution = basis.solution(&problem, to, from, &mut go_on)?;
@@ -160,7 +172,7 @@ impl Curve {
         // As far as it is connected.
         let mut samples: Vec<Sample> = Vec::new();
         let mut stop = CurveStop::End;
-        for on_panel in places(&*solution, from, to).chunk_by(|a, b| a.panel == b.panel) {
+        for on_panel in places(&*solution, from, to, detail).chunk_by(|a, b| a.panel == b.panel) {
             let panel = on_panel[0].panel;
             if !samples.is_empty() && !solution.is_joined(panel) {
                 stop = CurveStop::NoEquilibrium(samples.last().map_or(from, |s| s.contact_radius));
@@ -189,7 +201,7 @@ impl Curve {
     /// The same with a table of the gap of its own.
     pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
         let table = Table::new(Arc::clone(&problem.gap), from, &mut || true).ok()?;
-        Self::new(problem, basis, Arc::new(table), from, to, || true)
+        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, || true)
     }
 
     /// The largest contact radius of the curve.

@@ -263,7 +263,7 @@ mod tests {
     use super::*;
     use crate::contact::{Problem, Reduced, Shape};
     use crate::disc::{Basis, Exact, Table};
-    use crate::quasistatic::Turn;
+    use crate::quasistatic::{Detail, Turn};
     use crate::ritz::Rings;
     use std::f64::consts::PI;
     use std::sync::Arc;
@@ -281,7 +281,7 @@ mod tests {
             Some(rings) => Rings::shared(rings).unwrap(),
             None => Arc::new(Exact::new(Arc::clone(&table), 0.5)),
         };
-        Curve::new(problem.clone(), basis, table, 0.5, 0.02, || true).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, || true).unwrap()
     }
 
     /// The radii at which `control` takes `value` on the curve, descending, with their stability.

@@ -29,7 +29,7 @@ pub mod start;
 pub mod unload;
 
 pub use admissible::Admissibility;
-pub use curve::{Curve, CurveStop, Sample};
+pub use curve::{Curve, CurveStop, Detail, Sample};
 pub use equilibrium::{Equilibrium, Point, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
 pub use monotone::{Limit, Monotone, Turn};

@@ -8,6 +8,7 @@
 use super::equilibrium::Stability;
 use crate::contact::Control;
 use crate::disc::{Local, Place, Solution, chebyshev};
+use std::ops::Range;
 
 /// Values of the slope below this share of its terms are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -89,10 +90,16 @@ struct Cut {
 impl Monotone {
     /// The stretches of `control` on `solution`.
     pub fn of(solution: &dyn Solution, control: Control) -> Self {
+        Self::on(solution, control, 0..solution.len())
+    }
+
+    /// Those on some of its panels.
+    pub fn on(solution: &dyn Solution, control: Control, panels: Range<usize>) -> Self {
         let mut cuts: Vec<Cut> = Vec::new();
         let mut signs = Vec::new();
         let mut before: Option<(Place, bool)> = None;
-        for panel in 0..solution.len() {
+        let first = panels.start;
+        for panel in panels {
             let (series, size) = solution.tendency(panel, control);
             let starts = chebyshev::sum(&series, -1.0) > 0.0;
             let begin = Place { panel, x: -1.0 };
@@ -117,22 +124,22 @@ impl Monotone {
         let mut found = Self { control, stretches: Vec::new(), limits: Vec::new() };
         let Some((last, _)) = before else { return found };
         forget_rounding(solution, &mut cuts, &mut signs);
-        let mut inner = Place { panel: 0, x: -1.0 };
+        let mut inner = solution.at(Place { panel: first, x: -1.0 });
+        let mut begin = Place { panel: first, x: -1.0 };
         let mut joined = false;
         let outer_ends = cuts.iter().map(|cut| cut.before).chain([last]);
         for (k, outer) in outer_ends.enumerate() {
-            let ends = [inner, outer].map(|place| solution.at(place));
+            let at = solution.at(outer);
             found.stretches.push(Stretch {
-                inner,
+                inner: begin,
                 outer,
-                radii: ends.map(|at| at.contact_radius),
-                values: ends.map(|at| found.value(&at)),
+                radii: [inner.contact_radius, at.contact_radius],
+                values: [found.value(&inner), found.value(&at)],
                 rising: signs[k],
                 joined,
             });
             if let Some(cut) = cuts.get(k) {
                 if cut.joined {
-                    let at = ends[1];
                     found.limits.push(Limit {
                         control,
                         turn: if signs[k + 1] { Turn::Minimum } else { Turn::Maximum },
@@ -143,7 +150,8 @@ impl Monotone {
                         corner: cut.before != cut.after,
                     });
                 }
-                inner = cut.after;
+                inner = if cut.after == outer { at } else { solution.at(cut.after) };
+                begin = cut.after;
                 joined = cut.joined;
             }
         }
@@ -228,7 +236,7 @@ pub fn weighted(control: Control, approach: f64, force: f64) -> f64 {
 
 /// Takes away pairs of cuts that rounding made.
 fn forget_rounding(solution: &dyn Solution, cuts: &mut Vec<Cut>, signs: &mut Vec<bool>) {
-    let radius = |cut: &Cut| solution.at(cut.before).contact_radius;
+    let radius = |cut: &Cut| solution.span(cut.before.panel).radius(cut.before.x);
     let mut k = 0;
     while k + 1 < cuts.len() {
         let (a, b) = (radius(&cuts[k]), radius(&cuts[k + 1]));

@@ -195,6 +195,7 @@ mod tests {
     use super::*;
     use crate::contact::{Problem, Reduced, Shape};
     use crate::disc::{Exact, Table};
+    use crate::quasistatic::Detail;
     use crate::quasistatic::unload::unload;
     use std::f64::consts::TAU;
     use std::sync::Arc;
@@ -207,7 +208,7 @@ mod tests {
     fn curve(problem: &Reduced, to: f64) -> Curve {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
         let basis = Arc::new(Exact::new(Arc::clone(&table), 0.5));
-        Curve::new(problem.clone(), basis, table, 0.5, to, || true).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, || true).unwrap()
     }
 
     fn holds(curve: &Curve, s: f64) -> bool {

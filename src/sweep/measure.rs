@@ -9,7 +9,9 @@ use crate::disc::{ExactSolution, Solution};
 use crate::preset::Preset;
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::overlap::passed_while;
-use crate::quasistatic::{Curve, Equilibrium, EventKind, Losses, Monotone, PathStop, State, Unloading};
+use crate::quasistatic::{
+    Curve, Detail, Equilibrium, EventKind, Losses, Monotone, PathStop, State, Unloading,
+};
 use crate::report::number::exact;
 use crate::theory::guduru::Guduru;
 use crate::theory::kesari_lew::KesariLew;
@@ -117,7 +119,7 @@ impl Start {
 
 impl Line {
     fn new(case: &Case, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
-        let mut curve = case.curve(go_on)?;
+        let mut curve = case.curve_in(Detail::Borders, go_on)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
             Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
@@ -165,9 +167,9 @@ impl Line {
         let exact = ExactSolution::new(panels, problem.work_of_adhesion);
         let Some(here) = exact.place(state.contact_radius).map(|place| exact.at(place)) else { return false };
         let here = weighted(control, here.approach, here.force);
-        let monotone = Monotone::of(&exact, control);
-        let beyond = monotone.stretches.iter().filter(|stretch| stretch.radii[1] > start);
-        let ends = beyond.flat_map(|stretch| {
+        let [Some(first), Some(last)] = [start, far].map(|s| exact.place(s)) else { return false };
+        let monotone = Monotone::on(&exact, control, first.panel..last.panel + 1);
+        let ends = monotone.stretches.iter().flat_map(|stretch| {
             let [inner, outer] = stretch.radii;
             [(inner, stretch.values[0]), (outer, stretch.values[1])]
         });
@@ -307,11 +309,11 @@ impl Work<'_> {
     fn path(&mut self, control: Control) -> Result<&Path, Fault> {
         let known = self.paths.iter().position(|(known, _)| *known == control);
         let at = known.unwrap_or_else(|| {
-            let made = self.line().map(|line| line.curve.clone());
-            let go_on = self.go_on;
-            let made = made.and_then(|curve| {
-                let case = &self.start()?.case;
-                let unloading = case.unload_while(&curve, control, Losses::Once, go_on);
+            let made = self.line().map(|_| ()).and_then(|()| {
+                let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
+                    return Err(Fault::incomplete("no curve"));
+                };
+                let unloading = start.case.unload_while(&line.curve, control, Losses::Once, self.go_on);
                 Ok(Path { unloading: unloading.map_err(|e| Fault::of_case(&e))? })
             });
             self.paths.push((control, made));
