@@ -26,6 +26,9 @@ const WANTED: &str = "PULLOFF_SSH_TESTS";
 /// How long a thread of the wire sleeps before it looks whether the wire was cut.
 const LOOK: Duration = Duration::from_millis(10);
 
+/// How often a server is started before it counts as not to be had.
+const STARTS: usize = 5;
+
 /// Folders outside the search path of a plain user that hold the server.
 const PLACES: [&str; 4] = ["/usr/sbin", "/usr/local/sbin", "/sbin", "/usr/lib/ssh"];
 
@@ -39,7 +42,14 @@ pub struct Sshd {
 impl Sshd {
     /// Starts one; `None`, and said on standard error, where there is no OpenSSH and nobody asked for these tests.
     pub fn start() -> Option<Self> {
-        let started = Self::try_start();
+        // Somebody may take the port between the look at it and the server: then another one.
+        let mut tries = (0..STARTS).map(|_| Self::try_start());
+        let mut started = tries.next()?;
+        while started.is_err()
+            && let Some(next) = tries.next()
+        {
+            started = next;
+        }
         match started {
             Ok(sshd) => Some(sshd),
             Err(why) => {
@@ -91,7 +101,7 @@ impl Sshd {
     /// Also that the user may log in: a locked account may not.
     fn wait_until_up(&mut self) -> Result<(), String> {
         let start = Instant::now();
-        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+        while !greets(self.port) {
             let ended = self.daemon.try_wait().map_err(|error| error.to_string())?;
             if ended.is_some() || start.elapsed() > LIMIT {
                 return Err(format!("sshd does not listen: {}", self.log()));
@@ -209,9 +219,19 @@ fn carry(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
     }
 }
 
+/// A port below those that the system gives to connections, so that none of them takes it before the server does.
 fn free_port() -> u16 {
-    let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
-    listener.local_addr().expect("an address").port()
+    let free = |port: &u16| TcpListener::bind(("127.0.0.1", *port)).is_ok();
+    std::iter::repeat_with(|| fastrand::u16(10_000..32_000)).find(free).expect("a port")
+}
+
+/// Whether an SSH server is what answers at a port.
+fn greets(port: u16) -> bool {
+    let Ok(mut stream) = TcpStream::connect(("127.0.0.1", port)) else { return false };
+    let mut greeting = [0; 4];
+    stream.set_read_timeout(Some(LIMIT)).is_ok()
+        && stream.read_exact(&mut greeting).is_ok()
+        && greeting == *b"SSH-"
 }
 
 fn client() -> Result<PathBuf, String> {
