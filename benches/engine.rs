@@ -1,16 +1,18 @@
 //! What the engine costs, over a fixed table of ring numbers and in the exact basis.
 //!
-//! `cargo bench --no-default-features`; the numbers are for comparing two versions on one machine.
+//! `cargo bench`; the numbers are for comparing two versions on one machine.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
 use divan::{Bencher, black_box};
-use pulloff::case::Case;
-use pulloff::contact::Control;
-use pulloff::contact::{Problem, Shape};
-use pulloff::disc::{Basis, Evaluation, Exact, Order, Table};
-use pulloff::preset::{BasisSpec, Store};
-use pulloff::ritz::{Grading, Rings};
+use pulloff::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::BasisSpec;
+use pulloff_engine::problem::Control;
+use pulloff_engine::problem::Problem;
+use pulloff_engine::ritz::{Grading, Rings};
 use std::sync::Arc;
 
 /// The ring numbers.
@@ -127,7 +129,7 @@ fn exact_table(bencher: Bencher) {
 }
 
 /// The problem of Fig. 9, reduced.
-fn problem() -> pulloff::contact::Reduced {
+fn problem() -> pulloff_engine::problem::Reduced {
     let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
     let work_of_adhesion = 0.025 / std::f64::consts::TAU;
     Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced()

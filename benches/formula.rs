@@ -1,14 +1,14 @@
 //! What a typed formula costs against the closed form of the same gap, and what reading one costs.
 //!
-//! `cargo bench --no-default-features --bench formula`; the numbers are for comparing two versions on one machine.
+//! `cargo bench --bench formula`; the numbers are for comparing two versions on one machine.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use pulloff::contact::formula::{Bound, Formula};
-use pulloff::contact::{Gap, Shape};
-use pulloff::units::parse_quantity;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::gap::{formula::Bound, formula::Formula};
+use pulloff_engine::units::parse_quantity;
 
 const WAVY: &str = "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))";
 /// Radii of a batch.

@@ -5,7 +5,7 @@
 
 use divan::Bencher;
 use pulloff::explorer::{Inline, View};
-use pulloff::preset::Store;
+use pulloff::store::Store;
 use pulloff::tui::{app::App, theme::Theme, view};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;

@@ -4,12 +4,13 @@
 //! the explicit curve, traces that found all, traces that reached their end. The defaults of
 //! `continuation::settings` were chosen from it.
 
-use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::continuation::{Settings, Work, events};
-use pulloff::disc::Basis;
-use pulloff::quasistatic::curve::settings;
-use pulloff::quasistatic::{Curve, CurveStop};
-use pulloff::ritz::Rings;
+use pulloff_engine::continuation::{Settings, Work, events};
+use pulloff_engine::disc::Basis;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::quasistatic::curve::settings;
+use pulloff_engine::quasistatic::{Curve, CurveStop};
+use pulloff_engine::ritz::Rings;
 use std::sync::Arc;
 
 const FROM: f64 = 1.0;

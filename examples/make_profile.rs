@@ -9,11 +9,11 @@
 //! 0.01 µm, heights to 0.1 nm, which is finer than its noise. All random numbers come from one seed, so the file is the
 //! same whoever makes it.
 
-use pulloff::contact::Gap;
-use pulloff::contact::shapes::random_waves::RandomWavesError;
-use pulloff::contact::shapes::split_mix::SplitMix64;
-use pulloff::contact::shapes::{Harmonics, RandomWaves};
-use pulloff::report::number::fixed;
+use pulloff_engine::gap::Gap;
+use pulloff_engine::gap::shapes::random_waves::RandomWavesError;
+use pulloff_engine::gap::shapes::split_mix::SplitMix64;
+use pulloff_engine::gap::{shapes::Harmonics, shapes::RandomWaves};
+use pulloff_engine::report::number::fixed;
 use std::io::Write;
 
 /// Rows of the file.
@@ -66,8 +66,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pulloff::contact::shapes::{Profile, Smoothing};
-    use pulloff::preset::profile::parse;
+    use pulloff_engine::gap::{shapes::Profile, shapes::Smoothing};
+    use pulloff_engine::preset::profile::parse;
 
     const SHIPPED: &str = include_str!("../presets/data/rough-sphere.csv");
 

@@ -14,10 +14,10 @@
 
 use crate::explorer::Id;
 use crate::explorer::command::ROWS;
-use crate::preset::file::{FileError, read_text};
-use crate::preset::suggest::closest;
-use crate::preset::text::{quote, show_path};
+use crate::store::file::{FileError, read_text};
 use etcetera::BaseStrategy;
+use pulloff_engine::text::closest;
+use pulloff_engine::text::{quote, show_path};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -3,15 +3,12 @@
 //! So the tests can show what a panic in each thread leaves behind. Without the feature nothing is compiled in.
 
 /// The thread that draws, at a key.
-#[cfg(feature = "tui")]
 pub const UI: &str = "ui";
 /// The lane of the curves, at a curve.
 pub const WORKER: &str = "worker";
 /// The thread that reads the terminal, at a key.
-#[cfg(feature = "tui")]
 pub const INPUT: &str = "input";
 /// The thread that answers signals, at a signal.
-#[cfg(feature = "tui")]
 pub const SIGNAL: &str = "signal";
 
 /// Panics if `PULLOFF_PANIC` is `place`.

@@ -4,18 +4,18 @@
 //! already. A full disk, a computation that ends early, a fault of the program are for nobody to mend by other words. One
 //! place says which is which, so that the same fault has the same status in every command and in scripts.
 
-use crate::case::CaseError;
 use crate::explorer::archive::ArchiveError;
 use crate::plot::map::MapError;
-use crate::preset::beside::DataError;
-use crate::preset::file::FileError;
-use crate::preset::{StoreError, WriteError};
 use crate::print::{DrawError, FormatError};
+use crate::store::beside::DataError;
+use crate::store::file::FileError;
+use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;
 use crate::sweep::merge::MergeError;
 use crate::sweep::results::ResultsError;
 use crate::sweep::side::SideError;
 use crate::sweep::spec::LoadError;
+use pulloff_engine::case::CaseError;
 use rustix::io::Errno;
 use std::fmt;
 use std::io::{self, ErrorKind};

@@ -24,10 +24,12 @@
 #[path = "support/quadrature.rs"]
 mod quadrature;
 
-use pulloff::case::{Case, CaseError};
-use pulloff::contact::{Control, Gap, Shape};
-use pulloff::preset::{Preset, read};
-use pulloff::quasistatic::Unloading;
+use pulloff::store::read;
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::Unloading;
 use quadrature::{Bump, Disc, Path, State, Term};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -526,7 +528,7 @@ fn judge(problem: &Problem) -> Outcome {
     match found {
         Ok(errors) => {
             let corners = disc.corners();
-            let on_corner = |event: &&pulloff::quasistatic::Event| {
+            let on_corner = |event: &&pulloff_engine::quasistatic::Event| {
                 let s = event.before.contact_radius * case.units().length / problem.length;
                 corners.iter().any(|corner| (corner[0] - s).abs() <= 1e-14 * s)
             };
@@ -623,7 +625,7 @@ fn compare(
     truth: &Path,
 ) -> Result<Worst, String> {
     let length = case.units().length / problem.length;
-    let in_ours = |state: &pulloff::quasistatic::State| {
+    let in_ours = |state: &pulloff_engine::quasistatic::State| {
         scaled(problem, case, state.contact_radius * length, state.approach, state.force)
     };
     let told = || tell(truth, ours, &in_ours);
@@ -706,7 +708,11 @@ fn ranges(path: &Path) -> [f64; 2] {
     ranges.map(|[lo, hi]| hi - lo)
 }
 
-fn tell(truth: &Path, ours: &Unloading, in_ours: &dyn Fn(&pulloff::quasistatic::State) -> State) -> String {
+fn tell(
+    truth: &Path,
+    ours: &Unloading,
+    in_ours: &dyn Fn(&pulloff_engine::quasistatic::State) -> State,
+) -> String {
     let mut text = format!("  start {:?}, true {:?}\n", in_ours(&ours.start), truth.start);
     for event in &ours.events {
         let (before, after) = (in_ours(&event.before), event.after.as_ref().map(in_ours));

@@ -218,7 +218,7 @@ fn presets_are_listed_shown_and_located() {
     let home = Home::new();
     let list = home.quiet(&["presets", "list"]);
     let listed: Vec<&str> = list.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    let shipped: Vec<&str> = pulloff::preset::SHIPPED.iter().map(|shipped| shipped.name).collect();
+    let shipped: Vec<&str> = pulloff::store::SHIPPED.iter().map(|shipped| shipped.name).collect();
     assert_eq!(listed, shipped);
     assert!(listed.starts_with(&["wavy-sphere", "fig-1-hertz"]) && listed.contains(&"profile"), "{list}");
     assert!(list.lines().all(|line| line.contains("  shipped  ")), "{list}");

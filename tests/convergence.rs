@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::disc::{Basis, Exact};
-use pulloff::ritz::{Grading, NewtonSettings, Rings, Solved, solve};
-use pulloff::theory;
-use pulloff::theory::{hertz, jkr::Jkr};
+use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, Solved, solve};
+use pulloff_engine::theory;
+use pulloff_engine::theory::hertz;
+use pulloff_engine::theory::jkr::Jkr;
 
 /// The smooth sphere E* = R = 1.
 fn sphere(gamma: f64) -> Reduced {

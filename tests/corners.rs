@@ -3,13 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::Control;
 use pulloff::explorer::CurveData;
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
-use pulloff::preset::{Preset, Store};
-use pulloff::quasistatic::{CurveStop, EventKind};
-use pulloff::report::TraceReport;
+use pulloff::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::{CurveStop, EventKind};
+use pulloff_engine::report::TraceReport;
 use std::sync::Arc;
 
 /// r²/2 with a corner of this height at r = 0.12.

@@ -3,9 +3,9 @@
 #[path = "support/session.rs"]
 mod session;
 
-use pulloff::contact::Control;
 use pulloff::explorer::device::line;
 use pulloff::explorer::{Axes, CurveData, Effect, Id, NodeKind, update};
+use pulloff_engine::problem::Control;
 use session::Session;
 use std::sync::Arc;
 

@@ -3,15 +3,16 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::Control;
-use pulloff::preset::schema::Kind;
-use pulloff::preset::{BasisSpec, PARAMETERS, Preset, Store};
-use pulloff::quasistatic::{State, Unloading};
-use pulloff::ritz::Grading;
-use pulloff::theory::Exact;
-use pulloff::theory::disc::Equilibrium;
-use pulloff::theory::unloading::{Path, unload};
+use pulloff::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::{BasisSpec, PARAMETERS, Preset};
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::{State, Unloading};
+use pulloff_engine::ritz::Grading;
+use pulloff_engine::theory::Exact;
+use pulloff_engine::theory::disc::Equilibrium;
+use pulloff_engine::theory::unloading::{Path, unload};
 
 /// How near eigenfunctions come in an automatic number: δ and P relative to their parts, radii of limit points and landings
 /// over that of the start, losses. A snap of little loss is a difference of energies a thousand times as large.

@@ -2,12 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::Control;
-use pulloff::disc::Order;
-use pulloff::preset::{Preset, Store};
-use pulloff::ritz::{NewtonSettings, solve};
-use pulloff::theory::Exact;
+use pulloff::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::disc::Order;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use pulloff_engine::ritz::{NewtonSettings, solve};
+use pulloff_engine::theory::Exact;
 
 /// A shipped preset in the exact basis.
 fn preset(name: &str, assignments: &[&str]) -> Preset {

@@ -4,10 +4,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::{Control, Problem, Shape};
-use pulloff::theory::Exact;
-use pulloff::theory::jkr::Jkr;
-use pulloff::theory::unloading::{INWARD_REACH, limit_points, unload};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::theory::Exact;
+use pulloff_engine::theory::jkr::Jkr;
+use pulloff_engine::theory::unloading::{INWARD_REACH, limit_points, unload};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -141,9 +142,9 @@ fn where_nothing_outward_is_stable_there_is_no_path() {
     // A flat punch without end: adhesion alone rules, and the control falls with s for ever.
     #[derive(Debug)]
     struct Flat;
-    impl pulloff::contact::Gap for Flat {
-        fn jet(&self, _: f64) -> pulloff::contact::Jet {
-            pulloff::contact::Jet::default()
+    impl pulloff_engine::gap::Gap for Flat {
+        fn jet(&self, _: f64) -> pulloff_engine::gap::Jet {
+            pulloff_engine::gap::Jet::default()
         }
         fn feature_length(&self) -> Option<f64> {
             None

@@ -8,9 +8,9 @@ use pulloff::explorer::model::Level;
 use pulloff::explorer::{
     Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
 };
-use pulloff::preset::store::save_file;
-use pulloff::preset::{Overwrite, Source};
-use pulloff::quasistatic::EventKind;
+use pulloff::store::save_file;
+use pulloff::store::{Overwrite, Source};
+use pulloff_engine::quasistatic::EventKind;
 use session::Session;
 
 #[test]

@@ -4,11 +4,11 @@
 #[path = "support/session.rs"]
 mod session;
 
-use pulloff::contact::Control;
 use pulloff::explorer::journal::Journal;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Progress, Reply, answer, update};
-use pulloff::preset::Value;
+use pulloff_engine::preset::Value;
+use pulloff_engine::problem::Control;
 use session::Session;
 
 fn number(session: &Session, key: &str) -> f64 {

@@ -4,11 +4,11 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use pulloff::contact::Gap;
-use pulloff::contact::formula::Formula;
-use pulloff::expression::grammar::{DEPTH, LENGTH};
-use pulloff::preset::read_with;
-use pulloff::units::{DisplayUnits, Quantity, UnitSystem, parse_quantity};
+use pulloff::store::read_with;
+use pulloff_engine::expression::error::{DEPTH, LENGTH};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::gap::formula::Formula;
+use pulloff_engine::units::{DisplayUnits, Quantity, UnitSystem, parse_quantity};
 
 /// The words of the language and some that are none.
 const TOKENS: &[&str] = &[

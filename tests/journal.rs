@@ -11,7 +11,7 @@ use pulloff::explorer::journal::Journal;
 use pulloff::explorer::script::{self, Permission, play};
 use pulloff::explorer::walk::{Made, walk};
 use pulloff::explorer::{Command, Effect, Id, Inline, Model, Reply, answer, open, update};
-use pulloff::preset::Store;
+use pulloff::store::Store;
 use session::Session;
 use std::collections::VecDeque;
 use std::path::Path;

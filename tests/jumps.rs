@@ -3,11 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::{Control, Shape, Start};
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
 use pulloff::explorer::{CurveData, NodeKind};
-use pulloff::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff::quasistatic::Turn;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
+use pulloff_engine::problem::{Control, Start};
+use pulloff_engine::quasistatic::Turn;
 use std::sync::Arc;
 
 const START: f64 = 0.45;
@@ -15,7 +16,8 @@ const START: f64 = 0.45;
 fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Control) -> Preset {
     Preset {
         title: String::new(),
-        units: pulloff::units::UnitSystem::Reduced,
+        files: pulloff::store::FILES,
+        units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Exact,

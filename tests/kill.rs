@@ -8,7 +8,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-use pulloff::preset::{Overwrite, Preset, Source, Store, read, shipped, write};
+use pulloff::store::{Overwrite, Source, Store, read, shipped};
+use pulloff_engine::preset::{Preset, write};
 use rustix::process::Signal;
 use support::pty::{LIMIT, Pty};
 

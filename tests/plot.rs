@@ -52,7 +52,7 @@ fn every_view_is_a_document_of_one_column_with_its_axes() {
 #[test]
 fn every_shipped_preset_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
-    for preset in pulloff::preset::shipped::SHIPPED {
+    for preset in pulloff::store::shipped::SHIPPED {
         for view in ["radius-force", "pressure"] {
             let svg = svg(folder.path(), &[preset.name, "--view", view]);
             roxmltree::Document::parse(&svg).unwrap();

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::{Control, Gap};
-use pulloff::preset::{Preset, Value, read, shipped};
-use pulloff::theory::Exact;
-use pulloff::theory::unloading;
+use pulloff::store::{read, shipped};
+use pulloff_engine::case::Case;
+use pulloff_engine::gap::Gap;
+use pulloff_engine::preset::{Preset, Value};
+use pulloff_engine::problem::Control;
+use pulloff_engine::theory::Exact;
+use pulloff_engine::theory::unloading;
 use std::sync::Arc;
 
 const NAMES: [&str; 7] =
@@ -111,7 +113,7 @@ fn figure_9_as_a_formula_is_figure_9() {
 fn without_a_radius_nothing_is_said_of_a_smooth_sphere() {
     let case = Case::new(&preset("cone", &[])).unwrap();
     assert!(case.smooth().is_none() && case.critical_force().is_none());
-    let groups = serde_json::to_value(pulloff::contact::Groups::of(&case.problem, None)).unwrap();
+    let groups = serde_json::to_value(pulloff_engine::problem::Groups::of(&case.problem, None)).unwrap();
     assert!(groups.as_object().unwrap().values().all(serde_json::Value::is_null));
     // Reduced by the contact radius at the start.
     assert!((case.start - 1.0).abs() < 1e-12);

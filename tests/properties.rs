@@ -5,12 +5,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::{Control, Gap, Shape, Start};
-use pulloff::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff::report::unload::{EventReport, StateReport};
-use pulloff::report::{TraceReport, UnloadReport, json};
-use pulloff::ritz::Grading;
+use pulloff_engine::case::Case;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
+use pulloff_engine::problem::{Control, Start};
+use pulloff_engine::report::unload::{EventReport, StateReport};
+use pulloff_engine::report::{TraceReport, UnloadReport, json};
+use pulloff_engine::ritz::Grading;
 
 /// Steps of the independent walk per wave.
 const STEPS_PER_WAVE: f64 = 400.0;
@@ -48,7 +49,8 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     };
     Preset {
         title: String::new(),
-        units: pulloff::units::UnitSystem::Reduced,
+        files: pulloff::store::FILES,
+        units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material {
             effective_modulus: modulus,
             work_of_adhesion: gamma * modulus * radius,
@@ -287,7 +289,7 @@ fn run(seed: u64, problems: usize, wild: bool) {
         events += found;
         if !faults.is_empty() {
             wrong += 1;
-            println!("#{number}: {faults:#?}\n{}", pulloff::preset::write(&preset));
+            println!("#{number}: {faults:#?}\n{}", pulloff_engine::preset::write(&preset));
         }
         if time.elapsed().as_secs_f64() > 5.0 {
             println!("#{number}: slow {:?} {preset:?}", time.elapsed());
@@ -306,7 +308,8 @@ fn unloading_agrees_with_a_walk_on_the_explicit_curve() {
 fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f64) -> Preset {
     Preset {
         title: String::new(),
-        units: pulloff::units::UnitSystem::Reduced,
+        files: pulloff::store::FILES,
+        units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion: gamma, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },

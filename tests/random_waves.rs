@@ -5,12 +5,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::{Control, Problem, Reduced, Shape};
-use pulloff::continuation::{Work, events, locate};
-use pulloff::disc::{Basis, Exact};
-use pulloff::quasistatic::curve::settings;
-use pulloff::quasistatic::{Curve, CurveStop, Equilibrium, Point};
-use pulloff::ritz::Rings;
+use pulloff_engine::continuation::{Work, events, locate};
+use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::quasistatic::curve::settings;
+use pulloff_engine::quasistatic::{Curve, CurveStop, Equilibrium, Point};
+use pulloff_engine::ritz::Rings;
 use std::sync::Arc;
 
 const FROM: f64 = 1.0;

@@ -5,11 +5,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::{Control, Problem, Shape};
-use pulloff::disc::{Basis, Exact};
-use pulloff::quasistatic::unload::unload;
-use pulloff::quasistatic::{Curve, EventKind};
-use pulloff::ritz::Rings;
+use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::quasistatic::unload::unload;
+use pulloff_engine::quasistatic::{Curve, EventKind};
+use pulloff_engine::ritz::Rings;
 use serde_json::Value;
 use std::sync::Arc;
 

@@ -241,10 +241,8 @@ fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
     {
         assert!(page.contains(text), "no {text} in\n{page}");
     }
-    if cfg!(feature = "tui") {
-        assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
-        fs::create_dir_all(home.path("config/pulloff")).unwrap();
-        fs::write(home.path("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
-        assert!(home.quiet(&["man"]).contains("[number of steps] (F4)"));
-    }
+    assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
+    fs::create_dir_all(home.path("config/pulloff")).unwrap();
+    fs::write(home.path("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
+    assert!(home.quiet(&["man"]).contains("[number of steps] (F4)"));
 }

@@ -16,7 +16,8 @@ use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
 use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
 use pulloff::figure::{Role, Subject};
-use pulloff::preset::{BasisSpec, Store, write};
+use pulloff::store::Store;
+use pulloff_engine::preset::{BasisSpec, write};
 use rustix::process::Signal;
 use session::Session;
 use std::path::Path;
@@ -157,7 +158,7 @@ fn a_session_that_calls_the_exact_basis_spectral_opens_says_so_and_goes_on() {
 #[test]
 fn presets_of_every_kind_come_back() {
     let folder = tempfile::tempdir().unwrap();
-    for shipped in pulloff::preset::SHIPPED {
+    for shipped in pulloff::store::SHIPPED {
         let mut session = Session::new(shipped.name);
         session.does(Command::Steps(2));
         let before = document(&session.model);

@@ -4,14 +4,18 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::shapes::{ExactSphere, Harmonic, Harmonics, PowerLaw, Profile, RandomWaves, Smoothing};
-use pulloff::contact::{Control, Gap, Reduced, Units};
-use pulloff::disc::{Basis, Exact};
-use pulloff::quasistatic::unload::unload;
-use pulloff::quasistatic::{Curve, EventKind, PathStop};
-use pulloff::ritz::Rings;
-use pulloff::theory::sneddon::Sneddon;
-use pulloff::theory::{Disc, harmonics, power_law, sphere};
+use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::gap::{
+    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::PowerLaw, shapes::Profile,
+    shapes::RandomWaves, shapes::Smoothing,
+};
+use pulloff_engine::problem::{Control, Reduced, Units};
+use pulloff_engine::quasistatic::unload::unload;
+use pulloff_engine::quasistatic::{Curve, EventKind, PathStop};
+use pulloff_engine::ritz::Rings;
+use pulloff_engine::theory::sneddon::Sneddon;
+use pulloff_engine::theory::{Disc, harmonics, power_law, sphere};
 use std::sync::Arc;
 
 /// One gap with the exact solution of its contact.

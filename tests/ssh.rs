@@ -9,8 +9,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use pulloff::preset::lock::FolderLock;
-use pulloff::preset::{Overwrite, Preset, Source, Store, shipped};
+use pulloff::store::lock::FolderLock;
+use pulloff::store::{Overwrite, Source, Store, shipped};
+use pulloff_engine::preset::Preset;
 use rustix::process::Signal;
 use serde_json::Value;
 use support::pty::{LIMIT, Pty};
@@ -171,7 +172,7 @@ fn is_running(process: &Path) -> bool {
 
 fn wavy() -> Preset {
     let text = shipped::find("wavy-sphere").expect("shipped").text;
-    pulloff::preset::read("wavy-sphere", text).expect("shipped")
+    pulloff::store::read("wavy-sphere", text).expect("shipped")
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::preset::Store;
+use pulloff::store::Store;
 use pulloff::sweep::{MOST_ROWS, Spec, SpecError};
 use std::path::Path;
 

@@ -2,12 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::contact::shapes::{ExactSphere, PowerLaw, Profile, Smoothing};
-use pulloff::contact::{Breaks, Control, Gap, Jet, Problem, Shape};
-use pulloff::theory::guduru::Guduru;
-use pulloff::theory::jkr::Jkr;
-use pulloff::theory::quadrature::integrate;
-use pulloff::theory::{Disc, Exact};
+use pulloff_engine::gap::{Breaks, Gap, Jet, Shape};
+use pulloff_engine::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::Profile, shapes::Smoothing};
+use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::theory::guduru::Guduru;
+use pulloff_engine::theory::jkr::Jkr;
+use pulloff_engine::theory::quadrature::integrate;
+use pulloff_engine::theory::{Disc, Exact};
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -368,7 +369,7 @@ fn the_pressures_under_a_profile_carry_its_force() {
 #[test]
 fn a_corner_of_a_formula_is_met() {
     // h = max(r − c, 0)²/2: h' = r − c beyond c, g = a (cos θ a − c (π/2 − θ)) with sin θ = c/a.
-    let formula = pulloff::contact::formula::Formula::parse("max(r - 0.3, 0)^2/2").unwrap();
+    let formula = pulloff_engine::gap::formula::Formula::parse("max(r - 0.3, 0)^2/2").unwrap();
     let gap = formula.bind(&[]).unwrap().over(1.0).unwrap();
     assert!((gap.breaks().knots[0] - 0.3).abs() < 1e-15);
     let exact = Exact::by_quadrature(1.0, 0.0, Arc::new(gap));

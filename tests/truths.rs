@@ -14,13 +14,15 @@
 #[allow(dead_code, reason = "shared with the campaign, which needs more of it")]
 mod quadrature;
 
-use pulloff::case::Case;
-use pulloff::contact::shapes::Profile;
-use pulloff::contact::{Control, Gap, Shape};
-use pulloff::preset::{Preset, read};
-use pulloff::quasistatic::Admissibility;
-use pulloff::report::UnloadReport;
-use pulloff::report::unload::EventReport;
+use pulloff::store::read;
+use pulloff_engine::case::Case;
+use pulloff_engine::gap::shapes::Profile;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::Admissibility;
+use pulloff_engine::report::UnloadReport;
+use pulloff_engine::report::unload::EventReport;
 use quadrature::{Disc, Term};
 use std::f64::consts::{PI, TAU};
 use toml::{Table, Value};
@@ -128,7 +130,7 @@ fn unloadings_are_those_of_the_table() {
 #[test]
 fn a_start_just_inside_a_limit_point_is_the_nearest_stable_state() {
     let shipped = |control: &str, start: Option<f64>| {
-        let mut preset = read("t", pulloff::preset::shipped::find("wavy-sphere").unwrap().text).unwrap();
+        let mut preset = read("t", pulloff::store::shipped::find("wavy-sphere").unwrap().text).unwrap();
         preset.path.control = control.parse().unwrap();
         if let Some(start) = start {
             preset.set("path.start_contact_radius", start.into()).unwrap();
@@ -158,12 +160,12 @@ fn a_start_just_inside_a_limit_point_is_the_nearest_stable_state() {
 
 #[test]
 fn losses_do_not_depend_on_how_stiff_the_device_is() {
-    let mut preset = read("t", pulloff::preset::shipped::find("wavy-sphere").unwrap().text).unwrap();
+    let mut preset = read("t", pulloff::store::shipped::find("wavy-sphere").unwrap().text).unwrap();
     let mut losses = |control: Control| -> Vec<[f64; 2]> {
         preset.path.control = control;
         let case = Case::new(&preset).unwrap();
         let path = case.unload(&case.curve(|| true).unwrap(), control).unwrap();
-        let both = |event: &pulloff::quasistatic::Event| {
+        let both = |event: &pulloff_engine::quasistatic::Event| {
             [event.dissipated, event.dissipated_by_area].map(Option::unwrap)
         };
         path.events.iter().map(both).collect()
@@ -292,7 +294,7 @@ fn eight_rows_are_enough() {
 /// A thousand waves down to 0.003 of the radius, against a sum over the waves themselves at the nodes of one rule.
 #[test]
 fn a_thousand_waves_have_the_events_of_their_sum() {
-    let mut preset = read("t", pulloff::preset::shipped::find("random-waves").unwrap().text).unwrap();
+    let mut preset = read("t", pulloff::store::shipped::find("random-waves").unwrap().text).unwrap();
     preset.set("gap.count", 1000_i64.into()).unwrap();
     preset.set("gap.shortest_wavelength", 0.003.into()).unwrap();
     preset.set("path.start_contact_radius", 1.0.into()).unwrap();

@@ -2,15 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::{Control, Gap, Shape};
-use pulloff::preset::changes::changes;
-use pulloff::preset::{Preset, Value, read, read_with, shipped, write};
-use pulloff::quasistatic::unload::UnloadError;
-use pulloff::quasistatic::{CurveStop, PathStop};
-use pulloff::report::{ProblemReport, TraceReport, UnloadReport, json, table};
-use pulloff::units::number::said;
-use pulloff::units::{DisplayUnits, UnitSystem};
+use pulloff::store::{read, read_with, shipped};
+use pulloff_engine::case::Case;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::changes::changes;
+use pulloff_engine::preset::{Preset, Value, write};
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::unload::UnloadError;
+use pulloff_engine::quasistatic::{CurveStop, PathStop};
+use pulloff_engine::report::{ProblemReport, TraceReport, UnloadReport, json, table};
+use pulloff_engine::units::number::said;
+use pulloff_engine::units::{DisplayUnits, UnitSystem};
 
 const WAVY: &str = "units = \"SI\"
 [material]
@@ -60,7 +62,7 @@ fn texts_have_their_unit_and_bare_numbers_are_si() {
     assert_eq!(preset.gap.wave(), Some((1e-7, 20e-6)));
     assert_eq!(preset.path.control, Control::Stiffness(80e-3));
     let units = read("p", &format!("{WAVY}[display]\nlength = \"nm\"\n")).unwrap().units;
-    assert_eq!(units.shown(pulloff::units::Quantity::Length, 2e-9).to_string(), "2.0 nm");
+    assert_eq!(units.shown(pulloff_engine::units::Quantity::Length, 2e-9).to_string(), "2.0 nm");
 }
 
 #[test]

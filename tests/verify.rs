@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::report::{VerifyReport, table};
-use pulloff::verify::{Group, Row, Settings, verify};
+use pulloff_engine::report::{VerifyReport, table};
+use pulloff_engine::verify::{Group, Row, Settings, verify};
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;

@@ -5,10 +5,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::case::Case;
-use pulloff::contact::Control;
-use pulloff::preset::{BasisSpec, Store};
-use pulloff::ritz::Grading;
+use pulloff::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::preset::BasisSpec;
+use pulloff_engine::problem::Control;
+use pulloff_engine::ritz::Grading;
 
 /// Points, rejected steps, evaluations of the equations, Newton rounds of the points that were kept; limit points under
 /// displacement and under force.

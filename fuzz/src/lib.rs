@@ -3,13 +3,14 @@
 //! A new target is a function here and a file of five lines in `src/bin`.
 
 use pulloff::config;
-use pulloff::contact::formula::Formula;
+use pulloff_engine::gap::formula::Formula;
 use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended};
-use pulloff::preset::profile::{self, ROW_RANGE};
-use pulloff::preset::text::is_unsafe;
-use pulloff::preset::{read, write};
-use pulloff::units::value::parse_quantity;
+use pulloff_engine::preset::profile::{self, ROW_RANGE};
+use pulloff_engine::text::is_unsafe;
+use pulloff::store::read;
+use pulloff_engine::preset::write;
+use pulloff_engine::units::value::parse_quantity;
 use std::fmt::Display;
 
 /// An error is shown to people: it must not steer their terminal. Its lines may end.

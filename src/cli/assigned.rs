@@ -2,9 +2,10 @@
 //! changed, and bare numbers of an SI preset that may have been meant in another unit.
 
 use super::warn;
-use crate::preset::{Preset, Source, Store, Value, groups};
-use crate::units::number::short;
-use crate::units::parse_quantity;
+use crate::store::{Source, Store};
+use pulloff_engine::preset::{Preset, Value, groups};
+use pulloff_engine::units::number::short;
+use pulloff_engine::units::parse_quantity;
 use std::io::Write;
 
 /// A bare number further than this factor from the preset's own value is worth a word.

@@ -5,7 +5,6 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// How the explorer looks.
-#[cfg(feature = "tui")]
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Explorer")]
 pub struct Flags {
@@ -24,12 +23,7 @@ pub struct Flags {
 }
 
 /// A build without the explorer has nothing to look at.
-#[cfg(not(feature = "tui"))]
-#[derive(Debug, clap::Args)]
-pub struct Flags {}
-
 /// Runs the explorer on a preset, or on the session `resume`: the newest where that is empty.
-#[cfg(feature = "tui")]
 pub fn run(
     problem: &Problem,
     resume: Option<&str>,
@@ -60,7 +54,6 @@ pub fn run(
 }
 
 /// The settings of a file asked for, or of the usual one, whose faults leave the defaults and a notice.
-#[cfg(feature = "tui")]
 pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Failure> {
     use crate::config::{self, ConfigError};
     use crate::tui::{Settings, keymap::Keymap, look::LookFile};
@@ -80,7 +73,6 @@ pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Fai
     }))
 }
 
-#[cfg(feature = "tui")]
 fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<crate::tui::Start, Failure> {
     use crate::explorer::archive::ArchiveError;
     let name = if name.is_empty() { archive.newest()?.ok_or(ArchiveError::Empty)? } else { name.to_owned() };
@@ -88,7 +80,6 @@ fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<cr
 }
 
 /// A preset; a session that was cut off is offered where no preset was asked for, and else only mentioned.
-#[cfg(feature = "tui")]
 fn fresh(
     archive: &crate::explorer::archive::Archive,
     problem: &Problem,
@@ -108,18 +99,4 @@ fn fresh(
         }
         Err(notice) => Start::Preset(loaded, Some(notice)),
     })
-}
-
-/// There is no explorer in this build.
-#[cfg(not(feature = "tui"))]
-pub fn run(
-    _problem: &Problem,
-    _resume: Option<&str>,
-    _config: Option<&Path>,
-    _flags: &Flags,
-) -> Result<ExitCode, Failure> {
-    Err(Failure::Usage(
-        "this build has no explorer (feature `tui` is off); use `pulloff trace` or `pulloff unload`"
-            .to_owned(),
-    ))
 }

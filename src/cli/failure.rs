@@ -1,15 +1,15 @@
 //! What a command can fail with, and the exit status that says so.
 
-use crate::case::CaseError;
 use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, Reason};
-use crate::preset::file::FileError;
-use crate::preset::{StoreError, WriteError};
 use crate::print::{DrawError, FormatError};
-use crate::report::rows::RowsError;
+use crate::store::file::FileError;
+use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;
 use crate::sweep::merge::MergeError;
 use crate::sweep::spec::LoadError;
+use pulloff_engine::case::CaseError;
+use pulloff_engine::report::rows::RowsError;
 use std::io;
 use std::process::ExitCode;
 
@@ -27,7 +27,7 @@ pub enum Failure {
     Case(#[from] CaseError),
     /// A comparison could not be made.
     #[error(transparent)]
-    Verify(#[from] crate::verify::VerifyError),
+    Verify(#[from] pulloff_engine::verify::VerifyError),
     /// A script cannot be read.
     #[error(transparent)]
     File(#[from] FileError),

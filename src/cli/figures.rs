@@ -2,9 +2,9 @@
 
 use super::{Failure, output};
 use crate::plot::{Width, paper, svg, table};
-use crate::preset::{Overwrite, stream, write_atomically};
 #[cfg(feature = "png")]
 use crate::print::Format;
+use crate::store::{Overwrite, stream, write_atomically};
 use clap::Args;
 use std::fmt::Write as _;
 use std::io::Write;

@@ -65,16 +65,10 @@ fn commands() -> Roff {
 }
 
 /// The keys of a command in brackets.
-#[cfg(feature = "tui")]
 fn keys() -> impl Fn(crate::explorer::Id) -> String {
     let keymap = super::explore::settings(None).unwrap_or_default().keymap;
     move |id| match keymap.keys(id) {
         [] => String::new(),
         keys => format!(" ({})", keys.iter().map(|key| key.label()).collect::<Vec<_>>().join(", ")),
     }
-}
-
-#[cfg(not(feature = "tui"))]
-fn keys() -> impl Fn(crate::explorer::Id) -> String {
-    |_| String::new()
 }

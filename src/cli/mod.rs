@@ -29,11 +29,11 @@ mod verify;
 
 pub use failure::Failure;
 
-use crate::preset::file::LARGEST;
-use crate::preset::stream::{self, STANDARD};
-use crate::preset::{Loaded, Source, Store, StoreError};
-use crate::report::OverlapReport;
+use crate::store::file::LARGEST;
+use crate::store::stream::{self, STANDARD};
+use crate::store::{Loaded, Source, Store, StoreError};
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use pulloff_engine::report::OverlapReport;
 use signal_hook::consts::SIGXFSZ;
 use signal_hook::flag;
 use std::ffi::{OsStr, OsString};
@@ -134,7 +134,7 @@ fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Fai
     let store = store();
     let source = match preset {
         Some(argument) => source(&store, argument)?,
-        None => store.resolve(crate::preset::shipped::DEFAULT)?,
+        None => store.resolve(crate::store::shipped::DEFAULT)?,
     };
     let loaded = store.load(&source, assignments)?;
     assigned::tell(&store, &source, assignments, &loaded.preset);

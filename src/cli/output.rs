@@ -1,11 +1,11 @@
 //! Where a result goes: a file, whole or not at all, or straight into standard output, a pipe or a device.
 
 use super::Failure;
-use crate::contact::Shape;
-use crate::preset::atomic::explained;
-use crate::preset::text::sanitize;
-use crate::preset::{Loaded, Overwrite, Source, WriteError, stream, write_atomically};
+use crate::store::atomic::explained;
+use crate::store::{Loaded, Overwrite, Source, WriteError, stream, write_atomically};
 use clap::ValueEnum;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::text::sanitize;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;

@@ -7,14 +7,15 @@ use crate::figure::Subject;
 use crate::plot::map::{Map, MapError};
 use crate::plot::range::RangeError;
 use crate::plot::{Chart, Range, Width, series, svg, table};
-use crate::preset::file::kind_of;
-use crate::preset::{Loaded, Overwrite, Preset, WriteError, stream, write_atomically};
 use crate::print::{Format, FormatError};
-use crate::quasistatic::jump::Run;
+use crate::store::file::kind_of;
+use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
-use crate::units::Quantity;
-use crate::units::number::said;
 use clap::{Args, ValueEnum};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::units::Quantity;
+use pulloff_engine::units::number::said;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -238,7 +239,7 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
         .row("path.start_contact_radius")
         .ok_or_else(|| wrong(&format!("expected {}", Quantity::Length.name())))?;
     // The row is that of another key, which the message must not blame.
-    let words = |invalid: crate::preset::Invalid| {
+    let words = |invalid: pulloff_engine::preset::Invalid| {
         let text = invalid.to_string();
         wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
     };

@@ -1,9 +1,9 @@
 //! `pulloff presets`: list, show, delete, and where they are kept.
 
 use super::{Failure, ask, output, store};
-use crate::preset::Source;
-use crate::preset::text::{sanitize, show_path};
+use crate::store::Source;
 use clap::Subcommand;
+use pulloff_engine::text::{sanitize, show_path};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::Write as _;

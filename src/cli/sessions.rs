@@ -3,9 +3,9 @@
 use super::{Failure, ask, output};
 use crate::explorer::archive::{Archive, ArchiveError, ago};
 use crate::explorer::session::{Document, Summary};
-use crate::preset::text::{sanitize, show_path};
-use crate::report::number::significant;
 use clap::Subcommand;
+use pulloff_engine::report::number::significant;
+use pulloff_engine::text::{sanitize, show_path};
 use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::UNIX_EPOCH;

@@ -1,14 +1,14 @@
 //! `pulloff sweep`: many problems into one file, and shards of it joined.
 
 use super::{Failure, output};
-use crate::preset::stream;
-use crate::preset::text::show_name;
-use crate::report::number::{short, significant};
+use crate::store::stream;
 use crate::sweep::axis::Axis;
 use crate::sweep::spec::Design;
 use crate::sweep::{Existing, Output, OutputError, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pulloff_engine::report::number::{short, significant};
+use pulloff_engine::text::show_name;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt::Write as _;

@@ -1,11 +1,11 @@
 //! `pulloff trace`: the equilibrium curve by arc-length continuation.
 
 use super::{Failure, Problem, admissible, note, output, warn};
-use crate::quasistatic::CurveStop;
-use crate::report::trace::{COLUMNS, EXACT_COLUMNS};
-use crate::report::{TraceReport, columns, json};
-use crate::theory::Exact;
 use clap::{Args, ValueEnum};
+use pulloff_engine::quasistatic::CurveStop;
+use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS};
+use pulloff_engine::report::{TraceReport, columns, json};
+use pulloff_engine::theory::Exact;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

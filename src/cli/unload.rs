@@ -1,10 +1,10 @@
 //! `pulloff unload`: the quasi-static unloading, instability by instability.
 
 use super::{Failure, Problem, admissible, note, output, warn};
-use crate::quasistatic::PathStop;
-use crate::report::unload::COLUMNS;
-use crate::report::{UnloadReport, columns, json, table};
 use clap::{Args, ValueEnum};
+use pulloff_engine::quasistatic::PathStop;
+use pulloff_engine::report::unload::COLUMNS;
+use pulloff_engine::report::{UnloadReport, columns, json, table};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

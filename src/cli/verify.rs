@@ -1,9 +1,9 @@
 //! `pulloff verify`: our numbers against theory.
 
 use super::{Failure, output};
-use crate::report::{VerifyReport, json, table};
-use crate::verify::{Settings, verify};
 use clap::Args;
+use pulloff_engine::report::{VerifyReport, json, table};
+use pulloff_engine::verify::{Settings, verify};
 use std::process::ExitCode;
 
 /// The arguments of `pulloff verify`.

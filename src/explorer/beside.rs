@@ -68,7 +68,8 @@ mod tests {
     use crate::explorer::driver::Inline;
     use crate::explorer::pins::Pins;
     use crate::explorer::{Command, Reply, Workers, answer, open, update};
-    use crate::preset::{Store, Value};
+    use crate::store::Store;
+    use pulloff_engine::preset::Value;
     use std::sync::mpsc::channel;
     use std::time::Duration;
 

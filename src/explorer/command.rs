@@ -11,7 +11,7 @@ pub use table::{ROWS, row_of};
 
 use super::model::{Model, Panel};
 use super::view::{Overlay, View};
-use crate::preset::Key;
+use pulloff_engine::preset::Key;
 use std::path::PathBuf;
 
 /// A command's identity.

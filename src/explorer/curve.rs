@@ -10,14 +10,14 @@ use super::history::Setting;
 use super::model::same_curve;
 use super::progress::Progress;
 use super::theory::Theory;
-use crate::case::{Case, CaseError};
-use crate::contact::{Control, Groups};
-use crate::preset::Preset;
-use crate::quasistatic::overlap::{overlaps_while, passed_while};
-use crate::quasistatic::{
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::{Control, Groups};
+use pulloff_engine::quasistatic::overlap::{overlaps_while, passed_while};
+use pulloff_engine::quasistatic::{
     Admissibility, Curve, Detail, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
 };
-use crate::report::{OverlapReport, UnloadReport};
+use pulloff_engine::report::{OverlapReport, UnloadReport};
 use std::sync::Arc;
 
 /// The controls whose limit points are shown under every control.

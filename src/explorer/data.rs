@@ -1,6 +1,6 @@
 //! The profiles of a folder, to choose from: files that end as tables of numbers do, and the folders beside them.
 
-use crate::preset::text::{is_unsafe, show_path};
+use pulloff_engine::text::{is_unsafe, show_path};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@
 //! the next crossing.
 
 use super::model::Model;
-use crate::contact::Control;
+use pulloff_engine::problem::Control;
 
 /// The ends (δ, P) of the line through the walker in the user's units; `None` where it is not shown.
 ///

@@ -6,20 +6,19 @@ use super::data::{self, Folder};
 use super::history::{Node, NodeKind};
 use super::journal::Start;
 use super::script;
-use crate::contact::Control;
-use crate::contact::shapes::Rows;
 use crate::mend::Reason;
-use crate::preset::changes::{changes, differences};
-use crate::preset::measured;
-use crate::preset::text::{quote, show_path};
-use crate::preset::{
-    Fingerprint, Key, Listing, Loaded, Overwrite, Preset, Row, Source, Store, StoreError, WriteError,
-    write_atomically,
-};
 use crate::print::Format;
-use crate::report::trace::StableReport;
-use crate::report::unload::{EventReport, StateReport};
-use crate::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
+use crate::store::{
+    Fingerprint, Listing, Loaded, Overwrite, Source, Store, StoreError, WriteError, write_atomically,
+};
+use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::preset::changes::{changes, differences};
+use pulloff_engine::preset::{Key, Preset, Row};
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::trace::StableReport;
+use pulloff_engine::report::unload::{EventReport, StateReport};
+use pulloff_engine::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
+use pulloff_engine::text::{quote, show_path};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -261,7 +260,7 @@ pub fn run(store: &Store, job: Job) -> Done {
         },
         Job::Read { folder, name } => {
             let path = target(&name).to_string_lossy().into_owned();
-            match measured::load(folder.as_deref(), &path) {
+            match crate::store::load(folder.as_deref(), &path) {
                 Ok(rows) => Done::Read(Arc::new(rows)),
                 Err(reason) => Done::Failed(Reason::mendable(reason)),
             }
@@ -271,7 +270,7 @@ pub fn run(store: &Store, job: Job) -> Done {
                 let why = "the preset has no file of its own; save it under a name";
                 return Done::Failed(Reason::mendable(why));
             };
-            match crate::preset::store::save_file(path, &preset, Some(&source), overwrite) {
+            match crate::store::save_file(path, &preset, Some(&source), overwrite) {
                 Ok(fingerprint) => Done::Saved { source, fingerprint, preset },
                 Err(StoreError::Write(WriteError::Changed { .. })) => Done::Conflict,
                 Err(error) => Done::Failed(Reason::of("not saved: ", &error)),
@@ -486,8 +485,8 @@ impl WalkRow {
 fn value_of(preset: &Preset, key: &str) -> Value {
     match preset.get(key) {
         None => Value::Null,
-        Some(crate::preset::Value::Number(x)) => Value::from(x),
-        Some(crate::preset::Value::Integer(n)) => Value::from(n),
+        Some(pulloff_engine::preset::Value::Number(x)) => Value::from(x),
+        Some(pulloff_engine::preset::Value::Integer(n)) => Value::from(n),
         Some(other) => Value::from(other.to_string()),
     }
 }
@@ -498,7 +497,7 @@ pub fn kind_name(kind: &NodeKind) -> &'static str {
         NodeKind::Start => "start",
         NodeKind::Step => "step",
         NodeKind::Limit => "limit",
-        NodeKind::Jump(event) => crate::report::unload::kind_name(event.kind),
+        NodeKind::Jump(event) => pulloff_engine::report::unload::kind_name(event.kind),
         NodeKind::Moved => "moved",
         NodeKind::Solved => "solved",
         NodeKind::Stale(_) => "unsolved",
@@ -592,7 +591,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
             if as_json {
                 walked(curve, &[], events)?
             } else {
-                rows::csv(crate::report::unload::COLUMNS, events)?
+                rows::csv(pulloff_engine::report::unload::COLUMNS, events)?
             }
         }
         Content::Script(_, lines) => lines.join("\n"),

@@ -1,9 +1,9 @@
 //! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
 
 use super::thin;
-use crate::contact::{Control, Reduced, Units};
-use crate::preset::Preset;
-use crate::quasistatic::{Admissibility, Event, Point, Scales, Stability, State, Stiffness};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::{Control, Reduced, Units};
+use pulloff_engine::quasistatic::{Admissibility, Event, Point, Scales, Stability, State, Stiffness};
 use std::sync::Arc;
 
 /// The problem a node was solved in: the parameters may change from node to node.

@@ -12,8 +12,9 @@ use super::history::{Node, NodeKind};
 use super::model::{CurveError, FIRST_LENGTH, Model};
 use super::script;
 use super::walk::{Action, Outcome};
-use crate::preset::changes::changes;
-use crate::preset::{Preset, Source};
+use crate::store::Source;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::changes::changes;
 use std::sync::Arc;
 
 /// Most lines kept, and bytes in them: half of what a script may have.
@@ -280,7 +281,7 @@ fn product(x: f64, unit: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::explorer::nudge::{Amount, nudge};
-    use crate::preset::{SHIPPED, read};
+    use crate::store::{SHIPPED, read};
 
     #[test]
     fn every_turn_of_every_knob_is_one_assignment_with_the_exact_value() {

@@ -6,7 +6,7 @@ use super::model::{Level, Model, Panel};
 use super::profile::{Ask, Inside};
 use super::update::{number, tell};
 use super::view::{Overlay, View, Window};
-use crate::quasistatic::jump::Run;
+use pulloff_engine::quasistatic::jump::Run;
 use std::sync::Arc;
 
 /// One press brings the chart closer by this factor.

@@ -4,9 +4,9 @@
 //! (k → ∞) as its ends.
 
 use super::command::Id;
-use crate::contact::Control;
-use crate::preset::schema::Kind;
-use crate::preset::{Parameter, Preset, Value};
+use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::{Parameter, Preset, Value};
+use pulloff_engine::problem::Control;
 use std::ops::RangeInclusive;
 
 /// How far one key press goes.
@@ -116,11 +116,12 @@ fn tidy(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::{parameter, read};
+    use crate::store::read;
+    use pulloff_engine::preset::parameter;
 
     /// The paper's Fig. 9, in 200 rings.
     fn preset() -> Preset {
-        read("t", crate::preset::shipped::find("fig-9").unwrap().text).unwrap()
+        read("t", crate::store::shipped::find("fig-9").unwrap().text).unwrap()
     }
 
     #[test]

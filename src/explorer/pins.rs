@@ -4,9 +4,9 @@
 
 use super::command::Id;
 use super::curve::CurveData;
-use crate::preset::{Preset, Row, Value};
-use crate::report::number::short;
-use crate::units::UnitSystem;
+use pulloff_engine::preset::{Preset, Row, Value};
+use pulloff_engine::report::number::short;
+use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -182,12 +182,12 @@ fn named(differences: &[(Row, Value)], units: &UnitSystem) -> Option<String> {
 mod tests {
     use super::*;
     use crate::explorer::command::by_name;
-    use crate::preset::{read, shipped};
+    use crate::store::{read, shipped};
 
     fn preset(changes: &[(&str, &str)]) -> Preset {
         let mut preset = read("wavy-sphere", shipped::find("wavy-sphere").unwrap().text).unwrap();
         for (key, text) in changes {
-            let value = crate::preset::parameter(key).unwrap().parse(text).unwrap();
+            let value = pulloff_engine::preset::parameter(key).unwrap().parse(text).unwrap();
             preset.set(key, value).unwrap();
         }
         preset

@@ -1,11 +1,12 @@
 //! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
 
 use super::curve::CurveData;
-use crate::contact::{Control, Gap, Units};
-use crate::quasistatic::admissible::Judge;
-use crate::quasistatic::jump::Run;
-use crate::quasistatic::{Landscape, Profile, State};
-use crate::theory::Exact;
+use pulloff_engine::gap::Gap;
+use pulloff_engine::problem::{Control, Units};
+use pulloff_engine::quasistatic::admissible::Judge;
+use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::quasistatic::{Landscape, Profile, State};
+use pulloff_engine::theory::Exact;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 

@@ -64,7 +64,8 @@ impl Pace {
 mod tests {
     use super::*;
     use crate::explorer::CurveData;
-    use crate::preset::{Value, read, shipped};
+    use crate::store::{read, shipped};
+    use pulloff_engine::preset::Value;
 
     #[test]
     fn a_curve_passes_its_parts_in_order_and_counts_every_point() {

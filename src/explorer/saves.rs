@@ -4,7 +4,7 @@
 //! it. When the next save is asked for before that, the file is as our own last save left it: nobody else changed it.
 
 use super::files::{self, Done, Job};
-use crate::preset::{Fingerprint, Overwrite, Source, Store};
+use crate::store::{Fingerprint, Overwrite, Source, Store};
 
 /// The last saves to one file.
 #[derive(Debug, Default)]
@@ -46,7 +46,8 @@ impl Saves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::{Preset, read, shipped};
+    use crate::store::{read, shipped};
+    use pulloff_engine::preset::Preset;
     use std::fs;
 
     #[test]

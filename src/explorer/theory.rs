@@ -1,11 +1,11 @@
 //! The theory drawn over a curve, computed with it.
 
-use crate::case::Case;
-use crate::contact::Shape;
-use crate::quasistatic::Curve;
-use crate::theory::guduru::Guduru;
-use crate::theory::kesari_lew::{KesariLew, Side};
-use crate::theory::{Disc, Exact};
+use pulloff_engine::case::Case;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::quasistatic::Curve;
+use pulloff_engine::theory::guduru::Guduru;
+use pulloff_engine::theory::kesari_lew::{KesariLew, Side};
+use pulloff_engine::theory::{Disc, Exact};
 
 /// Points of a smooth curve.
 const SMOOTH_POINTS: u32 = 200;

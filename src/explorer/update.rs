@@ -24,11 +24,12 @@ use super::model::{Axes, EventSource, LENGTHS, Level, Model, Panel};
 use super::nudge::Amount;
 use super::view::View;
 use super::walk::{Action, ROOM};
-use crate::preset::text::{greek, show_name};
-use crate::preset::{Loaded, Overwrite, Row, Value, groups};
-use crate::report::number::{short, with_unit};
-use crate::units::Quantity;
+use crate::store::{Loaded, Overwrite};
 use files::{browse, export, export_page, file, file_done, save, save_back};
+use pulloff_engine::preset::{Row, Value, groups};
+use pulloff_engine::report::number::{short, with_unit};
+use pulloff_engine::text::{greek, show_name};
+use pulloff_engine::units::Quantity;
 pub(in crate::explorer) use values::want_curve;
 use values::{
     assign, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry, want_check,

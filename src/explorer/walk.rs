@@ -5,18 +5,18 @@
 
 use super::curve::CurveData;
 use super::history::{Ahead, NodeKind, Setting};
-use crate::case::Case;
-use crate::contact::Control;
-use crate::continuation::{Stepper, step_size};
-use crate::disc::Place;
-use crate::quasistatic::curve::settings;
-use crate::quasistatic::jump::{self, Run};
-use crate::quasistatic::{
+use pulloff_engine::case::Case;
+use pulloff_engine::continuation::{Stepper, step_size};
+use pulloff_engine::disc::Place;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::curve::settings;
+use pulloff_engine::quasistatic::jump::{self, Run};
+use pulloff_engine::quasistatic::{
     Admissibility, Curve, Equilibrium, Event, Limit, Losses, Monotone, Point, State, Stiffness, Turn,
 };
-use crate::quasistatic::{energy, landscape};
-use crate::ritz::{self, NewtonSettings};
-use crate::theory::Exact;
+use pulloff_engine::quasistatic::{energy, landscape};
+use pulloff_engine::ritz::{self, NewtonSettings};
+use pulloff_engine::theory::Exact;
 use std::sync::Arc;
 
 /// Most states of one request: a run that meets nothing ends.
@@ -437,7 +437,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
     let problem = &equilibrium.problem;
     // Newton may find another state far away on a wavy gap: the old radius' own branch is wanted.
     let near = |found: f64| {
-        let feature = crate::contact::Gap::feature_length(&problem.gap).unwrap_or(s);
+        let feature = pulloff_engine::gap::Gap::feature_length(&problem.gap).unwrap_or(s);
         (found - s).abs() <= NEAR * feature.min(s)
     };
     let newton = ritz::solve(equilibrium.basis.as_ref(), problem, request.control, value, s, settings)
@@ -456,7 +456,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
         }
         None => Outcome::Stopped(format!(
             "no equilibrium at this {} near the old contact radius",
-            crate::report::unload::control_name(request.control)
+            pulloff_engine::report::unload::control_name(request.control)
         )),
     }
 }

@@ -8,7 +8,7 @@ use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::pins::Pin;
-use crate::report::number::{fixed, significant};
+use pulloff_engine::report::number::{fixed, significant};
 
 /// Builds a view of the curve.
 pub fn figure(subject: &Subject<'_>, view: View) -> Figure {

@@ -37,7 +37,7 @@ use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays};
-use crate::preset::Preset;
+use pulloff_engine::preset::Preset;
 
 /// What figures are built from.
 #[derive(Debug, Clone)]

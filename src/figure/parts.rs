@@ -1,8 +1,8 @@
 //! What a figure is made of: axes, lines, marks and areas, each with a role and no look.
 
 use super::bounds::Bounds;
-use crate::contact::Control;
 use crate::explorer::View;
+use pulloff_engine::problem::Control;
 
 /// What a line shows. A renderer gives each role a stroke of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

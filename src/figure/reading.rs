@@ -5,11 +5,11 @@ use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
 use super::parts::Axis;
 use super::scale::Scale;
-use crate::contact::Control;
 use crate::explorer::{CurveData, View};
-use crate::report::number::{significant, with_unit};
-use crate::report::unload::{EventReport, control_name};
-use crate::units::{Quantity, UnitSystem};
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::unload::{EventReport, control_name};
+use pulloff_engine::units::{Quantity, UnitSystem};
 
 /// A mark within this share of the window is meant, though a state of the curve may be nearer; a step of the
 /// cross-hair is shorter.

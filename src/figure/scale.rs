@@ -1,9 +1,9 @@
 //! What the axes are divided by.
 
 use super::parts::Axis;
-use crate::contact::Gap;
 use crate::explorer::{Axes, CurveData, View};
-use crate::units::{Quantity, UnitSystem};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::units::{Quantity, UnitSystem};
 
 /// The divisors of the axes; without adhesion there is no `P_c`, without one wave alone no λ,
 /// and those axes stay raw.

@@ -4,8 +4,9 @@
 //! drawn over its own length.
 
 use super::{Bounds, Figure, Line, Mark, Role, Scale, Sign, View};
-use crate::contact::{Gap, Start};
-use crate::preset::Preset;
+use pulloff_engine::gap::Gap;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Start;
 
 /// Places along the radius.
 const POINTS: u32 = 400;
@@ -39,7 +40,7 @@ pub fn undeformed(preset: &Preset) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::Store;
+    use crate::store::Store;
 
     #[test]
     fn the_gap_is_drawn_beyond_the_disc_as_far_as_it_is_known() {

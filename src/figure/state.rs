@@ -4,13 +4,13 @@ use super::Subject;
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
-use crate::contact::Control;
 use crate::explorer::View;
 use crate::explorer::profile::Inside;
-use crate::quasistatic::landscape::Stationary;
-use crate::quasistatic::profile::Outside;
-use crate::report::number::{loss, significant, with_unit};
-use crate::units::Quantity;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::landscape::Stationary;
+use pulloff_engine::quasistatic::profile::Outside;
+use pulloff_engine::report::number::{loss, significant, with_unit};
+use pulloff_engine::units::Quantity;
 
 /// The pressure grows without bound at an adhesive edge: the whole is fitted to the disc up to this share of its
 /// radius.

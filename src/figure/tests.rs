@@ -2,11 +2,11 @@
 
 use super::reading::What;
 use super::*;
-use crate::case::Case;
-use crate::contact::Control;
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
-use crate::preset::Store;
-use crate::units::UnitSystem;
+use crate::store::Store;
+use pulloff_engine::case::Case;
+use pulloff_engine::problem::Control;
+use pulloff_engine::units::UnitSystem;
 
 /// A session with every effect done inline, and room for every view.
 struct Session {

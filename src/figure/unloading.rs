@@ -10,12 +10,12 @@ use super::curves::{inadmissible, place};
 use super::parts::{Area, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::walk::{apart, events_before, quantities};
-use crate::contact::{Control, Units};
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::{CurveData, View};
-use crate::quasistatic::{Event, State};
-use crate::report::number::{loss, with_unit};
-use crate::units::Quantity;
+use pulloff_engine::problem::{Control, Units};
+use pulloff_engine::quasistatic::{Event, State};
+use pulloff_engine::report::number::{loss, with_unit};
+use pulloff_engine::units::Quantity;
 
 const VIEW: View = View::Unloading;
 

@@ -3,10 +3,10 @@
 use super::Subject;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
-use crate::contact::Control;
 use crate::explorer::View;
 use crate::explorer::history::{Node, NodeKind};
-use crate::quasistatic::{Event, EventKind, State};
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::{Event, EventKind, State};
 
 /// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
 pub fn apart(control: Control, event: &Event) -> State {

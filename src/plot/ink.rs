@@ -3,9 +3,9 @@
 //! The colours are those of Okabe and Ito, told apart by people with any of the common colour vision deficiencies; no
 //! two roles that meet in one chart have the same dashes, so a grey print reads as well.
 
-use crate::contact::Control;
 use crate::figure::{Role, Sign};
 use kuva::plot::scatter::MarkerShape;
+use pulloff_engine::problem::Control;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

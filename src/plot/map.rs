@@ -2,13 +2,13 @@
 
 use super::Width;
 use super::svg::{cropped, entry, finish, frame, hatched, hatches, outline, plain};
-use crate::preset::text::quote;
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
 use kuva::plot::ContourPlot;
 use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::render::layout::ComputedLayout;
 use kuva::render::render::{Primitive, render_multiple};
+use pulloff_engine::text::quote;
 use std::collections::VecDeque;
 
 /// The column that tells where snaps begin.

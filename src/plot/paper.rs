@@ -11,18 +11,19 @@
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
 
 use super::chart::{Axis, Chart, Run};
-use crate::case::{Case, CaseError};
-use crate::contact::Control;
 use crate::explorer::{CurveData, Overlays, View, Window};
 use crate::figure::{Line, Role, Subject};
-use crate::preset::{Preset, ReadError, read_with, shipped};
-use crate::quasistatic::Profile;
-use crate::quasistatic::admissible::Judge;
-use crate::report::number::significant;
-use crate::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
-use crate::theory::Exact;
-use crate::verify::cases::{smooth, sphere};
-use crate::verify::convergence::radius_at;
+use crate::store::{read_with, shipped};
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::preset::{Preset, ReadError};
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::Profile;
+use pulloff_engine::quasistatic::admissible::Judge;
+use pulloff_engine::report::number::significant;
+use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
+use pulloff_engine::theory::Exact;
+use pulloff_engine::verify::cases::{smooth, sphere};
+use pulloff_engine::verify::convergence::radius_at;
 
 /// A figure of the paper.
 #[derive(Debug, Clone)]

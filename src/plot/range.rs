@@ -1,6 +1,6 @@
 //! The part of an axis that a figure is asked to show, in the units of that axis: `0..0.1`, `..0.1`, `-2..`.
 
-use crate::report::number::short;
+use pulloff_engine::report::number::short;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 

@@ -4,7 +4,6 @@ use super::Width;
 use super::chart::{Axis, Chart, Run};
 use super::ink::{self, Stroke};
 use crate::figure::{Bounds, Line, Mark, Role};
-use crate::report::number::{printed, short};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -13,6 +12,7 @@ use kuva::render::color::Color;
 use kuva::render::layout::{ComputedLayout, TickFormat};
 use kuva::render::plots::Plot as Drawn;
 use kuva::render::render::{PathData, Primitive, Scene, render_multiple};
+use pulloff_engine::report::number::{printed, short};
 use std::fmt::Write;
 use std::sync::Arc;
 

@@ -15,7 +15,7 @@ mod png;
 #[cfg(feature = "png")]
 mod tree;
 
-use crate::preset::text::show_path;
+use pulloff_engine::text::show_path;
 use std::path::Path;
 
 /// The format of a figure's file.

@@ -2,13 +2,14 @@
 
 use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
-use crate::contact::Control;
-use crate::contact::shapes::split_mix::SplitMix64;
-use crate::preset::groups;
-use crate::preset::schema::{START_KEYS, parameter};
-use crate::preset::text::quote;
-use crate::preset::{Invalid, Preset, Value, model};
-use crate::report::number::exact;
+use pulloff_engine::gap::shapes::split_mix::SplitMix64;
+use pulloff_engine::preset::groups;
+use pulloff_engine::preset::rows::parameter;
+use pulloff_engine::preset::schema::START_KEYS;
+use pulloff_engine::preset::{Invalid, Preset, Value, model};
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::exact;
+use pulloff_engine::text::quote;
 use std::f64::consts::TAU;
 use toml::de::DeValue;
 

@@ -1,8 +1,8 @@
 //! A TOML text read entry by entry, each mistake with its line.
 
-use crate::preset::read::{Origin, line};
-use crate::preset::suggest::closest;
-use crate::preset::text::{quote, sanitize, show_name};
+use pulloff_engine::preset::read::{Origin, line};
+use pulloff_engine::text::closest;
+use pulloff_engine::text::{quote, sanitize, show_name};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 use toml::de::{DeArray, DeTable, DeValue};

@@ -3,19 +3,20 @@
 
 use super::fault::Fault;
 use super::quantity::{Column, Of};
-use crate::case::{Case, CaseError};
-use crate::contact::{Control, Gap, Groups, Problem};
-use crate::disc::{ExactSolution, Solution};
-use crate::preset::Preset;
-use crate::quasistatic::monotone::weighted;
-use crate::quasistatic::overlap::passed_while;
-use crate::quasistatic::{
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::disc::{ExactSolution, Solution};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::{Control, Groups, Problem};
+use pulloff_engine::quasistatic::monotone::weighted;
+use pulloff_engine::quasistatic::overlap::passed_while;
+use pulloff_engine::quasistatic::{
     Curve, Detail, Equilibrium, EventKind, Losses, Monotone, PathStop, State, Unloading,
 };
-use crate::report::number::exact;
-use crate::theory::guduru::Guduru;
-use crate::theory::kesari_lew::KesariLew;
-use crate::units::Quantity as Unit;
+use pulloff_engine::report::number::exact;
+use pulloff_engine::theory::guduru::Guduru;
+use pulloff_engine::theory::kesari_lew::KesariLew;
+use pulloff_engine::units::Quantity as Unit;
 use std::cell::OnceCell;
 use std::fmt;
 
@@ -202,7 +203,7 @@ impl Path {
         Some(Cell::Number(of(&last.before)))
     }
 
-    fn snapping(&self) -> impl Iterator<Item = &crate::quasistatic::Event> {
+    fn snapping(&self) -> impl Iterator<Item = &pulloff_engine::quasistatic::Event> {
         self.unloading.events.iter().filter(|event| event.kind == EventKind::Snap)
     }
 

@@ -2,10 +2,10 @@
 
 use super::fault::Fault;
 use super::measure::{Cell, Ground, Line, Path};
-use crate::contact::Control;
-use crate::preset::suggest::closest;
-use crate::preset::text::quote;
-use crate::units::Quantity as Unit;
+use pulloff_engine::problem::Control;
+use pulloff_engine::text::closest;
+use pulloff_engine::text::quote;
+use pulloff_engine::units::Quantity as Unit;
 
 /// One quantity.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use super::axis::Axis;
 use super::fault::Fault;
 use super::measure::Measured;
 use super::spec::{Design, Spec, values};
-use crate::preset::text::quote;
+use pulloff_engine::text::quote;
 use std::fmt;
 
 /// The name of the first column.

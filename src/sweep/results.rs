@@ -1,8 +1,8 @@
 //! The results of a sweep read again: columns by their names.
 
 use super::side::{ColumnInfo, Side, SideError};
-use crate::preset::suggest::closest;
-use crate::preset::text::{quote, sanitize, show_path};
+use pulloff_engine::text::closest;
+use pulloff_engine::text::{quote, sanitize, show_path};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

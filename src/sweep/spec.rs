@@ -6,12 +6,13 @@ use super::document::{Document, Entry, Section, SpecError};
 use super::fault::Fault;
 use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
-use crate::contact::Shape;
-use crate::contact::shapes::split_mix::SplitMix64;
-use crate::preset::file::{self, FileError};
-use crate::preset::schema::CHOOSERS;
-use crate::preset::text::quote;
-use crate::preset::{Preset, Store, Value, atomic, stream, write};
+use crate::store::file::{self, FileError};
+use crate::store::{Store, atomic, stream};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::gap::shapes::split_mix::SplitMix64;
+use pulloff_engine::preset::schema::CHOOSERS;
+use pulloff_engine::preset::{Preset, Value, write};
+use pulloff_engine::text::quote;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::fmt::Write;
@@ -321,7 +322,7 @@ fn design(section: &Section<'_>) -> Result<Design, SpecError> {
             other => {
                 let what =
                     format!("combine = \"{}\" is not known: it must be \"grid\" or \"pairs\"", quote(other));
-                let meant = crate::preset::suggest::closest(other, DESIGNS);
+                let meant = pulloff_engine::text::closest(other, DESIGNS);
                 Err(combine
                     .fault(&meant.map_or(what.clone(), |meant| format!("{what}; did you mean {meant}?"))))
             }

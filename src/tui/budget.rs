@@ -6,7 +6,7 @@ use super::terminal::{Display, Inbox, Incoming, Pace, Sink};
 use super::theme::{Charts, Palette, Theme};
 use super::view::Pictures;
 use crate::explorer::{Effect, Inline, Reply};
-use crate::preset::Store;
+use crate::store::Store;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::cell::RefCell;
 use std::io;

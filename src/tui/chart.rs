@@ -7,7 +7,7 @@ use super::hatch::hatch;
 use super::stroke::{Stroke, letters, spots};
 use super::theme::Theme;
 use crate::figure::Bounds;
-use crate::report::number::{fixed, short};
+use pulloff_engine::report::number::{fixed, short};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Rect};

@@ -5,14 +5,14 @@
 
 use super::app::App;
 use super::view;
-use crate::case::critical_force;
-use crate::contact::Control;
 use crate::explorer::{Model, Node};
-use crate::preset::text::sanitize;
-use crate::report::number::{significant, with_unit};
-use crate::report::rows;
-use crate::report::unload::COLUMNS;
-use crate::units::Quantity;
+use pulloff_engine::case::critical_force;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::rows;
+use pulloff_engine::report::unload::COLUMNS;
+use pulloff_engine::text::sanitize;
+use pulloff_engine::units::Quantity;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;

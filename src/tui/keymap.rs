@@ -6,8 +6,8 @@
 use crate::config::{Config, ConfigError, Mistake};
 use crate::explorer::Id;
 use crate::explorer::command::{ROWS, row_of, spelled};
-use crate::preset::text::quote;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::text::quote;
 
 /// One key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -40,7 +40,7 @@ impl Late {
 mod tests {
     use super::*;
     use crate::explorer::pins::Pins;
-    use crate::preset::Store;
+    use crate::store::Store;
     use crate::tui::theme::Theme;
 
     #[test]

@@ -1,12 +1,12 @@
 //! What lies over the screen: prompts, choices, questions and the help, as data.
 
-use crate::contact::formula::FormulaError;
 use crate::explorer::Command;
 use crate::explorer::files::{Document, Page};
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
-use crate::preset::Key;
 use crate::tui::copy::Content;
+use pulloff_engine::gap::formula::FormulaError;
+use pulloff_engine::preset::Key;
 use tui_input::Input;
 
 /// What lies over the screen.

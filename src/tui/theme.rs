@@ -1,7 +1,7 @@
 //! Styles and glyphs. Every role has its style in one table per palette; no meaning is carried by colour alone.
 
-use crate::preset::text::greek;
 use clap::ValueEnum;
+use pulloff_engine::text::greek;
 use ratatui::style::Color::{
     Black, Blue, Cyan, DarkGray, Gray, Green, LightBlue, LightCyan, LightGreen, LightMagenta, LightRed,
     LightYellow, Magenta, Red, White, Yellow,

@@ -18,7 +18,7 @@
 //! pull-off   ∫₀^{s₁} [(δ₁ − g)² − T²] da + P₁²/2k
 //! ```
 
-use pulloff::contact::Control;
+use pulloff_engine::problem::Control;
 use std::f64::consts::{PI, TAU};
 
 /// Gauss nodes on a piece.

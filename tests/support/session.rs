@@ -3,7 +3,7 @@
 
 use pulloff::explorer::command::by_name;
 use pulloff::explorer::{Command, Id, Inline, Model, NodeKind, open, update};
-use pulloff::preset::Store;
+use pulloff::store::Store;
 
 pub struct Session {
     pub model: Model,

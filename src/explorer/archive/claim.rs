@@ -1,8 +1,8 @@
 //! The right to write one session.
 
 use super::{ArchiveError, ENDING, failed, lock_of};
-use crate::preset::lock::FileLock;
-use crate::preset::{Overwrite, write_atomically};
+use crate::store::lock::FileLock;
+use crate::store::{Overwrite, write_atomically};
 use std::path::{Path, PathBuf};
 
 /// The right to write one session; dropping it lets another program have it.

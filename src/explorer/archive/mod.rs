@@ -17,13 +17,13 @@ pub use claim::Claim;
 pub use keeper::Keeper;
 
 use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
-use crate::preset::WriteError;
-use crate::preset::file::{FileError, read_bytes};
-use crate::preset::lock::FileLock;
-use crate::preset::name::is_well_formed;
-use crate::preset::suggest::closest;
-use crate::preset::text::{quote, show_path};
+use crate::store::WriteError;
+use crate::store::file::{FileError, read_bytes};
+use crate::store::lock::FileLock;
+use crate::store::name::is_well_formed;
 use etcetera::BaseStrategy;
+use pulloff_engine::text::closest;
+use pulloff_engine::text::{quote, show_path};
 use std::cmp::Reverse;
 use std::fs;
 use std::io;
@@ -306,7 +306,7 @@ impl Archive {
     /// The folder cannot be made, or no file in it.
     pub fn begin(&self, base: &str) -> Result<Claim, ArchiveError> {
         let folder = self.folder_or()?;
-        crate::preset::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;
+        crate::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;
         let base = base_name(base);
         let taken = fs::read_dir(folder).map_err(failed(folder, "list the sessions"))?;
         // Damaged ones and those of a moment ago count too: no name is used again while anything is called so.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::explorer::{Command, Id, Inline, Model, open, update};
-use crate::preset::Store;
+use crate::store::Store;
 use std::fs::{File, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::sync::mpsc::channel;

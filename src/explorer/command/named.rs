@@ -38,7 +38,7 @@ pub fn by_name(sentence: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::text::sanitize;
+    use pulloff_engine::text::sanitize;
 
     #[test]
     fn commands_are_called_what_the_reader_calls_them() {

@@ -4,9 +4,9 @@ use super::play::Permission;
 use crate::explorer::command::{Command, Id};
 use crate::explorer::files::target;
 use crate::explorer::model::Model;
-use crate::preset::Source;
-use crate::preset::atomic::{folder_of, follow};
-use crate::preset::text::show_path;
+use crate::store::Source;
+use crate::store::atomic::{folder_of, follow};
+use pulloff_engine::text::show_path;
 use std::fs;
 use std::path::Path;
 

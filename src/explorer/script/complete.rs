@@ -6,10 +6,10 @@ use super::words::quoted;
 use crate::explorer::command::ROWS;
 use crate::explorer::files::Document;
 use crate::explorer::view::Overlay;
-use crate::preset::Preset;
-use crate::preset::groups::GROUPS;
-use crate::preset::schema::{AUTO, Kind, NONE};
-use crate::preset::shipped::SHIPPED;
+use crate::store::shipped::SHIPPED;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::groups::GROUPS;
+use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 
 /// A line gone on with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,7 +85,7 @@ fn assignments(word: &str, preset: &Preset) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::{read, shipped};
+    use crate::store::{read, shipped};
 
     fn completed(line: &str) -> (String, usize) {
         let preset = read("t", shipped::find("wavy-sphere").unwrap().text).unwrap();

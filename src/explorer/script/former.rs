@@ -2,7 +2,7 @@
 
 use super::words::{quoted, split};
 use crate::explorer::command::{Id, row_of};
-use crate::preset::former::assignment;
+use pulloff_engine::preset::former::assignment;
 use std::borrow::Cow;
 
 /// The lines of a session without keys and words of before, and why they do not lead where they did, if they do not.

@@ -46,7 +46,7 @@ pub use play::{Failed, Permission, play};
 pub use print::line;
 
 use super::command::Command;
-use crate::preset::text::show_name;
+use pulloff_engine::text::show_name;
 use std::fmt;
 use thiserror::Error;
 

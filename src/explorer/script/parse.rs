@@ -8,11 +8,11 @@ use crate::explorer::files::{Document, ends_in};
 use crate::explorer::model::LENGTHS;
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
-use crate::preset::former;
-use crate::preset::groups::{self, GROUPS};
-use crate::preset::suggest::{closest, closest_key};
-use crate::preset::text::quote;
-use crate::preset::{PARAMETERS, parameter};
+use pulloff_engine::preset::former;
+use pulloff_engine::preset::groups::{self, GROUPS};
+use pulloff_engine::preset::{PARAMETERS, parameter};
+use pulloff_engine::text::quote;
+use pulloff_engine::text::{closest, closest_key};
 
 /// The word before a command that may fail.
 const TRY: &str = "try";

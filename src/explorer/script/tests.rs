@@ -12,14 +12,14 @@ fn plain() -> impl Strategy<Value = Command> {
     proptest::sample::select(ids).prop_map(Command::from)
 }
 
-fn assignments(least: usize) -> impl Strategy<Value = Vec<(crate::preset::Key, String)>> {
+fn assignments(least: usize) -> impl Strategy<Value = Vec<(pulloff_engine::preset::Key, String)>> {
     let keys = ["gap.amplitude", "title", "gap.parameters.A", "gap.waves.2.phase", "groups.adhesion"];
     let one = (proptest::sample::select(keys.to_vec()), "\\PC{0,12}").prop_map(|(k, t)| (k.into(), safe(&t)));
     proptest::collection::vec(one, least..4)
 }
 
 fn safe(text: &str) -> String {
-    text.chars().filter(|c| !crate::preset::text::is_unsafe(*c)).collect()
+    text.chars().filter(|c| !pulloff_engine::text::is_unsafe(*c)).collect()
 }
 
 fn any_command() -> impl Strategy<Value = Command> {
@@ -68,7 +68,7 @@ proptest! {
     fn any_text_is_a_command_or_a_fault_within_the_line(text in "\\PC{0,60}|(set|open|export|try|step)( [a-z.=\"\\\\#]{0,9}){0,4}") {
         if let Err(fault) = parse(&text) {
             prop_assert!((1..=text.chars().count() + 2).contains(&fault.column), "{} {:?}", text, fault);
-            prop_assert!(!fault.what.chars().any(crate::preset::text::is_unsafe));
+            prop_assert!(!fault.what.chars().any(pulloff_engine::text::is_unsafe));
         }
         let _ = read("t", &text);
     }

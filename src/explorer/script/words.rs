@@ -1,7 +1,7 @@
 //! A line → words with their columns, and the quoting that makes a text one word again.
 
 use super::{Fault, LONGEST};
-use crate::preset::text::is_unsafe;
+use pulloff_engine::text::is_unsafe;
 
 /// A word of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -8,7 +8,8 @@ use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
 use crate::explorer::journal::{Kept, Replay, Start};
 use crate::explorer::script;
-use crate::preset::{Fingerprint, Preset, Source, shipped};
+use crate::store::{Fingerprint, Source, shipped};
+use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use thiserror::Error;
@@ -297,7 +298,7 @@ fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
     let Format { format, program_version } =
         serde_json::from_slice(bytes).map_err(|error| damaged(&error))?;
     if format > FORMAT {
-        let program = crate::preset::text::sanitize(&program_version, 40);
+        let program = pulloff_engine::text::sanitize(&program_version, 40);
         return Err(Unreadable::Future { format, program });
     }
     Ok(())

@@ -2,12 +2,13 @@
 
 use super::document::Unreadable;
 use super::number::{Real, floats, reals};
-use crate::contact::Shape;
-use crate::contact::shapes::Rows;
 use crate::explorer::history::Setting;
-use crate::preset::{Preset, read, write};
-use crate::quasistatic::Scales;
-use crate::units::Unit;
+use crate::store::FILES;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::preset::{Preset, write};
+use pulloff_engine::quasistatic::Scales;
+use pulloff_engine::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -168,7 +169,12 @@ impl Problems {
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
         let preset = |saved: &Text| {
             let rows = saved.profile.map(|at| profiles.get(at).cloned().ok_or_else(|| missing("profile")));
-            let preset = read::read_holding("a preset in it", &saved.text, rows.transpose()?);
+            let preset = pulloff_engine::preset::read::read_holding(
+                FILES,
+                "a preset in it",
+                &saved.text,
+                rows.transpose()?,
+            );
             preset.map_err(|error| Unreadable::Damaged(error.to_string()))
         };
         let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;

@@ -1,6 +1,5 @@
 //! What is kept of a model, and the model of it.
 
-use crate::contact::Control;
 use crate::explorer::driver::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
@@ -8,7 +7,9 @@ use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Level, Mo
 use crate::explorer::pins::Pins;
 use crate::explorer::update::want_curve;
 use crate::explorer::view::{Overlays, View, Window};
-use crate::preset::{Fingerprint, Loaded, Preset, Source};
+use crate::store::{Fingerprint, Loaded, Source};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
 use serde::{Deserialize, Serialize};
 
 /// What a person made of a session. A clone, and a snapshot of a model, share the walk with it.

@@ -4,11 +4,11 @@
 //! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
 
 use super::number::{Real, floats, reals};
-use crate::continuation::tangent::Frame;
 use crate::explorer::history::{Ahead, History, Node, NodeKind, Setting};
-use crate::quasistatic::admissible::Crest;
-use crate::quasistatic::equilibrium::Unknowns;
-use crate::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
+use pulloff_engine::continuation::tangent::Frame;
+use pulloff_engine::quasistatic::admissible::Crest;
+use pulloff_engine::quasistatic::equilibrium::Unknowns;
+use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -2,15 +2,16 @@
 
 use super::values::{change, rows_came, want_curve};
 use super::{open, tell};
-use crate::contact::Shape;
 use crate::explorer::command::Id;
 use crate::explorer::driver::Effect;
 use crate::explorer::files::{Content, Document, Done, Job, Page, ends_in};
 use crate::explorer::journal::Journal;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
-use crate::preset::{Overwrite, Preset, Source};
 use crate::print::Format;
+use crate::store::{Overwrite, Source};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::Preset;
 use std::path::{Path, PathBuf};
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {

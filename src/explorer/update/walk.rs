@@ -9,7 +9,7 @@ use crate::explorer::driver::Effect;
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::model::{LENGTHS, Level, Model, Walking};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
-use crate::quasistatic::State;
+use pulloff_engine::quasistatic::State;
 use std::sync::Arc;
 
 pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {

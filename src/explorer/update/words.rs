@@ -3,10 +3,10 @@
 use crate::explorer::command::Id;
 use crate::explorer::history::{Node, NodeKind};
 use crate::explorer::model::{Model, Walking};
-use crate::quasistatic::EventKind;
-use crate::report::number::{loss, significant, with_unit};
-use crate::report::unload::{StateReport, control_name};
-use crate::units::Quantity;
+use pulloff_engine::quasistatic::EventKind;
+use pulloff_engine::report::number::{loss, significant, with_unit};
+use pulloff_engine::report::unload::{StateReport, control_name};
+use pulloff_engine::units::Quantity;
 
 /// Why a command cannot be done now.
 pub(super) fn unavailable(model: &Model, id: Id) -> String {

@@ -6,11 +6,11 @@ use crate::explorer::model::Level;
 use crate::explorer::{Effect, Id};
 use crate::figure::Subject;
 use crate::plot::{Chart, Width, svg};
-use crate::preset::Source;
-use crate::preset::text::sanitize;
 use crate::print::Format;
+use crate::store::Source;
 use crate::tui::copy::{self, Content};
 use crate::tui::overlay::{Action, Item, Overlay as Over, Prompt, Purpose};
+use pulloff_engine::text::sanitize;
 
 impl App {
     pub(super) fn ask_name(&mut self) -> Vec<Effect> {

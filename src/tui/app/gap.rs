@@ -1,17 +1,17 @@
 //! What is asked about the gap: its shape by pictures, its formula tried while it is typed, the file of its profile.
 
 use super::App;
-use crate::contact::Shape;
-use crate::contact::formula::{Formula, FormulaError};
 use crate::explorer::data::Folder;
 use crate::explorer::{Command, Effect, update};
 use crate::figure::Figure;
 use crate::figure::shape::undeformed;
-use crate::preset::measured::SHIPPED_DATA;
-use crate::preset::shipped::DATA;
-use crate::preset::text::show_path;
-use crate::preset::{Key, Value};
+use crate::store::shipped::DATA;
 use crate::tui::overlay::{Action, Item, Prompt, Purpose};
+use pulloff_engine::gap::Shape;
+use pulloff_engine::gap::{formula::Formula, formula::FormulaError};
+use pulloff_engine::preset::measured::SHIPPED_DATA;
+use pulloff_engine::preset::{Key, Value};
+use pulloff_engine::text::show_path;
 
 /// What each shape is, in a few words.
 const SHAPES: [(&str, &str); 9] = [
@@ -122,8 +122,8 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::parameter;
-    use crate::preset::schema::Kind;
+    use pulloff_engine::preset::parameter;
+    use pulloff_engine::preset::schema::Kind;
 
     #[test]
     fn every_shape_has_its_words() {

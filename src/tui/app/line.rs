@@ -4,9 +4,9 @@ use super::{App, LINE};
 use crate::explorer::command::ROWS;
 use crate::explorer::script::{Completion, complete, parse};
 use crate::explorer::{Command, Effect, Id};
-use crate::preset::text::sanitize;
 use crate::tui::overlay::{Overlay, Prompt, Purpose};
 use crossterm::event::{Event, KeyCode, KeyEvent};
+use pulloff_engine::text::sanitize;
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 

@@ -4,11 +4,11 @@ use super::App;
 use crate::explorer::branches::branches;
 use crate::explorer::session::Snapshot;
 use crate::explorer::{Command, Effect, pins};
-use crate::report::number::{significant, with_unit};
 use crate::tui::overlay::{Action, Item, Offer, Overlay as Over};
 use crate::tui::theme::Theme;
-use crate::units::Quantity;
 use crossterm::event::{KeyCode, KeyEvent};
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::units::Quantity;
 
 impl App {
     /// Goes on with a session.

@@ -17,7 +17,7 @@ use std::{
 };
 
 use super::{line::Line, report};
-use crate::preset::temporary;
+use crate::store::temporary;
 
 /// The status after a hang-up, the same as after SIGHUP.
 pub(super) const HUNG_UP: i32 = 129;

@@ -11,8 +11,8 @@ use std::{
 
 use etcetera::BaseStrategy;
 
-use crate::preset::atomic::{Overwrite, write_atomically};
-use crate::preset::text::{sanitize, show_path};
+use crate::store::atomic::{Overwrite, write_atomically};
+use pulloff_engine::text::{sanitize, show_path};
 
 /// Reports that are kept.
 const KEPT: usize = 10;

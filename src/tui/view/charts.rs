@@ -2,14 +2,14 @@
 
 use super::is_selected;
 use super::legend::legend;
-use crate::contact::Control;
 use crate::explorer::{Id, Panel, View, Window};
 use crate::figure::{Bounds, Figure, Mark as Placed, Role, Sign, Subject, nearest};
-use crate::report::number::short;
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Mark, Series};
 use crate::tui::stroke::Stroke;
 use crate::tui::theme::{Styles, Theme};
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::short;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Style;

@@ -2,12 +2,12 @@
 
 use super::{is_selected, panel};
 use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
-use crate::report::OverlapReport;
-use crate::report::number::{fixed, loss, significant, with_unit};
-use crate::report::unload::EventReport;
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
-use crate::units::{Quantity, UnitSystem};
+use pulloff_engine::report::OverlapReport;
+use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
+use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::Style;

@@ -1,12 +1,12 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
 use super::fitted;
-use crate::contact::Control;
 use crate::explorer::{Axes, Model};
-use crate::report::number::{significant, with_unit};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
-use crate::units::Quantity;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -23,13 +23,13 @@ fn stiffness_share(model: &Model) -> Option<f64> {
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let name = match &model.source {
-        crate::preset::Source::File(path) => {
+        crate::store::Source::File(path) => {
             path.file_name().map_or_else(|| model.source.shown(), |name| name.to_string_lossy().into_owned())
         }
         source => source.shown(),
     };
     let mut spans = vec![Span::styled(
-        format!(" {}", theme.text(&crate::preset::text::sanitize(&name, 30))),
+        format!(" {}", theme.text(&pulloff_engine::text::sanitize(&name, 30))),
         theme.strong(),
     )];
     if model.is_unsaved() {

@@ -1,10 +1,10 @@
 //! What the lines and letters of a figure mean, in as many words as there is room for; and the cross-hair in words.
 
 use super::charts::{letter, look};
-use crate::contact::Control;
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
 use crate::tui::theme::{Palette, Theme};
+use pulloff_engine::problem::Control;
 
 /// The legends of a figure, each shorter than the one before: the least wanted words go first.
 pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {

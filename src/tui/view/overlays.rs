@@ -2,10 +2,10 @@
 
 use super::{charts, panel};
 use crate::explorer::Window;
-use crate::preset::text::sanitize;
 use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
+use pulloff_engine::text::sanitize;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::text::Line;

@@ -7,11 +7,11 @@
 use crate::explorer::pins::Pin;
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, EventSource, Model, Overlays, View, Window};
-use crate::preset::Preset;
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
-use crate::units::UnitSystem;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::units::UnitSystem;
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

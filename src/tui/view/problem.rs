@@ -1,14 +1,15 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
 use super::{is_selected, pair, side_panel};
-use crate::contact::{Control, Gap, Groups};
 use crate::explorer::{Id, Model, Panel};
-use crate::preset::{Parameter, Row, Value, groups};
-use crate::report::number::{short, with_unit};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
-use crate::units::{Quantity, UnitSystem};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::preset::{Parameter, Row, Value, groups};
+use pulloff_engine::problem::{Control, Groups};
+use pulloff_engine::report::number::{short, with_unit};
+use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};

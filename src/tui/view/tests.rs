@@ -2,7 +2,7 @@
 
 use super::Pictures;
 use crate::explorer::{Command, Id, Inline, Panel, View, update};
-use crate::preset::Store;
+use crate::store::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};

@@ -2,11 +2,11 @@
 
 use super::Screen;
 use crate::config;
-use crate::contact::Control;
 use crate::explorer::Id;
 use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Overlay;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::problem::Control;
 
 fn prompt(screen: &Screen) -> (String, Option<String>, Option<usize>) {
     match &screen.app.overlay {

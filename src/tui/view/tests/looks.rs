@@ -115,7 +115,7 @@ fn roles_that_can_meet_in_one_chart_look_different_without_colour() {
 #[test]
 fn every_screen_is_ascii_in_an_ascii_terminal() {
     let plain = Theme::new(Palette::Mono, Charts::Braille, true);
-    let presets: Vec<&str> = crate::preset::shipped::SHIPPED.iter().map(|shipped| shipped.name).collect();
+    let presets: Vec<&str> = crate::store::shipped::SHIPPED.iter().map(|shipped| shipped.name).collect();
     for preset in presets {
         let mut screen = Screen::new(preset);
         screen.app.theme = plain;

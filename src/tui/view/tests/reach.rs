@@ -2,7 +2,7 @@
 
 use super::{PLAIN, Screen};
 use crate::explorer::{Panel, View, Window};
-use crate::preset::{Overwrite, Store};
+use crate::store::{Overwrite, Store};
 use crate::tui::copy::{Content, text};
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
@@ -265,7 +265,7 @@ fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     let (_, _) = store.save("mine", &screen.app.model.preset, None, Overwrite::Never).unwrap();
     screen.keys("oD");
     assert!(screen.text(120, 40).contains("Open a preset: Enter takes, Esc closes"), "a shipped one stays");
-    for _ in 0..crate::preset::shipped::SHIPPED.len() {
+    for _ in 0..crate::store::shipped::SHIPPED.len() {
         screen.keys("j");
     }
     assert!(screen.text(120, 40).contains("Enter takes, D deletes"));
@@ -275,7 +275,7 @@ fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     screen.keys("\x1b");
     assert!(store.own("mine").is_ok());
     screen.keys("o");
-    for _ in 0..crate::preset::shipped::SHIPPED.len() {
+    for _ in 0..crate::store::shipped::SHIPPED.len() {
         screen.keys("j");
     }
     screen.press(KeyCode::Delete);

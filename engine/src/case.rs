@@ -1,0 +1,358 @@
+//! A preset made ready for the engine: its problem reduced, its basis built, its start found.
+//!
+//! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
+//! they all see the same numbers.
+
+use crate::continuation::Branch;
+use crate::disc::table::Kept;
+use crate::disc::{Basis, Exact, Table, TableError};
+use crate::gap::function::Scaled;
+use crate::gap::panels::Refused;
+use crate::gap::{Gap, Shape};
+use crate::preset::{BasisSpec, Material, Preset};
+use crate::problem::groups::LARGE_TABOR;
+use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
+use crate::quasistatic::admissible::{Judge, falls};
+use crate::quasistatic::equilibrium::unknown;
+use crate::quasistatic::start::StartError;
+use crate::quasistatic::start::contact_radius;
+use crate::quasistatic::unload::{UnloadError, unload_while};
+use crate::quasistatic::{Curve, CurveStop, Detail, Losses, Unloading};
+use crate::ritz::parallel::Progress;
+use crate::ritz::{Rings, RingsError};
+use crate::theory::jkr::Jkr;
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::sync::{Arc, Mutex};
+
+/// Points of an arc-length trace before it stops.
+pub const TRACE_POINTS: usize = 20_000;
+
+/// A preset made ready for the engine.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The problem in the user's units.
+    pub problem: Problem,
+    /// The problem in reduced units.
+    pub reduced: Reduced,
+    /// The discretization.
+    pub basis: Arc<dyn Basis>,
+    /// The table of the gap.
+    pub table: Arc<Table>,
+    /// What is controlled, in reduced units.
+    pub control: Control,
+    /// The contact radius at the start, reduced.
+    pub start: f64,
+    /// The contact radius at the end, reduced.
+    pub end: f64,
+    /// Tabor's μ, where it is known.
+    pub tabor: Option<f64>,
+    /// How numbers are shown to the user.
+    pub shown: UnitSystem,
+}
+
+/// Why a preset could not be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CaseError {
+    /// The rings could not be made.
+    #[error(transparent)]
+    Basis(RingsError),
+    /// The gap cannot be tabulated.
+    #[error("{}", words_of_table(error, shown))]
+    Table {
+        /// Why, in the user's units.
+        error: TableError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+    /// The start state does not exist.
+    #[error("{}", error.words(shown))]
+    Start {
+        /// Why, in the user's units.
+        error: StartError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+    /// The end lies outside the start.
+    #[error(
+        "path.end_contact_radius = {} must be smaller than the contact radius at the start, which is {}",
+        said(shown, Quantity::Length, *.end), said(shown, Quantity::Length, *.start)
+    )]
+    EndOutsideStart {
+        /// The end, in the user's units.
+        end: f64,
+        /// The start, in the user's units.
+        start: f64,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+    /// The unloading could not start.
+    #[error("{}", error.words(shown))]
+    Unload {
+        /// Why, in the user's units.
+        error: UnloadError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+    /// It was no longer wanted.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Case {
+    /// Makes `preset` ready: builds or reuses its basis and finds its start state.
+    ///
+    /// # Errors
+    /// [`CaseError`] when the basis or the start state cannot be had.
+    pub fn new(preset: &Preset) -> Result<Self, CaseError> {
+        Self::prepare(preset, &mut |_| true)
+    }
+
+    /// The same for a basis that takes long: `progress` is told the share of it that is built, and stops it by
+    /// answering no.
+    ///
+    /// # Errors
+    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said no.
+    pub fn prepare(preset: &Preset, progress: Progress<'_>) -> Result<Self, CaseError> {
+        let problem = preset.problem();
+        let reduced = preset.reduced();
+        let units = reduced.units;
+        let wanted = match preset.path.start {
+            Start::ContactRadius(s) => Start::ContactRadius(s / units.length),
+            Start::Approach(delta) => Start::Approach(delta / units.length),
+            Start::Force(p) => Start::Force(p / units.force),
+        };
+        let shown = preset.units.clone();
+        let reach = reach(&reduced, wanted);
+        let table = table(&preset.gap, &reduced, reach, &shown, progress)?;
+        let mut basis: Arc<dyn Basis> = match preset.basis {
+            BasisSpec::Rings { rings, grading } => {
+                Rings::shared_with(rings, grading, progress).map_err(|error| match error {
+                    RingsError::Cancelled => CaseError::Cancelled,
+                    error => CaseError::Basis(error),
+                })?
+            }
+            BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
+        };
+        let mut go_on = || progress(1.0);
+        let start = contact_radius(&reduced, &*basis, wanted, &mut go_on)
+            .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
+        if preset.basis == BasisSpec::Exact {
+            // From here on the start decides how far it reaches, however it was given.
+            basis = Arc::new(Exact::new(Arc::clone(&table), start));
+        }
+        let end = preset.end_contact_radius(start * units.length) / units.length;
+        if end >= start {
+            let (end, start) = (end * units.length, start * units.length);
+            return Err(CaseError::EndOutsideStart { end, start, shown: Box::new(shown) });
+        }
+        let control = preset.path.control.in_units(units.stiffness);
+        let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
+        Ok(Self { problem, reduced, basis, table, control, start, end, tabor, shown })
+    }
+
+    /// The factors to the user's units.
+    pub fn units(&self) -> &Units {
+        &self.reduced.units
+    }
+
+    /// A control in the user's units.
+    pub fn shown_control(&self, control: Control) -> Control {
+        control.in_units(1.0 / self.units().stiffness)
+    }
+
+    /// The controls whose limit points are reported: displacement, force, and the device where it is a spring.
+    pub fn controls(&self) -> Vec<Control> {
+        let mut controls = vec![Control::Displacement, Control::Force];
+        if !controls.contains(&self.control) {
+            controls.push(self.control);
+        }
+        controls
+    }
+
+    /// The curve from start to end.
+    ///
+    /// # Errors
+    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn curve(&self, go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+        self.curve_in(Detail::Drawn, go_on)
+    }
+
+    /// The same with as many states as asked for.
+    ///
+    /// # Errors
+    /// As [`Case::curve`].
+    pub fn curve_in(&self, detail: Detail, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
+        let mut wanted = true;
+        let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
+        let curve = Curve::new(self.reduced.clone(), basis, table, [self.start, self.end], detail, || {
+            wanted = wanted && go_on();
+            wanted
+        });
+        if !wanted {
+            return Err(CaseError::Cancelled);
+        }
+        curve.ok_or_else(|| self.no_start())
+    }
+
+    /// The same stretch of `curve` by arc-length continuation, and why it ends.
+    ///
+    /// # Errors
+    /// [`CaseError::Start`] when there is no equilibrium at the start.
+    pub fn trace(&self, curve: &Curve) -> Result<(Branch<{ unknown::COUNT }>, CurveStop), CaseError> {
+        curve.traced(|settings| settings.points = TRACE_POINTS, || true).ok_or_else(|| self.no_start())
+    }
+
+    /// The quasi-static unloading along `curve`.
+    ///
+    /// # Errors
+    /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
+    pub fn unload(&self, curve: &Curve, control: Control) -> Result<Unloading, CaseError> {
+        self.unload_while(curve, control, Losses::Twice, || true)
+    }
+
+    /// The same as [`Case::unload`], with these losses; `go_on` is asked before each event.
+    ///
+    /// # Errors
+    /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn unload_while(
+        &self,
+        curve: &Curve,
+        control: Control,
+        losses: Losses,
+        go_on: impl FnMut() -> bool,
+    ) -> Result<Unloading, CaseError> {
+        unload_while(curve, control, losses, go_on).map_err(|e| match e {
+            UnloadError::Cancelled => CaseError::Cancelled,
+            other @ UnloadError::UnstableStart { .. } => {
+                CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
+            }
+        })
+    }
+
+    /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
+    /// twice as wide others are found. `None` where they are the same, or the gap is no profile of averaged rows.
+    pub fn unsettled(&self, unloading: &Unloading) -> Option<String> {
+        let Shape::Profile(measured) = &self.problem.shape else { return None };
+        let profile = measured.coarser()?;
+        let gap: Arc<dyn Gap> = Arc::new(Scaled::new(profile, self.units().length));
+        let problem = Reduced { gap, ..self.reduced.clone() };
+        let basis = Arc::new(Exact::of(&problem, self.start).ok()?);
+        let curve = Curve::of(problem, basis, self.start, self.end)?;
+        let coarser = unload_while(&curve, unloading.control, Losses::Once, || true).ok();
+        let count = coarser.map_or(0, |path| path.events.len());
+        (count != unloading.events.len()).then(|| {
+            format!(
+                "the events depend on how finely the rows are averaged: {} here, {count} with cells twice as wide; a longer \
+                 gap.smoothing leaves less of the noise in the gap",
+                unloading.events.len()
+            )
+        })
+    }
+
+    /// The smooth sphere of the same curvature and adhesion; `None` for a gap without a radius of curvature.
+    pub fn smooth(&self) -> Option<Jkr> {
+        let Problem { effective_modulus, work_of_adhesion, shape } = &self.problem;
+        smooth(*effective_modulus, *work_of_adhesion, shape)
+    }
+
+    /// Its pull-off force `P_c`, where there is one and it adheres.
+    pub fn critical_force(&self) -> Option<f64> {
+        pull_off_force(self.smooth())
+    }
+
+    /// What to be careful about, for a largest contact of radius `largest` (reduced).
+    pub fn warnings(&self, largest: f64) -> Vec<String> {
+        let mut warnings = self.problem.shape.notes(&self.shown);
+        warnings.extend(self.basis.cautions(&self.reduced, largest));
+        if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
+            warnings.push(format!(
+                "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \
+                 of this method does not hold"
+            ));
+        }
+        warnings
+    }
+
+    /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
+    pub fn notes(&self, largest: f64) -> Vec<String> {
+        let text = if self.reduced.work_of_adhesion > 0.0 {
+            "the gap falls within the contact: without adhesion it would not be one connected disc. Whether the bodies stay \
+             apart outside the disc is checked; tension inside it is not, for in the JKR limit any adhesion, however weak, \
+             bears it"
+        } else {
+            "the gap falls within the contact, and there is no adhesion: of a connected disc it is checked that the bodies \
+             stay apart outside it and that nothing pulls inside it"
+        };
+        let mut notes = self.problem.shape.remarks(&self.shown);
+        notes.extend(falls(&self.reduced.gap, largest).then(|| text.to_owned()));
+        if let Some(radius) = Judge::new(&self.reduced, &self.table).unknown_beyond(largest) {
+            let radius = said(&self.shown, Quantity::Length, radius * self.units().length);
+            notes.push(format!(
+                "whether the bodies stay apart outside the disc is known up to r = {radius}, and unknown beyond"
+            ));
+        }
+        notes
+    }
+
+    fn no_start(&self) -> CaseError {
+        let error = StartError::NoEquilibrium(self.start).in_units(self.units());
+        CaseError::Start { error, shown: Box::new(self.shown.clone()) }
+    }
+}
+
+/// The smooth sphere of the curvature of `shape`, which may have none.
+fn smooth(effective_modulus: f64, work_of_adhesion: f64, shape: &Shape) -> Option<Jkr> {
+    Some(Jkr { effective_modulus, work_of_adhesion, radius_of_curvature: shape.radius_of_curvature()? })
+}
+
+fn pull_off_force(smooth: Option<Jkr>) -> Option<f64> {
+    smooth.map(|jkr| jkr.pull_off_force()).filter(|force| *force > 0.0)
+}
+
+/// [`Case::critical_force`] of a preset that is not made ready.
+pub fn critical_force(preset: &Preset) -> Option<f64> {
+    let Material { effective_modulus, work_of_adhesion, .. } = preset.material;
+    pull_off_force(smooth(effective_modulus, work_of_adhesion, &preset.gap))
+}
+
+/// The tables of the last gaps, by shape and unit of length.
+static TABLES: Kept<(Shape, u64)> = Mutex::new(Vec::new());
+
+/// How far the table of a gap reaches to begin with.
+fn reach(reduced: &Reduced, wanted: Start) -> f64 {
+    // Twice the paraboloid of R = 1 with its adhesion: as far as a start is looked for first.
+    let unit = |elastic: f64| 2.0 * elastic.max(reduced.work_of_adhesion.cbrt());
+    match wanted {
+        Start::ContactRadius(s) => s,
+        Start::Approach(delta) => unit(delta.abs().sqrt()),
+        Start::Force(p) => unit(p.abs().cbrt()),
+    }
+}
+
+/// The table of the gap, shared by all problems with the same gap: adhesion, modulus, device and start are no part of it.
+fn table(
+    shape: &Shape,
+    reduced: &Reduced,
+    reach: f64,
+    shown: &UnitSystem,
+    progress: Progress<'_>,
+) -> Result<Arc<Table>, CaseError> {
+    let key = (shape.clone(), reduced.units.length.to_bits());
+    Table::shared(&TABLES, &key, &reduced.gap, reach, &mut || progress(0.0)).map_err(|error| match error {
+        TableError::Cancelled => CaseError::Cancelled,
+        TableError::TooFine(refused) => {
+            let length = reduced.units.length;
+            let (radius, largest) = (refused.radius * length, refused.largest * length);
+            let error = TableError::TooFine(Refused { radius, largest, ..refused });
+            CaseError::Table { error, shown: Box::new(shown.clone()) }
+        }
+    })
+}
+
+fn words_of_table(error: &TableError, shown: &UnitSystem) -> String {
+    match error {
+        TableError::TooFine(refused) => refused.words(shown),
+        TableError::Cancelled => error.to_string(),
+    }
+}

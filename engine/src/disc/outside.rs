@@ -1,0 +1,281 @@
+//! The bodies around the edge of one disc, from the table: the gap outside and the pressure inside (E* = 1).
+//!
+//! ```text
+//! r > s    gap(r) = (2/π) ∫_s^r (g(a) − δ)/√(r² − a²) da
+//! r < s    p(r)   = (1/π) [(δ − g(s))/√(s² − r²) + ∫_r^s g'(a)/√(a² − r²) da]
+//! ```
+//!
+//! The first follows from h(r) = (2/π) ∫₀ʳ g/√(r² − a²) da, Abel's inversion of g, and the displacement that the pressure
+//! causes outside. Both hold for any δ, not only in equilibrium. On every panel a substitution takes the singularity
+//! away: a = b + (r − b) sin²ψ right of a break b, a = r sin ψ elsewhere.
+//!
+//! **What is to be searched.** If the gap is not negative on [s, q], what those radii give at r > q is
+//! (2/π)√(r² − q²) ∫_s^q t gap(t)/((r² − t²)√(q² − t²)) dt ≥ 0, so beyond the edge the gap can become negative for the first
+//! time only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
+
+use super::chebyshev::{self, Rule};
+use super::panels::{Panel, Panels};
+use super::span::Place;
+use crate::gap::panels::Variable;
+use gauss_quad::GaussLegendre;
+use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+
+/// Nodes on a panel near r, on one at least as far as it is wide, and on one at least [`VERY_FAR`] times as far.
+const NODES: [usize; 3] = [32, 14, 8];
+const VERY_FAR: f64 = 6.0;
+
+/// Stretches of panels integrated over in one search at most: those of fifty crests and more, some hundredths of a second.
+const MOST_WORK: usize = 1000;
+
+/// Crests looked at from the first that overlaps on.
+const CRESTS: usize = 8;
+
+/// Among more neighbouring panels than this the smallest gap is looked for at three places of each, and then nearby.
+const MANY: usize = 8;
+
+/// Halvings of an interval in which the gap is searched, until its series ends.
+const HALVINGS: usize = 8;
+
+/// Places on a piece at which the gap is computed, and its last coefficients there relative to the largest: its minimum is then
+/// found to four digits of the piece, and its value to seven.
+const SEARCHED: usize = 12;
+const TAIL: f64 = 1e-7;
+
+/// Values of g − δ below this share of g's size on a panel are rounding.
+const ROUNDING: f64 = 1e-14;
+
+fn gauss(nodes: usize) -> Vec<[f64; 2]> {
+    let rule = GaussLegendre::new(NonZeroUsize::new(nodes).unwrap_or(NonZeroUsize::MIN));
+    rule.iter().map(|(x, weight)| [*x, *weight]).collect()
+}
+
+static RULES: LazyLock<[Vec<[f64; 2]>; 3]> = LazyLock::new(|| NODES.map(gauss));
+
+/// The rule for a panel of this width at this distance.
+fn rule(distance: f64, width: f64) -> &'static [[f64; 2]] {
+    let far = usize::from(distance >= width) + usize::from(distance >= VERY_FAR * width);
+    &RULES[far]
+}
+
+/// The deformed gap at `r ≥ s` around a disc of radius `s` at the approach `delta`; the panels must reach to `r`.
+pub fn gap_from(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
+    if r <= s {
+        return 0.0;
+    }
+    let (first, last) = (panels.place(s).panel, panels.place(r).panel);
+    let part = |i: usize| {
+        let panel = &*panels.list()[i];
+        stretch_outside(panels, i, panel, delta, r, [panel.span.lo.max(s), panel.span.hi.min(r)])
+    };
+    FRAC_2_PI * (first..=last).map(part).sum::<f64>()
+}
+
+/// ∫ (g − δ)/√(r² − a²) da from `lo` to `hi` on one panel.
+fn stretch_outside(
+    panels: &Panels,
+    index: usize,
+    panel: &Panel,
+    delta: f64,
+    r: f64,
+    [lo, hi]: [f64; 2],
+) -> f64 {
+    if hi <= lo {
+        return 0.0;
+    }
+    let rule = rule(r - hi, hi - lo);
+    let [centre, half] = panel.span.line();
+    let value =
+        |v: f64| panels.value(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) }) - delta;
+    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
+    };
+    match panel.span.variable {
+        Variable::Fifth if r - hi >= hi => {
+            let end = panel.span.hi;
+            let at = |a: f64| (a / end).powf(0.2);
+            over(at(lo), at(hi), &|u| {
+                let a = end * u.powi(5);
+                value(u) * 5.0 * end * u.powi(4) / ((r - a) * (r + a)).sqrt()
+            })
+        }
+        Variable::Fifth => {
+            let end = panel.span.hi;
+            over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| value((r * psi.sin() / end).powf(0.2)))
+        }
+        Variable::Radius => over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| value(r * psi.sin())),
+        Variable::Root { base } => {
+            let height = (r - base).sqrt();
+            let angle = |a: f64| ((a - base).max(0.0).sqrt() / height).min(1.0).asin();
+            over(angle(lo), angle(hi), &|psi| {
+                let y = height * psi.sin();
+                value(y) * 2.0 * y / (r + base + y * y).sqrt()
+            })
+        }
+    }
+}
+
+/// The pressure at `r < s` in a disc of radius `s` at the approach `delta`, compression positive.
+pub fn pressure(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
+    let at = panels.place(s);
+    let first = panels.place(r).panel;
+    let inner: f64 = (first..=at.panel)
+        .map(|i| {
+            let span = panels.list()[i].span;
+            stretch_inside(panels, i, r, [span.lo.max(r), span.hi.min(s)])
+        })
+        .sum();
+    FRAC_1_PI * ((delta - panels.value(at)) / ((s - r) * (s + r)).sqrt() + inner)
+}
+
+/// ∫ g'/√(a² − r²) da from `lo ≥ r` to `hi` on one panel.
+fn stretch_inside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f64 {
+    if hi <= lo {
+        return 0.0;
+    }
+    let panel = &*panels.list()[index];
+    let span = panel.span;
+    let far = lo - r >= hi - lo;
+    let rule = rule(lo - r, hi - lo);
+    let [centre, half] = span.line();
+    let place = |v: f64| Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) };
+    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
+    };
+    let variable = |a: f64| match span.variable {
+        Variable::Radius => a,
+        Variable::Root { base } => (a - base).max(0.0).sqrt(),
+        Variable::Fifth => (a / span.hi).powf(0.2),
+    };
+    let by_variable = |v: f64| panels.slope_by_variable(place(v));
+    let radius = |v: f64| span.radius(place(v).x);
+    match span.variable {
+        _ if far => over(variable(lo), variable(hi), &|v| {
+            let a = radius(v);
+            by_variable(v) / ((a - r) * (a + r)).sqrt()
+        }),
+        // y² = a − b around a − r: y = √(b − r) sinh t, or √(r − b) cosh t, leaves dt.
+        Variable::Root { base } if (base - r).abs() > 0.0 => {
+            let unit = (base - r).abs().sqrt();
+            let angle = |a: f64| {
+                let ratio = variable(a) / unit;
+                if base > r { ratio.asinh() } else { ratio.max(1.0).acosh() }
+            };
+            over(angle(lo), angle(hi), &|t| {
+                let y = unit * if base > r { t.sinh() } else { t.cosh() };
+                by_variable(y) / (base + y * y + r).sqrt()
+            })
+        }
+        // z² = a − r.
+        _ => over((lo - r).sqrt(), (hi - r).sqrt(), &|z| {
+            let a = r + z * z;
+            let at = place(variable(a));
+            let slope = panels.weighted_slope(at) / if panel.is_steep() { span.stretch(at.x) } else { 1.0 };
+            2.0 * slope / (a + r).sqrt()
+        }),
+    }
+}
+
+/// The intervals of radii beyond `s` in which g < δ, ascending, as far as the panels reach; panel by panel.
+pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64; 2])> {
+    let mut found = Vec::new();
+    let from = panels.place(s);
+    for (index, panel) in panels.list().iter().enumerate().skip(from.panel) {
+        if panel.span.lo >= end {
+            break;
+        }
+        let start = if index == from.panel { from.x } else { -1.0 };
+        let mut series = panels.value_series(index);
+        let size: f64 = series.iter().map(|c| c.abs()).sum();
+        series[0] -= delta;
+        let mut edges = vec![start];
+        edges.extend(
+            chebyshev::roots(&series, ROUNDING * size).into_iter().filter(|x| *x > start && *x < 1.0),
+        );
+        edges.push(1.0);
+        for pair in edges.windows(2) {
+            if pair[1] > pair[0] && chebyshev::sum(&series, 0.5 * (pair[0] + pair[1])) < -ROUNDING * size {
+                found.push((index, [pair[0], pair[1]]));
+            }
+        }
+    }
+    found
+}
+
+/// What a search for the smallest gap has found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Where the gap is smallest and how large it is there, `[r, gap]`; `None` where g stays above δ: the bodies stay apart.
+    pub at: Option<[f64; 2]>,
+    /// The radius at which the search was given up, where it was.
+    pub given_up: Option<f64>,
+}
+
+/// The smallest gap around the disc among the radii at which it can become negative first.
+///
+/// Once the gap is below `overlap` only a few crests more are looked at, and without that no more than some hundred. The panels
+/// must reach to `end`.
+pub fn least_gap(panels: &Panels, s: f64, delta: f64, end: f64, overlap: f64) -> Least {
+    let first = panels.place(s).panel;
+    let mut work = 0;
+    let pieces = below(panels, s, delta, end);
+    let on = |piece: &(usize, [f64; 2])| least_on(panels, s, delta, piece.0, piece.1, HALVINGS);
+    let smallest = |a: &[f64; 2], b: &[f64; 2]| a[1].total_cmp(&b[1]);
+    let mut least: Option<[f64; 2]> = None;
+    let mut left = CRESTS;
+    for run in pieces.chunk_by(|(a, before), (b, after)| b - a <= 1 && before[1] >= 1.0 && after[0] <= -1.0) {
+        let here = if run.len() <= MANY {
+            run.iter().map(on).min_by(smallest)
+        } else {
+            let sampled = |(index, [lo, hi]): &(usize, [f64; 2])| {
+                let places = [*lo, 0.5 * (lo + hi), *hi];
+                let gaps =
+                    places.map(|x| gap_from(panels, s, delta, panels.radius(Place { panel: *index, x })));
+                gaps.into_iter().fold(f64::INFINITY, f64::min)
+            };
+            let samples: Vec<f64> = run.iter().map(sampled).collect();
+            let at = (0..run.len()).min_by(|a, b| samples[*a].total_cmp(&samples[*b])).unwrap_or(0);
+            run[at.saturating_sub(1)..(at + 2).min(run.len())].iter().map(on).min_by(smallest)
+        };
+        least = least.into_iter().chain(here).min_by(smallest);
+        if least.is_some_and(|[_, gap]| gap < overlap) {
+            left -= 1;
+            if left == 0 {
+                break;
+            }
+        }
+        let Some((last, [_, x])) = run.last() else { continue };
+        work += run.len().min(MANY) * (last + 1 - first);
+        if work > MOST_WORK && left == CRESTS {
+            return Least { at: least, given_up: Some(panels.radius(Place { panel: *last, x: *x })) };
+        }
+    }
+    Least { at: least, given_up: None }
+}
+
+/// The smallest gap on a piece of a panel: `[r, gap]`.
+fn least_on(panels: &Panels, s: f64, delta: f64, index: usize, [lo, hi]: [f64; 2], depth: usize) -> [f64; 2] {
+    let span = panels.list()[index].span;
+    let radius = |x: f64| span.radius(0.5 * (lo + hi) + 0.5 * (hi - lo) * x);
+    let gap = |x: f64| gap_from(panels, s, delta, radius(x));
+    let least = |a: [f64; 2], b: [f64; 2]| if b[1] < a[1] { b } else { a };
+    let series = Rule::of(SEARCHED).series(gap);
+    let largest = series.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let tail: f64 = series.iter().rev().take(3).map(|c| c.abs()).sum();
+    if tail > TAIL * largest && depth > 0 {
+        let middle = 0.5 * (lo + hi);
+        let [left, right] =
+            [[lo, middle], [middle, hi]].map(|piece| least_on(panels, s, delta, index, piece, depth - 1));
+        return least(left, right);
+    }
+    let slope = chebyshev::derivative(&series);
+    // The series tells where; only what may be the smallest is computed.
+    let inner = chebyshev::roots(&slope, 0.0);
+    let by_series = |x: &f64| chebyshev::sum(&series, *x);
+    let places = [-1.0, 1.0].into_iter().chain(inner);
+    let x = places.min_by(|a, b| by_series(a).total_cmp(&by_series(b))).unwrap_or(0.0);
+    [radius(x), gap(x)]
+}

@@ -1,0 +1,306 @@
+//! The panels of a table of g: on each, series of g, its slope, ∫₀ᵃ g and ∫₀ᵃ g², or a closed law.
+
+use super::chebyshev::{self, ROOT_NODES, Rule};
+use super::law::Law;
+use super::span::{Place, panel_of};
+use crate::gap::{panels::Span, panels::Variable};
+use std::sync::{Arc, OnceLock};
+
+/// A series ends where its coefficients fall below this share of the largest.
+const CHOP: f64 = 1e-17;
+
+/// Panels whose outer end is farther out than their inner by less than this factor are far from the axis.
+const FAR_FROM_AXIS: f64 = 1.6;
+
+/// One panel of a table.
+#[derive(Debug)]
+pub struct Panel {
+    /// Where.
+    pub span: Span,
+    /// v = centre + half·x.
+    line: [f64; 2],
+    /// The series of g; none where the law is closed.
+    value: Vec<f64>,
+    /// The series of dg/da, or of dg/dv.
+    slope: Vec<f64>,
+    /// Whether `slope` is by the panel's variable: where h' jumps at the base dg/da is infinite there.
+    steep: bool,
+    /// The series of ∫₀ᵃ g and ∫₀ᵃ g².
+    area: Vec<f64>,
+    square: Vec<f64>,
+    /// The series of 1/√a, or of da/dv/√a, for the roots of the stability law.
+    edge: OnceLock<Vec<f64>>,
+}
+
+/// What a table gives at one radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Values {
+    /// a.
+    pub radius: f64,
+    /// g.
+    pub value: f64,
+    /// dg/da, that of the panel's side at a break; infinite right of one where h' jumps.
+    pub slope: f64,
+    /// d²g/da².
+    pub bend: f64,
+    /// ∫₀ᵃ g.
+    pub area: f64,
+    /// ∫₀ᵃ g².
+    pub square: f64,
+}
+
+/// The panels of a table, ascending from the axis without holes.
+#[derive(Debug)]
+pub struct Panels {
+    pub(super) list: Vec<Arc<Panel>>,
+    pub(super) law: Option<Law>,
+    pub(super) smallest: f64,
+    pub(super) digits: OnceLock<f64>,
+}
+
+impl Panel {
+    pub(super) fn closed(span: Span) -> Self {
+        let line = span.line();
+        let none = Vec::new;
+        let (value, slope, area, square) = (none(), none(), none(), none());
+        Self { span, line, value, slope, steep: false, area, square, edge: OnceLock::new() }
+    }
+
+    /// The panel of these series; ∫g and ∫g² begin with what the panel before ends with.
+    fn new(span: Span, value: Vec<f64>, slope: Vec<f64>, steep: bool, before: Option<&Self>) -> Self {
+        let line @ [centre, half] = span.line();
+        let value = chebyshev::chop(value, CHOP);
+        let start = before.map_or([0.0; 2], |panel| [&panel.area, &panel.square].map(|s| s.iter().sum()));
+        let [area, square] = [value.clone(), chebyshev::square(&value)].map(|density| {
+            // Times da/dx.
+            let density = match span.variable {
+                Variable::Radius => density,
+                Variable::Root { .. } => chebyshev::times_line(&density, 2.0 * centre, 2.0 * half),
+                Variable::Fifth => {
+                    let u4 = (0..4).fold(density, |series, _| chebyshev::times_line(&series, centre, half));
+                    u4.iter().map(|c| 5.0 * span.hi * c).collect()
+                }
+            };
+            chebyshev::integral(&density).into_iter().map(|c| half * c).collect::<Vec<f64>>()
+        });
+        let [area, square] = [(area, start[0]), (square, start[1])].map(|(mut series, start)| {
+            series[0] += start;
+            chebyshev::chop(series, CHOP)
+        });
+        Self {
+            span,
+            line,
+            value,
+            slope: chebyshev::chop(slope, CHOP),
+            steep,
+            area,
+            square,
+            edge: OnceLock::new(),
+        }
+    }
+
+    /// x of the radius a.
+    fn place(&self, a: f64) -> f64 {
+        let [centre, half] = self.line;
+        let v = match self.span.variable {
+            Variable::Radius => a,
+            Variable::Root { base } => (a - base).max(0.0).sqrt(),
+            Variable::Fifth => return self.span.place(a),
+        };
+        ((v - centre) / half).clamp(-1.0, 1.0)
+    }
+
+    /// The series of da/dv/√a where the slope is by the variable, of 1/√a where it is by the radius.
+    pub fn edge(&self) -> &[f64] {
+        self.edge.get_or_init(|| self.edge_rule().series(|x| self.weight(x) / self.span.radius(x).sqrt()))
+    }
+
+    /// The rule that resolves powers of √a on the panel: away from the axis half the nodes do.
+    pub fn edge_rule(&self) -> &'static Rule {
+        let near_axis = self.span.hi > FAR_FROM_AXIS * self.span.lo;
+        Rule::of(if near_axis { ROOT_NODES } else { ROOT_NODES / 2 })
+    }
+
+    /// What a derivative by the radius is multiplied with, so that it is smooth on the whole panel: da/dv or 1.
+    pub fn weight(&self, x: f64) -> f64 {
+        if self.steep { self.span.stretch(x) } else { 1.0 }
+    }
+
+    /// Whether derivatives are by the panel's variable.
+    pub fn is_steep(&self) -> bool {
+        self.steep
+    }
+}
+
+impl Panels {
+    /// The panels.
+    pub fn list(&self) -> &[Arc<Panel>] {
+        &self.list
+    }
+
+    /// How far they reach.
+    pub fn reach(&self) -> f64 {
+        self.list.last().map_or(0.0, |panel| panel.span.hi)
+    }
+
+    /// The outer end of the innermost panel: below it g has no relative digits.
+    pub fn smallest(&self) -> f64 {
+        self.smallest
+    }
+
+    /// The place of `a`; a border belongs to the panel that ends with it.
+    pub fn place(&self, a: f64) -> Place {
+        let panel = panel_of(&self.list, |panel| &panel.span, a);
+        Place { panel, x: self.list[panel].place(a) }
+    }
+
+    /// The radius of a place.
+    pub fn radius(&self, at: Place) -> f64 {
+        self.list[at.panel].span.radius(at.x)
+    }
+
+    /// g and ∫g at a place.
+    pub fn value_and_area(&self, at: Place) -> [f64; 2] {
+        let panel = &*self.list[at.panel];
+        if let Some(law) = &self.law {
+            let a = panel.span.radius(at.x);
+            return [law.value(a), law.area(a)];
+        }
+        [chebyshev::sum(&panel.value, at.x), chebyshev::sum(&panel.area, at.x)]
+    }
+
+    /// g at a place.
+    pub fn value(&self, at: Place) -> f64 {
+        let panel = &*self.list[at.panel];
+        match &self.law {
+            Some(law) => law.value(panel.span.radius(at.x)),
+            None => chebyshev::sum(&panel.value, at.x),
+        }
+    }
+
+    /// dg/da times the [weight](Panel::weight) of the panel.
+    pub fn weighted_slope(&self, at: Place) -> f64 {
+        let panel = &*self.list[at.panel];
+        match &self.law {
+            Some(law) => law.slope(panel.span.radius(at.x)),
+            None => chebyshev::sum(&panel.slope, at.x),
+        }
+    }
+
+    /// The series of [`Panels::weighted_slope`] on a panel.
+    pub fn slope_series(&self, panel: usize) -> Vec<f64> {
+        let span = self.list[panel].span;
+        match &self.law {
+            Some(law) => Rule::of(ROOT_NODES).series(|x| law.slope(span.radius(x))),
+            None => self.list[panel].slope.clone(),
+        }
+    }
+
+    /// The series of g on a panel.
+    pub fn value_series(&self, panel: usize) -> Vec<f64> {
+        let span = self.list[panel].span;
+        match &self.law {
+            Some(law) => Rule::of(ROOT_NODES).series(|x| law.value(span.radius(x))),
+            None => self.list[panel].value.clone(),
+        }
+    }
+
+    /// dg/dv at a place: by the panel's own variable, finite everywhere.
+    pub fn slope_by_variable(&self, at: Place) -> f64 {
+        let panel = &*self.list[at.panel];
+        let slope = self.weighted_slope(at);
+        if panel.steep { slope } else { slope * panel.span.stretch(at.x) }
+    }
+
+    /// d²g/dv² at a place.
+    pub fn bend_by_variable(&self, at: Place) -> f64 {
+        let panel = &*self.list[at.panel];
+        let (span, [_, half]) = (&panel.span, panel.line);
+        if let Some(law) = &self.law {
+            return law.bend(span.radius(at.x));
+        }
+        let [slope, by_x] = chebyshev::sum_and_slope(&panel.slope, at.x);
+        if panel.steep { by_x / half } else { by_x / half * span.stretch(at.x) + slope * span.bend(at.x) }
+    }
+
+    /// Everything at a place.
+    pub fn values(&self, at: Place) -> Values {
+        let panel = &*self.list[at.panel];
+        let radius = panel.span.radius(at.x);
+        if let Some(law) = &self.law {
+            return Values {
+                radius,
+                value: law.value(radius),
+                slope: law.slope(radius),
+                bend: law.bend(radius),
+                area: law.area(radius),
+                square: law.square(radius),
+            };
+        }
+        let [weighted, by_x] = chebyshev::sum_and_slope(&panel.slope, at.x);
+        let (stretch, [_, half]) = (panel.span.stretch(at.x), panel.line);
+        let [slope, bend] = if panel.steep {
+            let slope = weighted / stretch;
+            [slope, (by_x / half - slope * panel.span.bend(at.x)) / (stretch * stretch)]
+        } else {
+            [weighted, by_x / half / stretch]
+        };
+        Values {
+            radius,
+            value: chebyshev::sum(&panel.value, at.x),
+            slope,
+            bend,
+            area: chebyshev::sum(&panel.area, at.x),
+            square: chebyshev::sum(&panel.square, at.x),
+        }
+    }
+
+    /// ∫₀ᵃ g² at a place.
+    pub fn square(&self, at: Place) -> f64 {
+        let panel = &*self.list[at.panel];
+        match &self.law {
+            Some(law) => law.square(panel.span.radius(at.x)),
+            None => chebyshev::sum(&panel.square, at.x),
+        }
+    }
+
+    /// g, dg/dv and ∫g at four places of one panel.
+    pub fn four_with_slopes(&self, panel: usize, x: [f64; 4]) -> [[f64; 4]; 3] {
+        let of = &*self.list[panel];
+        if let Some(law) = &self.law {
+            let radii = x.map(|x| of.span.radius(x));
+            return [radii.map(|a| law.value(a)), radii.map(|a| law.slope(a)), radii.map(|a| law.area(a))];
+        }
+        let four = |series: &[f64]| chebyshev::sum4(series, x.into()).to_array();
+        let mut slopes = four(&of.slope);
+        if !of.steep {
+            for (slope, x) in slopes.iter_mut().zip(x) {
+                *slope *= of.span.stretch(x);
+            }
+        }
+        [four(&of.value), slopes, four(&of.area)]
+    }
+
+    /// g and ∫g at eight radii, which lie on one panel: the dense curve is made of these.
+    pub fn eight(&self, panel: usize, radii: &[f64; 8]) -> [[f64; 8]; 2] {
+        let of = &*self.list[panel];
+        if let Some(law) = &self.law {
+            return [radii.map(|a| law.value(a)), radii.map(|a| law.area(a))];
+        }
+        let x = radii.map(|a| of.place(a));
+        [chebyshev::sum8(&of.value, &x), chebyshev::sum8(&of.area, &x)]
+    }
+}
+
+impl Panels {
+    pub(super) fn push(&mut self, span: Span, rule: &Rule, value: &[f64], slope: &[f64], steep: bool) {
+        let series = |samples: &[f64]| {
+            let mut out = vec![0.0; samples.len()];
+            rule.coefficients(samples, &mut out);
+            out
+        };
+        let before = self.list.last().map(|panel| &**panel);
+        let panel = Panel::new(span, series(value), series(slope), steep, before);
+        self.list.push(Arc::new(panel));
+    }
+}

@@ -1,0 +1,169 @@
+//! Why a text is no expression, and where.
+
+use thiserror::Error;
+
+/// Characters of an expression at most.
+pub const LENGTH: usize = 4096;
+
+/// Parentheses, calls and powers within each other at most.
+pub const DEPTH: usize = 64;
+
+/// Operations of an expression at most: more are no gap that a person wrote.
+pub const OPERATIONS: usize = 1000;
+
+/// Characters of a name at most, so that messages stay in a line.
+pub const NAME: usize = 40;
+
+/// Where an operand was expected, a `*` is the second of a `**`.
+const POWERS: &str = "; powers are written with ^";
+
+/// A place in a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// The offset in bytes.
+    pub byte: usize,
+    /// The column in characters, counted from 1.
+    pub column: usize,
+}
+
+impl Place {
+    /// The place of the byte `byte` of `text`.
+    pub fn of(text: &str, byte: usize) -> Self {
+        let before = text.char_indices().take_while(|&(at, _)| at < byte).count();
+        Self { byte, column: before + 1 }
+    }
+}
+
+/// Why a text is no formula, and where.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("column {}: {problem}", place.column)]
+pub struct FormulaError {
+    /// Where it was noticed.
+    pub place: Place,
+    /// What is wrong there.
+    pub problem: Problem,
+}
+
+/// What can be wrong with an expression. Foreign text in it is short and safe to show.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Problem {
+    /// More text than a formula may have.
+    #[error("the text is longer than {LENGTH} characters")]
+    TooLong,
+    /// Parentheses, calls and powers within each other.
+    #[error("parentheses, functions and powers are nested more than {DEPTH} deep")]
+    TooDeep,
+    /// More operations than a formula may have.
+    #[error("more than {OPERATIONS} operations")]
+    TooManyOperations,
+    /// A name of a parameter or function that goes on and on.
+    #[error("a name is longer than {NAME} characters")]
+    LongName,
+    /// A number beyond the largest double.
+    #[error("the number {number} is too large")]
+    LargeNumber {
+        /// The number as written.
+        number: String,
+    },
+    /// Something else where a value must stand.
+    #[error("expected a number, a name or '(', found {found}{}", if found == "'*'" { POWERS } else { "" })]
+    Operand {
+        /// What stands there.
+        found: String,
+    },
+    /// Something else where an operator must stand.
+    #[error("expected {expected}, found {found}")]
+    Operator {
+        /// What could stand there.
+        expected: &'static str,
+        /// What stands there.
+        found: String,
+    },
+    /// Two values side by side.
+    #[error("an operator is missing before {found}: products are written with *")]
+    Juxtaposed {
+        /// The second value.
+        found: String,
+    },
+    /// A parenthesis that is never closed.
+    #[error("the '(' at column {opened} is never closed")]
+    Unclosed {
+        /// The column of the parenthesis.
+        opened: usize,
+    },
+    /// A character beyond ASCII.
+    #[error("the character {character} cannot stand in a formula{}", hint(*instead))]
+    NotAscii {
+        /// The character, quoted.
+        character: String,
+        /// What to write in its place.
+        instead: Option<&'static str>,
+    },
+    /// A name before a parenthesis that is no function.
+    #[error("there is no function {name}; a product is written {name}*(...)")]
+    UnknownFunction {
+        /// The name.
+        name: String,
+    },
+    /// A function's name without its arguments.
+    #[error("{name} is a function: write {name}(...)")]
+    Uncalled {
+        /// The name.
+        name: String,
+    },
+    /// A function with more or fewer arguments than it takes.
+    #[error("{name} takes {takes} argument{}, not {given}", if *takes == 1 { "" } else { "s" })]
+    Arguments {
+        /// The function.
+        name: String,
+        /// How many it takes.
+        takes: usize,
+        /// How many it was given.
+        given: usize,
+    },
+    /// A variable where only numbers may stand.
+    #[error("{name} has no value here: only numbers, pi, e and functions of them")]
+    Variable {
+        /// The name.
+        name: String,
+    },
+}
+
+fn hint(instead: Option<&str>) -> String {
+    instead.map_or_else(String::new, |instead| format!(": write {instead}"))
+}
+
+/// What to write for a character that people paste from a text.
+fn in_ascii(character: char) -> Option<&'static str> {
+    Some(match character {
+        '−' | '–' => "-",
+        '×' | '·' | '⋅' | '∙' => "*",
+        '÷' | '∕' => "/",
+        '²' => "^2",
+        '³' => "^3",
+        '√' => "sqrt(...)",
+        'π' => "pi",
+        'λ' => "lambda",
+        '\u{a0}' => "a plain space",
+        _ => return None,
+    })
+}
+
+impl Problem {
+    /// The problem of a character beyond ASCII.
+    pub(super) fn not_ascii(character: char) -> Self {
+        Self::NotAscii { character: quoted(character), instead: in_ascii(character) }
+    }
+}
+
+/// One character for a message: what a terminal must not get is escaped.
+fn quoted(character: char) -> String {
+    format!("'{}'", character.escape_debug())
+}
+
+/// The word or the character at the start of `rest`, for a message.
+pub fn piece(rest: &str) -> String {
+    let Some(first) = rest.chars().next() else { return "the end".to_owned() };
+    let word: String = rest.chars().take_while(char::is_ascii_alphanumeric).take(NAME).collect();
+    if word.is_empty() { quoted(first) } else { word }
+}

@@ -1,0 +1,248 @@
+//! Bounds of functions on discs: arithmetic on all complex numbers near a real one.
+//!
+//! With the image of an operand within ρ of its value m at the centre, that of a function of it lies within
+//!
+//! ```text
+//! f + g   ρ₁ + ρ₂                          f g    |m₁|ρ₂ + |m₂|ρ₁ + ρ₁ρ₂
+//! 1/f     ρ/(|m|(|m| − ρ)),  |m| > ρ       exp    −e^{m+ρ} (e^{−ρ} − 1)
+//! sin     |sin m| 2 sinh²(ρ/2) + |cos m| sinh ρ,  and cos, sinh, cosh likewise
+//! fⁿ      (|m| + ρ)ⁿ − |m|ⁿ                ln     −ln(1 − ρ/m),  m > ρ
+//! fᵖ      mᵖ |(1 ± ρ/m)ᵖ − 1|,  m > ρ, with + from p = 1 on: |(1 + w)ᵖ⁻¹| = |1 + w|ᵖ⁻¹ integrated from 0 to ρ/m
+//! tan     sinh ρ/(|cos m| sin(e − ρ)),  e > ρ the distance of m from the nearest pole
+//! tanh    sinh ρ/(cosh m √(sinh²(|m| − ρ)₊ + cos²ρ)),  ρ < π/2, or 4/(e^{2(|m|−ρ)} − 1), |m| > ρ
+//! ```
+//!
+//! of its own value at the centre. Where a function is not defined on all of the disc the radius is infinite, and so it is
+//! where the numbers overflow to what is not a number. Radii are not rounded outward: they are used with a factor to spare.
+
+use crate::gap::shapes::harmonics::sine_change;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// All complex numbers within `radius` of the real `middle`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
+pub struct Ball {
+    pub middle: f64,
+    pub radius: f64,
+}
+
+/// A function and its derivative on a ball.
+pub type Pair = (Ball, Ball);
+
+/// A sine or a hyperbolic one from its value and its slope at the middle.
+fn swing(along: f64, across: f64, radius: f64) -> Ball {
+    Ball::new(along, sine_change(along, across, radius))
+}
+
+impl Ball {
+    pub const ZERO: Self = Self { middle: 0.0, radius: 0.0 };
+    /// No bound.
+    pub const OPEN: Self = Self { middle: 0.0, radius: f64::INFINITY };
+
+    /// A ball; without a bound where one of the numbers is none.
+    pub fn new(middle: f64, radius: f64) -> Self {
+        let known = middle.is_finite() && !radius.is_nan();
+        Self { middle, radius: if known { radius } else { f64::INFINITY } }
+    }
+
+    pub fn number(number: f64) -> Self {
+        Self::new(number, 0.0)
+    }
+
+    /// The largest absolute value.
+    pub fn bound(self) -> f64 {
+        if self.radius.is_finite() { self.middle.abs() + self.radius } else { f64::INFINITY }
+    }
+
+    pub fn is_bounded(self) -> bool {
+        self.bound().is_finite()
+    }
+
+    pub fn excludes_zero(self) -> bool {
+        self.middle.abs() > self.radius
+    }
+
+    /// The smallest ball around the real intervals of both.
+    pub fn hull(self, other: Self) -> Self {
+        let low = (self.middle - self.radius).min(other.middle - other.radius);
+        let high = (self.middle + self.radius).max(other.middle + other.radius);
+        if low.is_finite() && high.is_finite() && self.is_bounded() && other.is_bounded() {
+            Self::new(0.5 * (low + high), 0.5 * (high - low))
+        } else {
+            Self::OPEN
+        }
+    }
+
+    pub fn scale(self, c: f64) -> Self {
+        Self::new(c * self.middle, c.abs() * self.radius)
+    }
+
+    pub fn shift(self, c: f64) -> Self {
+        Self::new(self.middle + c, self.radius)
+    }
+
+    /// 1/x.
+    pub fn recip(self) -> Self {
+        let size = self.middle.abs();
+        if size > self.radius {
+            Self::new(self.middle.recip(), self.radius / size / (size - self.radius))
+        } else {
+            Self::OPEN
+        }
+    }
+
+    /// xⁿ for a whole n ≥ 0.
+    pub fn whole_power(self, n: f64) -> Self {
+        let Self { middle, radius } = self;
+        let size = middle.abs();
+        let change = if radius <= 0.0 {
+            0.0
+        } else if radius > size {
+            (size + radius).powf(n) - size.powf(n)
+        } else {
+            // Keeps the digits of a small change.
+            size.powf(n) * (n * (radius / size).ln_1p()).exp_m1()
+        };
+        Self::new(middle.powf(n), change)
+    }
+
+    /// xᵖ.
+    pub fn power(self, p: f64) -> Self {
+        if p.fract() == 0.0 {
+            return if p < 0.0 { self.recip().whole_power(-p) } else { self.whole_power(p) };
+        }
+        let Self { middle, radius } = self;
+        let value = middle.powf(p);
+        if radius <= 0.0 {
+            return Self::number(value);
+        }
+        let x = radius / middle;
+        // At x = 1 the power branches on the rim, where a positive one is bounded all the same.
+        if !(middle > 0.0 && (x < 1.0 || x <= 1.0 && p > 0.0)) {
+            return Self::OPEN;
+        }
+        let change = (p * if p > 1.0 { x.ln_1p() } else { (-x).ln_1p() }).exp_m1();
+        Self::new(value, value * change.abs())
+    }
+
+    pub fn exp(self) -> Self {
+        let Self { middle, radius } = self;
+        Self::new(middle.exp(), -(middle + radius).exp() * (-radius).exp_m1())
+    }
+
+    pub fn sin(self) -> Self {
+        let (sin, cos) = self.middle.sin_cos();
+        swing(sin, cos, self.radius)
+    }
+
+    pub fn cos(self) -> Self {
+        let (sin, cos) = self.middle.sin_cos();
+        swing(cos, sin, self.radius)
+    }
+
+    pub fn sinh(self) -> Self {
+        swing(self.middle.sinh(), self.middle.cosh(), self.radius)
+    }
+
+    pub fn cosh(self) -> Self {
+        swing(self.middle.cosh(), self.middle.sinh(), self.radius)
+    }
+
+    /// tan x with 1 + tan²x.
+    pub fn tan(self) -> Pair {
+        let Self { middle, radius } = self;
+        let cos = middle.cos().abs();
+        let clear = cos.asin() - radius;
+        let tan = if clear > 0.0 {
+            Self::new(middle.tan(), radius.sinh() / (cos * clear.sin()))
+        } else {
+            Self::OPEN
+        };
+        (tan, (tan * tan).shift(1.0))
+    }
+
+    /// tanh x with 1 − tanh²x.
+    pub fn tanh(self) -> Pair {
+        let Self { middle, radius } = self;
+        let clear = middle.abs() - radius;
+        let near = if radius < FRAC_PI_2 {
+            let sinh = clear.max(0.0).sinh();
+            radius.sinh() / middle.cosh() / sinh.hypot(radius.cos())
+        } else {
+            f64::INFINITY
+        };
+        let far = if clear > 0.0 { 4.0 / (2.0 * clear).exp_m1() } else { f64::INFINITY };
+        // The smaller; what is not a number is an overflow of the first.
+        let change = near.min(far);
+        let tanh = middle.tanh();
+        let slope = middle.cosh().powi(-2);
+        (Self::new(tanh, change), Self::new(slope, change * (2.0 * tanh.abs() + change)))
+    }
+
+    /// ln x with 1/x.
+    pub fn ln(self) -> Pair {
+        let Self { middle, radius } = self;
+        let ln =
+            if middle > radius { Self::new(middle.ln(), -(-radius / middle).ln_1p()) } else { Self::OPEN };
+        (ln, if middle > 0.0 { self.recip() } else { Self::OPEN })
+    }
+
+    /// arctan x with 1/((x − i)(x + i)).
+    pub fn atan(self) -> Pair {
+        let distance = self.middle.hypot(1.0);
+        if distance <= self.radius {
+            return (Self::OPEN, Self::OPEN);
+        }
+        // 1/(x − i) and 1/(x + i) change as 1/x does at this distance from its pole.
+        let change = self.radius / distance / (distance - self.radius);
+        let slope = Self::new(distance.powi(-2), change * (2.0 / distance + change));
+        (self.along(self.middle.atan(), slope), slope)
+    }
+
+    /// arcsin x (`sign` 1) or arccos x (`sign` −1) from its value at the middle, with ±1/√((1 − x)(1 + x)).
+    pub fn arc_sine(self, value: f64, sign: f64) -> Pair {
+        let factor = |sign: f64| self.scale(sign).shift(1.0).power(-0.5);
+        let slope = (factor(-1.0) * factor(1.0)).scale(sign);
+        (self.along(value, slope), slope)
+    }
+
+    /// A function of this value at the middle, which changes by its `slope` at most.
+    fn along(self, value: f64, slope: Self) -> Self {
+        if self.radius <= 0.0 { Self::number(value) } else { Self::new(value, self.radius * slope.bound()) }
+    }
+}
+
+impl Add for Ball {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.middle + other.middle, self.radius + other.radius)
+    }
+}
+
+impl Sub for Ball {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Neg for Ball {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { middle: -self.middle, radius: self.radius }
+    }
+}
+
+impl Mul for Ball {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        let change = a.middle.abs() * b.radius + b.middle.abs() * a.radius + a.radius * b.radius;
+        Self::new(a.middle * b.middle, change)
+    }
+}

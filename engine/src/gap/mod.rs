@@ -1,0 +1,25 @@
+//! The gap between the undeformed bodies: r → h(r), its derivatives, and what is known of it as a function.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`function`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
+//! | [`breaks`] | where a gap is not smooth, and Gauss's rule broken there |
+//! | `lanes` | functions of many radii, four at a time |
+//! | [`shape`] | the gap shapes a person can choose |
+//! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
+//! | [`formula`] | gaps typed as formulas in r |
+//! | [`panels`] | panels on which the slope of a gap is proved to be resolved |
+
+pub mod breaks;
+#[cfg(test)]
+mod complex;
+pub mod formula;
+pub mod function;
+pub(crate) mod lanes;
+pub mod panels;
+pub mod shape;
+pub mod shapes;
+
+pub use breaks::{Axis, Breaks};
+pub use function::{Disc, Form, Gap, Jet, Piece, Wave, wave_index};
+pub use shape::Shape;

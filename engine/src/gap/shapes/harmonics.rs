@@ -1,0 +1,217 @@
+//! A paraboloid with any number of axisymmetric waves.
+//!
+//! ```text
+//! h    = r²/(2R) + Σ Aᵢ [cos φᵢ − cos(qᵢr + φᵢ)],   qᵢ = 2π/λᵢ
+//! h'   = r/R     + Σ Aᵢ qᵢ  sin(qᵢr + φᵢ)
+//! h''  = 1/R     + Σ Aᵢ qᵢ² cos(qᵢr + φᵢ)
+//! h''' =         − Σ Aᵢ qᵢ³ sin(qᵢr + φᵢ)
+//! ```
+//!
+//! so that h(0) = 0, and a term of phase 0 is the A(1 − cos qr) of the paper's eq. (23). A phase that is no multiple of π
+//! gives the axis a slope, Aq sin φ: the tip is then a blunt cone. R, A and λ are lengths, φ an angle in radians.
+//!
+//! With α = qr/2, cos φ − cos(2α + φ) = 2 sin α sin(α + φ), which keeps its digits near the axis, and everything else
+//! follows from the sine and cosine of α by the addition theorems: one call for each wave.
+//!
+//! The feature length is the shortest wavelength with an amplitude. The exact solution is
+//! [`theory::harmonics`](crate::theory::harmonics).
+
+use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
+use crate::gap::{function::Form, function::Wave};
+use std::f64::consts::TAU;
+
+/// The most waves of one gap.
+pub const MOST_WAVES: usize = 1000;
+
+/// The sine of a phase below which the wave is even: that of π k as rounded, k up to some thousand.
+const PHASE_ROUNDING: f64 = 1e-12;
+
+/// One wave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Harmonic {
+    /// A, a length.
+    pub amplitude: f64,
+    /// λ, positive, a length.
+    pub wavelength: f64,
+    /// φ, in radians.
+    pub phase: f64,
+}
+
+/// A wave as it is summed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Term {
+    amplitude: f64,
+    wavenumber: f64,
+    phase_sin: f64,
+    phase_cos: f64,
+}
+
+/// h = r²/(2R) + Σ Aᵢ [cos φᵢ − cos(qᵢr + φᵢ)].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Harmonics {
+    radius_of_curvature: f64,
+    waves: Vec<Harmonic>,
+    terms: Vec<Term>,
+}
+
+/// More waves than [`MOST_WAVES`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{0} waves are too many: at most {MOST_WAVES} are summed")]
+pub struct TooManyWaves(pub usize);
+
+impl Harmonics {
+    /// The paraboloid of radius `radius_of_curvature > 0` with `waves`.
+    ///
+    /// # Errors
+    /// [`TooManyWaves`].
+    pub fn new(radius_of_curvature: f64, waves: Vec<Harmonic>) -> Result<Self, TooManyWaves> {
+        if waves.len() > MOST_WAVES {
+            return Err(TooManyWaves(waves.len()));
+        }
+        let term = |wave: &Harmonic| {
+            let (phase_sin, phase_cos) = wave.phase.sin_cos();
+            Term { amplitude: wave.amplitude, wavenumber: TAU / wave.wavelength, phase_sin, phase_cos }
+        };
+        // A wave without amplitude costs nothing.
+        let terms = waves.iter().filter(|wave| wave.amplitude != 0.0).map(term).collect();
+        Ok(Self { radius_of_curvature, waves, terms })
+    }
+
+    /// R.
+    pub fn radius_of_curvature(&self) -> f64 {
+        self.radius_of_curvature
+    }
+
+    /// The waves as given.
+    pub fn waves(&self) -> &[Harmonic] {
+        &self.waves
+    }
+}
+
+impl Gap for Harmonics {
+    fn jet(&self, r: f64) -> Jet {
+        let radius = self.radius_of_curvature;
+        let mut jet =
+            Jet { value: r * r / (2.0 * radius), first: r / radius, second: 1.0 / radius, third: 0.0 };
+        for &Term { amplitude, wavenumber: q, phase_sin, phase_cos } in &self.terms {
+            let (sin, cos) = (0.5 * q * r).sin_cos();
+            let (shifted_sin, shifted_cos) =
+                (sin * phase_cos + cos * phase_sin, cos * phase_cos - sin * phase_sin);
+            let slope = amplitude * q * (sin * shifted_cos + cos * shifted_sin);
+            jet.value += 2.0 * amplitude * sin * shifted_sin;
+            jet.first += slope;
+            jet.second += amplitude * q * q * (cos * shifted_cos - sin * shifted_sin);
+            jet.third -= slope * q * q;
+        }
+        jet
+    }
+
+    fn feature_length(&self) -> Option<f64> {
+        let shortest = |shortest: Option<f64>, wave: &Harmonic| {
+            Some(shortest.map_or(wave.wavelength, |other| other.min(wave.wavelength)))
+        };
+        self.waves.iter().filter(|wave| wave.amplitude != 0.0).fold(None, shortest)
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        // The sine of a multiple of π as rounded.
+        let slope = |term: &Term| term.phase_sin.abs() > PHASE_ROUNDING;
+        let axis = if self.terms.iter().any(slope) { Axis::Odd } else { Axis::Even };
+        Breaks { axis, ..Breaks::default() }
+    }
+
+    fn form(&self) -> Form {
+        let wave = |term: &Term| Wave {
+            amplitude: term.amplitude,
+            wavenumber: term.wavenumber,
+            phase: [term.phase_sin, term.phase_cos],
+        };
+        let waves = self.terms.iter().map(wave).collect();
+        Form::Waves { curvature: 1.0 / self.radius_of_curvature, waves }
+    }
+
+    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+        let wave = |&Term { amplitude, wavenumber: q, phase_sin, phase_cos }: &Term| {
+            let (sin, cos) = (q * centre).sin_cos();
+            let (shifted_sin, shifted_cos) =
+                (sin * phase_cos + cos * phase_sin, cos * phase_cos - sin * phase_sin);
+            (amplitude * q).abs() * sine_change(shifted_sin, shifted_cos, q * radius)
+        };
+        let change = radius / self.radius_of_curvature + self.terms.iter().map(wave).sum::<f64>();
+        Some(self.jet(centre).first.abs() + change)
+    }
+
+    fn reference_length(&self) -> f64 {
+        self.radius_of_curvature
+    }
+}
+
+/// How far the sine can be from its value on a complex disc of this radius w, by its sine and cosine at the centre x:
+/// sin (x + w) − sin x = sin x (cos w − 1) + cos x sin w.
+pub fn sine_change(sin: f64, cos: f64, radius: f64) -> f64 {
+    let half = (0.5 * radius).sinh();
+    let change = 2.0 * sin.abs() * half * half + cos.abs() * radius.sinh();
+    // Zero times an overflow.
+    if change.is_nan() { f64::INFINITY } else { change }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::examples::check_derivatives;
+    use super::*;
+    use crate::gap::Shape;
+
+    fn wave(amplitude: f64, wavelength: f64, phase: f64) -> Harmonic {
+        Harmonic { amplitude, wavelength, phase }
+    }
+
+    #[test]
+    fn derivatives_agree_with_central_differences() {
+        let waves = vec![wave(0.003, 0.07, 0.0), wave(-0.001, 0.2, 1.1), wave(0.02, 1.3, -2.0)];
+        let gap = Harmonics::new(0.8, waves).unwrap();
+        for i in 1..40 {
+            check_derivatives(&gap, 0.013 * f64::from(i), 0.07);
+        }
+    }
+
+    #[test]
+    fn one_wave_of_phase_zero_is_the_wavy_sphere() {
+        let gap = Harmonics::new(0.8, vec![wave(0.003, 0.07, 0.0)]).unwrap();
+        let paper = Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 };
+        for i in 0..50 {
+            let r = 0.011 * f64::from(i);
+            let (a, b) = (gap.jet(r), paper.jet(r));
+            let q = TAU / 0.07;
+            for (a, b, size) in [
+                (a.value, b.value, 0.2),
+                (a.first, b.first, 1.0),
+                (a.second, b.second, 0.003 * q * q),
+                (a.third, b.third, 0.003 * q * q * q),
+            ] {
+                assert!((a - b).abs() <= 1e-14 * size, "{r}: {a} {b}");
+            }
+        }
+        assert_eq!((gap.feature_length(), gap.reference_length()), (Some(0.07), 0.8));
+    }
+
+    #[test]
+    fn phases_keep_the_axis_and_its_digits() {
+        let gap = Harmonics::new(1.0, vec![wave(0.01, 0.1, 0.7)]).unwrap();
+        let q = TAU / 0.1;
+        assert!(gap.jet(0.0).value.abs() < f64::MIN_POSITIVE);
+        let r = 1e-12;
+        let slope = 0.01 * q * 0.7_f64.sin();
+        assert!((gap.jet(r).value / (slope * r) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn only_waves_with_an_amplitude_count() {
+        let none = Harmonics::new(2.0, vec![wave(0.0, 0.01, 0.3)]).unwrap();
+        assert_eq!(none.feature_length(), None);
+        assert_eq!(none.jet(0.3), Shape::Sphere { radius_of_curvature: 2.0 }.jet(0.3));
+        let some =
+            Harmonics::new(2.0, vec![wave(0.0, 0.01, 0.0), wave(1e-3, 0.3, 0.0), wave(-1e-3, 0.2, 0.0)]);
+        assert_eq!(some.unwrap().feature_length(), Some(0.2));
+        assert_eq!(Harmonics::new(1.0, vec![wave(0.0, 1.0, 0.0); 1001]), Err(TooManyWaves(1001)));
+    }
+}

@@ -1,0 +1,150 @@
+//! The power law, from the cone to the flat punch with a rounded edge.
+//!
+//! ```text
+//! h = c rⁿ,   h' = n c rⁿ⁻¹,   h'' = n (n−1) c rⁿ⁻²,   h''' = n (n−1) (n−2) c rⁿ⁻³
+//! ```
+//!
+//! n ≥ 1 is a real number; whole ones are multiplied out, so that the derivatives that vanish are zero. c is a
+//! length to the power 1 − n; for the cone, n = 1, it is the slope, the cotangent of the half apex angle. On the axis
+//! h'' is infinite for 1 < n < 2 and h''' for 2 < n < 3: no rule of this program has a node there that counts, since
+//! they enter multiplied by powers of r; the jet gives what is multiplied, zero.
+//!
+//! The length by which the problem is reduced is the radius where the gap is half the radius, (2c)^(−1/(n−1)), which is
+//! R for the paraboloid n = 2, c = 1/(2R). A cone has no length of its own and the formula runs away towards it, so below
+//! n = [`NEARLY_A_CONE`] it is the unit of the user.
+//!
+//! The exact solution is [`theory::power_law`](crate::theory::power_law). L. A. Galin, *Contact Problems in the Theory
+//! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
+
+use crate::gap::{Axis, Breaks, Disc, Form, Gap, Jet};
+use std::ops::RangeInclusive;
+
+/// The allowed exponents: below 1 the tip is a cusp without a disc of contact, above 100 it is a flat punch.
+pub const EXPONENT_RANGE: RangeInclusive<f64> = 1.0..=100.0;
+
+/// Exponents below this are reduced like the cone: (2c)^(−1/(n−1)) may be decades away from every contact.
+pub const NEARLY_A_CONE: f64 = 1.5;
+
+/// h = c rⁿ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerLaw {
+    /// c, positive, a length to the power 1 − n.
+    pub factor: f64,
+    /// n, in [`EXPONENT_RANGE`].
+    pub exponent: f64,
+}
+
+impl PowerLaw {
+    /// Where a cone is not smooth: at its tip.
+    pub const CONE_BREAKS: Breaks<'static> = Breaks { knots: &[], axis: Axis::Odd, cubic: false };
+
+    /// The cone h = c r of slope `slope`, the cotangent of its half apex angle.
+    #[must_use]
+    pub fn cone(slope: f64) -> Self {
+        Self { factor: slope, exponent: 1.0 }
+    }
+
+    /// Whether the gap is a cone.
+    pub fn is_cone(&self) -> bool {
+        self.exponent <= 1.0
+    }
+
+    /// rᵐ, with the singular powers of the axis left out.
+    fn power(&self, r: f64, lowered: u8) -> f64 {
+        let m = self.exponent - f64::from(lowered);
+        if m < 0.0 && r <= 0.0 {
+            return 0.0;
+        }
+        // Whole powers by multiplication: exact where the product is.
+        #[expect(clippy::cast_possible_truncation, reason = "whole and at most 100")]
+        if m.fract() == 0.0 { r.powi(m as i32) } else { r.powf(m) }
+    }
+}
+
+impl Gap for PowerLaw {
+    fn jet(&self, r: f64) -> Jet {
+        let (n, c) = (self.exponent, self.factor);
+        // A factor that is zero keeps its power out: the cone's h'' is 0 on the axis too.
+        let term = |factor: f64, lowered: u8| {
+            if factor == 0.0 { 0.0 } else { c * factor * self.power(r, lowered) }
+        };
+        Jet {
+            value: term(1.0, 0),
+            first: term(n, 1),
+            second: term(n * (n - 1.0), 2),
+            third: term(n * (n - 1.0) * (n - 2.0), 3),
+        }
+    }
+
+    fn feature_length(&self) -> Option<f64> {
+        None
+    }
+
+    fn breaks(&self) -> Breaks<'_> {
+        let axis = match self.exponent {
+            n if n.fract() != 0.0 => Axis::Broken,
+            n if n % 2.0 == 0.0 => Axis::Even,
+            _ => Axis::Odd,
+        };
+        Breaks { axis, ..Breaks::default() }
+    }
+
+    /// |zⁿ⁻¹| = |z|ⁿ⁻¹; a broken power has no bound around the axis, where it branches.
+    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+        let n = self.exponent;
+        if n.fract() != 0.0 && centre <= radius {
+            return Some(f64::INFINITY);
+        }
+        Some((n * self.factor).abs() * (centre.abs() + radius).powf(n - 1.0))
+    }
+
+    fn form(&self) -> Form {
+        Form::Power { factor: self.factor, exponent: self.exponent }
+    }
+
+    fn reference_length(&self) -> f64 {
+        if self.exponent < NEARLY_A_CONE {
+            1.0
+        } else {
+            (2.0 * self.factor).powf(-1.0 / (self.exponent - 1.0))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::examples::check_derivatives;
+    use super::*;
+    use crate::gap::Shape;
+
+    #[test]
+    fn derivatives_agree_with_central_differences() {
+        for exponent in [1.0, 1.3, 1.5, 2.0, 2.5, 3.0, 4.0, 7.0, 19.0] {
+            for r in [0.02, 0.3, 1.0, 4.0] {
+                check_derivatives(&PowerLaw { factor: 0.4, exponent }, r, r / exponent);
+            }
+        }
+    }
+
+    #[test]
+    fn the_paraboloid_is_the_sphere_of_the_paper() {
+        let (law, sphere) =
+            (PowerLaw { factor: 0.25, exponent: 2.0 }, Shape::Sphere { radius_of_curvature: 2.0 });
+        assert!((law.reference_length() - sphere.reference_length()).abs() < 1e-15);
+        for r in [0.0, 0.3, 1.7] {
+            assert_eq!(law.jet(r), sphere.jet(r));
+        }
+    }
+
+    #[test]
+    fn the_axis_is_finite() {
+        for exponent in [1.0, 1.2, 2.0, 2.3, 3.0, 5.0] {
+            let jet = PowerLaw { factor: 3.0, exponent }.jet(0.0);
+            assert!([jet.value, jet.first, jet.second, jet.third].iter().all(|x| x.is_finite()), "{jet:?}");
+        }
+        let cone = PowerLaw::cone(0.3);
+        assert_eq!(cone.jet(0.0), Jet { first: 0.3, ..Jet::default() });
+        assert!(cone.is_cone() && !PowerLaw { factor: 0.3, exponent: 1.1 }.is_cone());
+        assert!((cone.reference_length() - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,110 @@
+//! Adhesive contact of two elastic bodies, from the text of a problem to a report: equilibrium curves of the force P, the
+//! approach δ and the contact radius s, their limit points, the jumps at them and what each dissipates.
+//!
+//! Two elastic half-spaces with the effective modulus E* are a gap h(r) apart before they touch. Pressed to the approach δ
+//! they stick on a disc of radius s, and the state is in equilibrium where the potential is stationary in s:
+//!
+//! ```text
+//! U(δ, s) = E* ∫₀ˢ (δ − g(a))² da − π s² γ,     g(a) = a ∫₀^{π/2} h'(a sin θ) dθ,     ∂U/∂s = 0
+//! ```
+//!
+//! with γ the work of adhesion. On a wavy gap the curve of such states has folds, and a pulled contact jumps across them.
+//! The method is the variational principle of J. J. Kalker (1977) with the ring elements of its source paper, or exact by
+//! the transform g of I. N. Sneddon (1965), doi:10.1016/0020-7225(65)90019-4, for any gap.
+//!
+//! # A first computation
+//!
+//! A wavy sphere pulled off at given approach: its edge jumps seven times from wave to wave before it lets go.
+//!
+//! ```
+//! use pulloff_engine::{Material, Preset, Shape, Start, UnloadReport};
+//!
+//! let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
+//! let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.025 / std::f64::consts::TAU, range_of_action: None };
+//! let preset = Preset::new(material, gap, Start::ContactRadius(0.5));
+//!
+//! let unloading = UnloadReport::compute(&preset)?;
+//! assert_eq!(unloading.events.len(), 8);
+//! let smooth = 1.5 * std::f64::consts::PI * material.work_of_adhesion;
+//! assert!((unloading.min_force / smooth + 1.48).abs() < 0.01);
+//! # Ok::<(), pulloff_engine::CaseError>(())
+//! ```
+//!
+//! # What is here
+//!
+//! | to | take |
+//! |---|---|
+//! | state a problem | [`Preset`] (in code, or its text by [`read`](fn@read), with files by [`read_in`]), [`Shape`], [`Material`], [`Control`], [`Start`] |
+//! | make it ready | [`Case`]: reduced, its basis built, its start found |
+//! | follow the curve | [`Case::curve`], [`Curve`], [`Case::trace`] |
+//! | unload | [`Case::unload`], [`Unloading`], [`Event`] |
+//! | look inside one state | [`Profile`], [`Landscape`], [`Admissibility`] |
+//! | have it as JSON, CSV or a table | [`TraceReport`], [`UnloadReport`], [`VerifyReport`], [`json`] |
+//!
+//! Nothing here reads a disk, a clock or the environment: texts of presets and rows of measured profiles come from the
+//! caller ([`Files`]).
+//!
+//! # How it is built
+//!
+//! The rooms below stand on each other from the first to the last: none knows of a later one. They are reached by the
+//! program `pulloff` and may change at any time; what is listed above is what stays.
+//!
+//! | room | what lives there |
+//! |---|---|
+//! | `text`, `units`, `expression` | quoting foreign text, dimensions and units, the one grammar of formulas and values |
+//! | `gap` | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
+//! | `problem` | E*, γ, the gap, the loading device, the start; reduced units, dimensionless groups |
+//! | `continuation` | arc-length continuation and the location of limit points for any system |
+//! | `disc` | one disc of contact, exactly: the table of g and what is read from it |
+//! | `ritz` | the paper's method: ring elements, Kalker's functional, Newton-Raphson |
+//! | `theory` | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
+//! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
+//! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
+//! | `report`, `verify` | the one serializable form of results; our numbers against theory |
+
+#[doc(hidden)]
+pub mod case;
+#[doc(hidden)]
+pub mod continuation;
+#[doc(hidden)]
+pub mod disc;
+#[doc(hidden)]
+pub mod expression;
+#[cfg(test)]
+mod fixtures;
+#[doc(hidden)]
+pub mod gap;
+#[doc(hidden)]
+pub mod preset;
+#[doc(hidden)]
+pub mod problem;
+#[doc(hidden)]
+pub mod quasistatic;
+#[doc(hidden)]
+pub mod report;
+#[doc(hidden)]
+pub mod ritz;
+#[doc(hidden)]
+pub mod text;
+#[doc(hidden)]
+pub mod theory;
+#[doc(hidden)]
+pub mod units;
+#[doc(hidden)]
+pub mod verify;
+
+pub use case::{Case, CaseError};
+pub use gap::formula::{Formula, FormulaParameter, TypedGap};
+pub use gap::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Rows, Smoothing};
+pub use gap::{Gap, Jet, Shape};
+pub use preset::{
+    BasisSpec, Files, Invalid, Material, Mistake, PathSpec, Preset, ReadError, read, read_in, read_with,
+};
+pub use problem::{Control, Groups, Problem, Start, Units};
+pub use quasistatic::{
+    Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, PathStop, Profile,
+    Stability, State, Turn, Unloading,
+};
+pub use report::{SCHEMA, TraceReport, UnloadReport, VerifyReport, json};
+pub use ritz::Grading;
+pub use units::UnitSystem;

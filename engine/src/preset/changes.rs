@@ -1,0 +1,128 @@
+//! What turns one preset into another: assignments as a person would type them.
+
+use super::groups;
+use super::model::Preset;
+use super::schema::{CHOOSERS, Key, Kind, Parameter, SYSTEMS};
+use super::value::Value;
+use crate::units::UnitSystem;
+
+/// Keys that come first, since they decide which others there are.
+const FIRST: [&str; 5] = [CHOOSERS[2], CHOOSERS[0], CHOOSERS[1], "gap.formula", "gap.file"];
+
+/// The assignments that make `to` of `from`, in an order in which each is valid; `None` where there are none, as for an
+/// optional key that would have to be forgotten. Numbers keep every digit.
+#[must_use]
+pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
+    let (mut now, mut made) = (from.clone(), Vec::new());
+    if to.units == UnitSystem::Reduced && now.units != to.units {
+        now.assign(CHOOSERS[2], SYSTEMS[0]).ok()?;
+        made.push((CHOOSERS[2].into(), SYSTEMS[0].to_owned()));
+    }
+    for row in FIRST.iter().filter_map(|key| to.row(key)) {
+        change(&mut now, to, &row, &mut made);
+    }
+    // A value may be valid only after another has changed.
+    while now != *to {
+        let left: Vec<_> =
+            to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none()).collect();
+        let changed = left.iter().filter(|row| change(&mut now, to, row, &mut made)).count();
+        if changed == 0 {
+            return None;
+        }
+    }
+    Some(made)
+}
+
+/// Every value of `to` that `from` has otherwise, to be laid over it as a whole as `--set` does; whether that makes `to`
+/// of it is for the caller to see.
+#[must_use]
+pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
+    let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
+    rows.filter_map(|row| {
+        let value = to.get(&row.key).filter(|value| from.get(&row.key).as_ref() != Some(value))?;
+        Some((row.key.clone(), typed(&row, &to.units, &value)))
+    })
+    .collect()
+}
+
+/// Gives `now` the value that `to` has; false where it has it already or cannot have it yet.
+fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, String)>) -> bool {
+    let Some(value) = to.get(&row.key) else { return false };
+    if now.get(&row.key).as_ref() == Some(&value) {
+        return false;
+    }
+    let text = typed(row, &to.units, &value);
+    let mut changed = now.clone();
+    // The rows of a file are at hand, and need not be read for this.
+    let done = match row.kind {
+        Kind::File => changed.set(&row.key, value.clone()),
+        _ => changed.assign(&row.key, &text),
+    };
+    // A bare number may count in a unit that `now` still has and `to` has not.
+    let done = done.is_ok() && changed.get(&row.key).as_ref() == Some(&value);
+    if done {
+        *now = changed;
+        made.push((row.key.clone(), text));
+    }
+    done
+}
+
+/// A value as a person types it, quoted where it would be read as something else.
+fn typed(row: &Parameter, units: &UnitSystem, value: &Value) -> String {
+    if let Value::Number(x) = value
+        && let Some(exact) = row.exact_in_si(units, *x)
+    {
+        return exact;
+    }
+    let plain = value.to_string();
+    match row.parse(&plain) {
+        Ok(back) if back == *value => plain,
+        _ if matches!(value, Value::Text(_)) => value.to_toml(),
+        _ => plain,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::preset;
+    use crate::preset::examples::any_preset;
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    #[test]
+    fn nothing_changed_is_nothing_and_a_turned_value_is_one_assignment() {
+        let from = preset("wavy-sphere");
+        assert_eq!(changes(&from, &from), Some(Vec::new()));
+        let mut to = from.clone();
+        to.assign("gap.amplitude", "0.1").unwrap();
+        to.assign("title", "\"12\"").unwrap();
+        let expected = [("title", "12"), ("gap.amplitude", "0.1")];
+        let expected = expected.map(|(key, text)| (Key::from(key), text.to_owned()));
+        assert_eq!(changes(&from, &to), Some(expected.to_vec()));
+        // An end that follows from the start cannot be typed.
+        let mut from = from;
+        from.reset("path.end_contact_radius").unwrap();
+        to.assign("path.end_contact_radius", "0.01").unwrap();
+        assert!(changes(&from, &to).is_some() && changes(&to, &from).is_none());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 200, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn the_assignments_lead_from_one_preset_to_the_other(from in any_preset(), to in any_preset()) {
+            if let Some(all) = changes(&from, &to) {
+                let mut now = from.clone();
+                for (key, text) in all {
+                    now.assign(&key, &text).unwrap();
+                }
+                prop_assert_eq!(&now, &to);
+            }
+            // To itself there is always a way, and it is short.
+            prop_assert_eq!(changes(&to, &to), Some(Vec::new()));
+        }
+    }
+}

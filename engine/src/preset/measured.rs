@@ -1,0 +1,109 @@
+//! The file of a measured profile → rows of a gap.
+//!
+//! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
+//! folder of the preset. A header names a unit of length for both columns or for none; gaps are converted to that of the
+//! radii, so a gap in nm over µm is what it says. In an SI preset rows with a unit become metres. In reduced units a unit is
+//! refused, as with any other value; only data that come with the program are then in the unit of their radii, since the
+//! shape is chosen before its units are.
+
+use super::invalid::Invalid;
+use super::profile::Columns;
+use super::schema::{Kind, Parameter};
+use super::value::Value;
+use crate::gap::shapes::Rows;
+use crate::text::{quote, sanitize, show_path};
+use crate::units::UnitSystem;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The beginning of a name of shipped data.
+pub const SHIPPED_DATA: &str = "shipped:";
+/// The longest message of what is wrong with a file.
+const LONGEST_CAUSE: usize = 1000;
+
+/// Where the rows of profiles come from: the engine reads no disk.
+///
+/// The function is given the folder of the preset, where it has one, and the name of the file, and answers with the rows or
+/// with why there are none, in words that are safe to show; [`rows`] makes them of the columns of a text.
+#[derive(Debug, Clone, Copy)]
+pub struct Files(pub fn(folder: Option<&Path>, name: &str) -> Result<Rows, String>);
+
+impl Files {
+    /// No files: a preset that names one is refused.
+    pub const NONE: Self = Self(|_, name| Err(format!("\"{}\": there are no files here", quote(name))));
+}
+
+impl Default for Files {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl PartialEq for Files {
+    /// A preset is the same wherever its rows come from.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// An error in one line that is safe to show.
+pub fn words(error: &impl ToString) -> String {
+    sanitize(&error.to_string().replace('\n', "; "), LONGEST_CAUSE)
+}
+
+/// The rows that `columns` are, of the file `name` relative to `folder`.
+///
+/// # Errors
+/// A unit that is none, or one alone, in words.
+pub fn rows(folder: Option<&Path>, name: &str, columns: Columns) -> Result<Rows, String> {
+    let named = Rows { name: name.to_owned(), folder: folder.map(Path::to_path_buf), ..Rows::default() };
+    let shown = shown(&named);
+    let notes = columns.notes.iter().map(|note| format!("{shown}: {note}")).collect();
+    let header = columns.header;
+    let (columns, unit) = columns.in_one_unit().map_err(|error| words(&format!("{shown}: {error}")))?;
+    Ok(Rows {
+        radii: columns.radii,
+        gaps: columns.gaps,
+        header: header.filter(|_| !name.starts_with(SHIPPED_DATA)),
+        unit,
+        notes,
+        ..named
+    })
+}
+
+/// The file of `rows` as messages name it.
+pub(super) fn shown(rows: &Rows) -> String {
+    if rows.name.starts_with(SHIPPED_DATA) { quote(&rows.name) } else { show_path(&rows.path()) }
+}
+
+/// Whether a preset in `units` takes `rows` as their header has them.
+///
+/// # Errors
+/// In reduced units their unit, in words.
+pub(super) fn in_these_units(rows: &Rows, units: &UnitSystem) -> Result<(), String> {
+    match (units, rows.header, &rows.unit) {
+        (UnitSystem::Reduced, Some(line), Some(unit)) => Err(format!(
+            "{}: line {line}: the header names a unit, {}, and the problem is in reduced units, where columns are pure \
+             numbers: write r, h without, or set units = \"SI\"",
+            shown(rows),
+            unit.ascii()
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A value as it is kept: the name of a file stands for its rows, which `files` has.
+pub(super) fn located(
+    files: Files,
+    row: &Parameter,
+    value: Value,
+    folder: Option<&Path>,
+) -> Result<Value, Invalid> {
+    match value {
+        Value::Text(name) if row.kind == Kind::File => {
+            let cause = |cause| Invalid::Gap { key: row.key.clone(), cause };
+            Ok(Value::Profile(Arc::new(files.0(folder, &name).map_err(cause)?)))
+        }
+        value => Ok(value),
+    }
+}

@@ -1,0 +1,59 @@
+//! Presets: one problem, its basis and its path, as a TOML file a person can read and edit.
+//!
+//! Everything that knows the keys (reader, writer, `--set`, the screen's knobs, the manual's key table) reads
+//! the one table in [`schema`].
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`schema`] | the table of parameters: one row per dotted key |
+//! | [`value`] | one parameter's value, checked against its row |
+//! | [`invalid`] | what can be wrong with a value or a key |
+//! | [`model`] | the preset itself, read and changed by dotted key |
+//! | `values` | values by dotted key, and the words of choices among them |
+//! | `given` | values read one by one, with what is wrong with them |
+//! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
+//! | `resolve` | the units of a preset, and its texts with units as numbers in them |
+//! | `shape` | the values of `[gap]` → the gap's shape, and back |
+//! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
+//! | [`write`](mod@write) | preset → TOML text |
+//! | [`edit`] | a preset laid over the text it was read from, comments and order kept |
+//! | [`changes`] | what turns one preset into another, as assignments |
+//! | [`manual`] | the key table as text for the manual |
+//! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
+//! | [`rows`] | any row by its dotted key |
+//! | `former` | keys and words of before, and what to write for them |
+//! | [`groups`] | the dimensionless groups as values to set |
+//! | [`measured`] | the columns of a measured profile → rows of a gap; where they come from |
+//! | [`profile`] | reading a measured profile: two columns, each fault with its line |
+
+pub mod build;
+pub mod changes;
+pub mod edit;
+#[cfg(test)]
+mod examples;
+pub mod family;
+pub mod former;
+mod given;
+pub mod groups;
+pub mod invalid;
+pub mod manual;
+pub mod measured;
+pub mod model;
+pub mod profile;
+pub mod read;
+mod resolve;
+pub mod rows;
+pub mod schema;
+pub mod shape;
+pub mod value;
+pub mod values;
+pub mod write;
+
+pub use invalid::Invalid;
+pub use measured::Files;
+pub use model::{BasisSpec, Material, PathSpec, Preset};
+pub use read::{Mistake, Origin, ReadError, read, read_in, read_with};
+pub use rows::parameter;
+pub use schema::{Key, PARAMETERS, Parameter, Row};
+pub use value::Value;
+pub use write::write;

@@ -1,0 +1,170 @@
+//! The preset: a problem, the basis it is solved in, and the path to follow.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `keys` | the preset read by dotted key: its values and its rows |
+//! | `change` | the preset changed by dotted key |
+
+mod change;
+mod keys;
+
+pub(super) use change::put;
+pub use keys::is_of_units;
+pub(super) use keys::unknown_key;
+
+use super::measured::{self, Files};
+use super::schema::{END_OVER_START, START_KEYS};
+use crate::gap::Shape;
+use crate::gap::shapes::Measured;
+use crate::problem::{Control, Problem, Reduced, Start};
+use crate::ritz::Grading;
+use crate::units::UnitSystem;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a preset file says, complete and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preset {
+    /// One line that says what the preset shows.
+    pub title: String,
+    /// The units in which it is typed and shown; every number in it is in SI or in reduced units.
+    pub units: UnitSystem,
+    /// The bodies.
+    pub material: Material,
+    /// The gap between the undeformed bodies.
+    pub gap: Shape,
+    /// How the contact pressure is sought.
+    pub basis: BasisSpec,
+    /// Where to start, what to control, where to end.
+    pub path: PathSpec,
+    /// Where the rows of another profile would come from.
+    pub files: Files,
+}
+
+/// The bodies and their adhesion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// E*, a stress.
+    pub effective_modulus: f64,
+    /// γ, the work of adhesion, a stress times a length.
+    pub work_of_adhesion: f64,
+    /// z₀, the range of action of the adhesion, a length; `None` leaves it to [`Preset::range_of_action`].
+    pub range_of_action: Option<f64>,
+}
+
+/// z₀ in metres where an SI preset does not give it: a few atoms.
+const RANGE_OF_ACTION: f64 = 0.3e-9;
+
+/// The basis of the contact pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BasisSpec {
+    /// Ring elements of constant pressure.
+    Rings {
+        /// Their number N, from 4 to 2000; with edge grading to 400.
+        rings: usize,
+        /// How they are spaced.
+        grading: Grading,
+    },
+    /// No elements: exact for any gap, to rounding.
+    Exact,
+}
+
+/// The path through the equilibrium states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathSpec {
+    /// What the loading device prescribes.
+    pub control: Control,
+    /// The state at which the path starts.
+    pub start: Start,
+    /// The contact radius at which the path ends; `None` leaves it to follow the start
+    /// (see [`Preset::end_contact_radius`]).
+    pub end_contact_radius: Option<f64>,
+}
+
+/// The key that says a start.
+#[must_use]
+pub fn start_key(start: Start) -> &'static str {
+    match start {
+        Start::ContactRadius(_) => START_KEYS[0],
+        Start::Approach(_) => START_KEYS[1],
+        Start::Force(_) => START_KEYS[2],
+    }
+}
+
+impl Preset {
+    /// A problem made in code, in any consistent units: the exact basis, displacement control, everything else as where
+    /// a file says nothing. [`Preset::check`] says what is wrong with its values.
+    #[must_use]
+    pub fn new(material: Material, gap: Shape, start: Start) -> Self {
+        Self {
+            title: String::new(),
+            units: UnitSystem::Reduced,
+            material,
+            gap,
+            basis: BasisSpec::Exact,
+            path: PathSpec { start, control: Control::Displacement, end_contact_radius: None },
+            files: Files::NONE,
+        }
+    }
+
+    /// The contact problem of this preset.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        Problem {
+            effective_modulus: self.material.effective_modulus,
+            work_of_adhesion: self.material.work_of_adhesion,
+            shape: self.gap.clone(),
+        }
+    }
+
+    /// The same in reduced units. A gap without a length of its own is reduced by the contact radius at the start, where
+    /// that is given.
+    #[must_use]
+    pub fn reduced(&self) -> Reduced {
+        let problem = self.problem();
+        match (self.gap.length(), self.path.start) {
+            (None, Start::ContactRadius(start)) => problem.reduced_by(start),
+            _ => problem.reduced(),
+        }
+    }
+
+    /// z₀, the range of action of the adhesion: the one the preset says, 0.3 nm in SI, none in reduced units.
+    #[must_use]
+    pub fn range_of_action(&self) -> Option<f64> {
+        let usual = matches!(self.units, UnitSystem::Si(_)).then_some(RANGE_OF_ACTION);
+        self.material.range_of_action.or(usual)
+    }
+
+    /// The contact radius at which the path ends, given that it starts at `start_contact_radius`:
+    /// the one the preset says, or a fixed fraction of the start.
+    #[must_use]
+    pub fn end_contact_radius(&self, start_contact_radius: f64) -> f64 {
+        self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
+    }
+
+    /// The same preset for a file in `folder`: the name of a profile's file becomes relative to it where the file lies in
+    /// it or below, else absolute.
+    #[must_use]
+    pub fn placed_in(&self, folder: &Path) -> Self {
+        let mut preset = self.clone();
+        if let Shape::Profile(measured) = &self.gap {
+            let rows = measured.rows();
+            let own = rows.folder.as_deref().unwrap_or(Path::new("."));
+            let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();
+            let stays = rows.name.starts_with(measured::SHIPPED_DATA)
+                || (is_same && Path::new(&rows.name).is_relative());
+            if let (false, Ok(path), Ok(folder)) =
+                (stays, std::path::absolute(own.join(&rows.name)), std::path::absolute(folder))
+                && let Some(name) = path.strip_prefix(folder).unwrap_or(&path).to_str()
+                && !name.starts_with(measured::SHIPPED_DATA)
+            {
+                let moved = Measured::clone(measured).named(name.to_owned());
+                preset.gap = Shape::Profile(Arc::new(moved));
+            }
+        }
+        preset
+    }
+}
+
+#[cfg(test)]
+mod tests;

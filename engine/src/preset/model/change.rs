@@ -1,0 +1,220 @@
+//! The preset changed by dotted key: a change is refused as a whole or made as a whole.
+
+use super::Preset;
+use crate::gap::Shape;
+use crate::preset::build::build;
+use crate::preset::family::{self, parameter_key};
+use crate::preset::groups;
+use crate::preset::invalid::Invalid;
+use crate::preset::measured;
+use crate::preset::resolve::{count_in_own_units, in_units};
+use crate::preset::rows::parameter;
+use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, SYSTEMS};
+use crate::preset::shape;
+use crate::preset::value::Value;
+use crate::preset::values::Values;
+use crate::problem::Control;
+use crate::text::quote;
+use crate::units::{Quantity, UnitSystem, parse_quantity};
+
+impl Preset {
+    /// Gives a key another value.
+    ///
+    /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
+    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
+    /// parameters it has in common with the old one, its others begin with the value of an old one of a like name, or with 1; a `basis.kind` drops the keys of the old
+    /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. The rows of a
+    /// `gap.file` come from the preset's files, relative to the folder of the one before.
+    ///
+    /// # Errors
+    /// The key is unknown, or the preset would no longer be valid; it is left as it was.
+    pub fn set(&mut self, key: &str, value: Value) -> Result<(), Invalid> {
+        self.set_all([(key, value)])
+    }
+
+    /// Gives several keys other values at once: the whole is checked when all are laid down, choices first, and groups
+    /// are made last in their order, as assignments on the command line are.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn set_all<'a>(
+        &mut self,
+        changes: impl IntoIterator<Item = (&'a str, Value)>,
+    ) -> Result<(), Invalid> {
+        let (mut plain, mut grouped) = (Vec::new(), Vec::new());
+        for (key, value) in changes {
+            let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+            let value = row.check(self.located(&row, value)?)?;
+            let list = if groups::row(key).is_some() { &mut grouped } else { &mut plain };
+            list.push((row, value));
+        }
+        plain.sort_by_key(|(row, _)| !CHOOSERS.contains(&&*row.key));
+        let mut changed = self.clone();
+        if !plain.is_empty() {
+            let mut values = self.keyed();
+            for (row, value) in plain {
+                self.lay(&mut values, &row, value);
+            }
+            changed = build(&values, self.files).map_err(|mut all| all.swap_remove(0))?;
+        }
+        for (row, value) in grouped {
+            changed.set_group(&row, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Lays a value over the others, with what it drops and begins.
+    fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
+        if CHOOSERS.contains(&&*row.key) {
+            values.retain(|key, _| {
+                parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
+            });
+        }
+        match &*row.key {
+            "gap.shape" => {
+                let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
+                shape::begin(values, &value.to_string(), radius, self.gap.wave());
+            }
+            // A number beside a unit, which was a remark, is one of it from now on; what is in SI has lost its unit.
+            key if key == CHOOSERS[2] && self.units == UnitSystem::Reduced => {
+                values.insert(row.key.clone(), value.clone());
+                count_in_own_units(values);
+            }
+            key if key == CHOOSERS[2] && value.to_string() != SYSTEMS[1] => {
+                values.retain(|key, _| !family::is_unit(key));
+            }
+            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
+            _ => {}
+        }
+        put(values, row, value);
+        if row.key == "gap.formula" {
+            for new in shape::fit_parameters(values, |_| false) {
+                // A name typed in part, or misspelt, does least harm with the value of the one it resembles.
+                let value = new.alike.map_or(Value::Number(1.0), |(_, value)| value);
+                values.insert(parameter_key(&new.name).into(), value);
+            }
+        }
+    }
+
+    /// A value of a key as this preset would keep it: in the range of its row, a text with a unit read in the preset's
+    /// units. What other keys say to it is not asked.
+    ///
+    /// # Errors
+    /// The key is unknown, or does not take the value.
+    pub fn resolved(&self, key: &str, value: Value) -> Result<Value, Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let Value::Typed(text) = row.check(value.clone())? else { return row.check(value) };
+        let x = if groups::row(key).is_some() {
+            pure(&row, &text)?
+        } else {
+            in_units(&self.keyed(), &self.units, &row.key, &text)?
+        };
+        row.check(if row.kind == Kind::Control { Control::Stiffness(x).into() } else { x.into() })
+    }
+
+    fn set_group(&mut self, row: &Parameter, value: Value) -> Result<(), Invalid> {
+        let x = match value {
+            Value::Number(x) => x,
+            other => pure(row, &other.to_string())?,
+        };
+        let mut changed = self.clone();
+        for (key, value) in groups::changes(self, row, x)? {
+            changed.set(&key, value)?;
+        }
+        *self = changed;
+        Ok(())
+    }
+
+    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI, that
+    /// of a formula's parameter with a unit of its own is one of that unit.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`] and [`Preset::set`].
+    pub fn assign(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let own = row.own_unit_in(&self.units).is_some();
+        let value = if own { self.typed(&row, text)? } else { row.parse(text)? };
+        self.set(key, value)
+    }
+
+    /// The value of a row as a person types it beside its unit: in SI a bare number counts in the unit shown there.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`].
+    pub fn typed(&self, row: &Parameter, text: &str) -> Result<Value, Invalid> {
+        let (Some(unit), true) =
+            (row.unit_in(&self.units), row.kind.is_number() || row.kind == Kind::Control)
+        else {
+            return row.parse(text);
+        };
+        let number = text.trim();
+        let number = if row.kind == Kind::Control {
+            number.strip_prefix("stiffness=").unwrap_or(number)
+        } else {
+            number
+        };
+        match parse_quantity(number) {
+            Ok(value) if value.unit.is_none() => row.parse(&format!("{number} {}", unit.ascii())),
+            _ => row.parse(text),
+        }
+    }
+
+    /// The number of a text for a row, as an assignment on the command line would read it, in SI or reduced units.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`]; a unit of another dimension; a word.
+    pub fn number(&self, row: &Parameter, text: &str) -> Result<f64, Invalid> {
+        match self.resolved(&row.key, row.parse(text)?)? {
+            Value::Number(x) => Ok(x),
+            _ => Err(row.wrong_type(format!("the text \"{}\"", quote(text)))),
+        }
+    }
+
+    /// Lets an optional key follow from others again, or takes its default.
+    ///
+    /// # Errors
+    /// The key is unknown or required.
+    pub fn reset(&mut self, key: &str) -> Result<(), Invalid> {
+        let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
+        let mut values = self.keyed();
+        let parent = row.table().filter(|_| row.is_part());
+        values.remove(parent.unwrap_or(&row.key));
+        if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&&*row.key)) {
+            values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(&row.key, word)));
+        }
+        *self = build(&values, self.files).map_err(|mut all| all.swap_remove(0))?;
+        Ok(())
+    }
+
+    /// A value as it is to be checked: the file of a profile is read from the folder of the one before.
+    fn located(&self, row: &Parameter, value: Value) -> Result<Value, Invalid> {
+        match &self.gap {
+            Shape::Profile(before) => {
+                measured::located(self.files, row, value, before.rows().folder.as_deref())
+            }
+            _ => Ok(value),
+        }
+    }
+}
+
+/// The number of a text for a group, which has no unit.
+fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
+    let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
+    parse_quantity(text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)
+}
+
+/// Stores a checked value; a part of a value becomes the whole.
+pub(in crate::preset) fn put(values: &mut Values, row: &Parameter, value: Value) {
+    match (&*row.key, value) {
+        ("path.control.stiffness", Value::Number(k)) => {
+            values.insert("path.control".into(), Control::Stiffness(k).into());
+        }
+        ("path.control.stiffness", Value::Typed(text)) => {
+            values.insert("path.control".into(), Value::Typed(text));
+        }
+        (_, value) => {
+            values.insert(row.key.clone(), value);
+        }
+    }
+}

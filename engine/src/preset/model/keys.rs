@@ -1,0 +1,138 @@
+//! The preset by dotted key: its values and its rows.
+
+use super::{BasisSpec, Preset, start_key};
+use crate::preset::family;
+use crate::preset::former;
+use crate::preset::groups;
+use crate::preset::invalid::Invalid;
+use crate::preset::rows::parameter;
+use crate::preset::schema::{CHOOSERS, DISPLAY, EXACT, FORMAT, PARAMETERS, Parameter, Row, SYSTEMS};
+use crate::preset::shape;
+use crate::preset::value::Value;
+use crate::preset::values::Values;
+use crate::problem::Control;
+use crate::text::closest_key;
+use crate::text::quote;
+use crate::units::UnitSystem;
+
+impl Preset {
+    /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset or is left
+    /// to follow from others.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<Value> {
+        let Self { title, units, material, gap, basis, path, files: _ } = self;
+        Some(match key {
+            "format" => FORMAT.into(),
+            "title" => title.as_str().into(),
+            // Reduced units are what a preset has when it says nothing.
+            "units" => match units {
+                UnitSystem::Reduced => return None,
+                UnitSystem::Si(_) => SYSTEMS[1].into(),
+            },
+            key if key.starts_with("display.") => {
+                let (_, quantity) = DISPLAY.iter().find(|(known, _)| *known == key)?;
+                units.unit(*quantity)?.ascii().as_str().into()
+            }
+            "material.effective_modulus" => material.effective_modulus.into(),
+            "material.work_of_adhesion" => material.work_of_adhesion.into(),
+            "material.range_of_action" => material.range_of_action?.into(),
+            key if key.starts_with("gap.") => return shape::get(gap, key),
+            "basis.kind" => match basis {
+                BasisSpec::Rings { .. } => "rings".into(),
+                BasisSpec::Exact => EXACT.into(),
+            },
+            "basis.rings" => match basis {
+                BasisSpec::Rings { rings, .. } => i64::try_from(*rings).ok()?.into(),
+                BasisSpec::Exact => return None,
+            },
+            "basis.grading" => match basis {
+                BasisSpec::Rings { grading, .. } => grading.name().into(),
+                BasisSpec::Exact => return None,
+            },
+            key if groups::row(key).is_some() => return groups::get(self, key),
+            "path.control" => path.control.into(),
+            "path.control.stiffness" => match path.control {
+                Control::Stiffness(k) => k.into(),
+                Control::Displacement | Control::Force => return None,
+            },
+            "path.end_contact_radius" => path.end_contact_radius?.into(),
+            key if key == start_key(path.start) => path.start.value().into(),
+            _ => return None,
+        })
+    }
+
+    /// The rows of this preset, in the order in which files and screens show them: those of the table, and those
+    /// that it makes itself.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
+        let (before, rest) = PARAMETERS.split_at(after);
+        let own = shape::rows(&self.gap).into_iter().map(Row::Owned);
+        before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest.iter().map(Row::Borrowed))
+    }
+
+    /// The row of a key: with the range and the quantity that this preset gives it, where it does.
+    #[must_use]
+    pub fn row(&self, key: &str) -> Option<Row> {
+        self.rows()
+            .find(|row| row.key == key)
+            .or_else(|| parameter(key))
+            .or_else(|| groups::row(key).map(Row::Borrowed))
+    }
+
+    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, and the waves
+    /// after the first [`WAVE_KNOBS`](family::WAVE_KNOBS).
+    pub fn knobs(&self) -> impl Iterator<Item = Row> {
+        self.rows().filter(|row| {
+            row.key != "format"
+                && !is_of_units(&row.key)
+                && !shape::is_range(&row.key)
+                && family::has_knob(&row.key)
+        })
+    }
+
+    /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
+    #[must_use]
+    pub fn values(&self) -> Vec<(Row, Value)> {
+        self.rows().filter_map(|row| self.get(&row.key).map(|value| (row, value))).collect()
+    }
+
+    pub(super) fn unknown_key(&self, key: &str) -> Invalid {
+        let rows: Vec<Row> = self.rows().chain(groups::GROUPS.iter().map(Row::Borrowed)).collect();
+        unknown_among(
+            key,
+            rows.iter().map(AsRef::as_ref).filter(|row| row.fits(CHOOSERS[0], self.gap.name())),
+        )
+    }
+
+    pub(in crate::preset) fn keyed(&self) -> Values {
+        self.values()
+            .into_iter()
+            .filter(|(row, _)| !row.is_part())
+            .map(|(row, v)| (row.key.clone(), v))
+            .collect()
+    }
+}
+
+/// Whether a key says units, not the problem.
+#[must_use]
+pub fn is_of_units(key: &str) -> bool {
+    key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
+}
+
+/// The error for a key without a row, in a preset whose gap has the shape `shape`, where that is known: the keys of other
+/// shapes are not offered.
+pub(in crate::preset) fn unknown_key(key: &str, shape: Option<&str>) -> Invalid {
+    unknown_among(key, PARAMETERS.iter().filter(|row| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape))))
+}
+
+fn unknown_among<'a>(key: &str, rows: impl Iterator<Item = &'a Parameter>) -> Invalid {
+    if let Some(former) = former::key(key) {
+        return former;
+    }
+    if key.starts_with("groups.") {
+        let known: Vec<&str> = groups::GROUPS.iter().map(|row| &*row.key).collect();
+        return Invalid::UnknownGroup { key: quote(key), known: known.join(", ") };
+    }
+    let meant = closest_key(key, rows.map(|row| (&*row.key, &*row.label)));
+    Invalid::UnknownKey { key: quote(key), meant: meant.map(|key| key.to_owned().into()) }
+}

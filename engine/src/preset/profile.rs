@@ -1,0 +1,511 @@
+//! Reading a measured profile: two columns of text, radius and gap, from a file nobody has looked at.
+//!
+//! ```text
+//! # any remark                     lines beginning with #, % or // are remarks, empty lines nothing
+//! r [um], h (nm)                   one header before the first row, with the units in brackets, parentheses, or
+//!                                  of length behind a slash or a space: r / um, h nm
+//! 0.0, 0.00                        cells parted by semicolons, tabs, commas or spaces: what the first row shows,
+//! 0.5, 0.13                        in this order; numbers with a decimal point
+//! ```
+//!
+//! A header with a unit for one column and none for the other is refused. Where there is no header, the last remark above
+//! the first row serves as one if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
+//! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
+//!
+//! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
+//! come in runs, and every fault must name its line.
+
+use crate::text::{is_unsafe, quote};
+use crate::units::{Quantity, Unit};
+use std::fmt;
+use std::ops::RangeInclusive;
+use thiserror::Error;
+
+/// The largest file, in bytes.
+pub const LARGEST: u64 = 64 << 20;
+/// The allowed numbers of rows: fewer are no profile, more belong in a mean before.
+pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
+/// How many faults a message lists.
+pub const FAULTS_SHOWN: usize = 3;
+/// The longest line, in bytes; two numbers need far less.
+pub const LONGEST_LINE: usize = 1024;
+/// A distance from the axis counts as one spacing up to this share: decimals round.
+const ROUNDED: f64 = 1e-6;
+/// The largest number, as in presets.
+pub const LARGEST_NUMBER: f64 = 1e30;
+
+/// A profile as read: radii ascending from the axis, each once, and their gaps, in the units of the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Columns {
+    /// r.
+    pub radii: Vec<f64>,
+    /// h.
+    pub gaps: Vec<f64>,
+    /// The units of r and h as written in the header, without their brackets.
+    pub units: [Option<String>; 2],
+    /// The line of a header with units, from 1.
+    pub header: Option<usize>,
+    /// What was put right, in words.
+    pub notes: Vec<String>,
+}
+
+/// What is wrong with one line.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Fault {
+    /// The line is far too long.
+    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
+    Long(usize),
+    /// Characters that are not for the eye.
+    #[error("holds control or invisible characters")]
+    Unprintable,
+    /// Not two cells.
+    #[error("has {0} cells, and a row has two: radius and gap")]
+    Cells(usize),
+    /// An empty cell.
+    #[error("the {0} is missing")]
+    Missing(&'static str),
+    /// Not a number.
+    #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
+    Number {
+        /// Which cell.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// Not finite, or absurdly large.
+    #[error(
+        "the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to {LARGEST_NUMBER:e}"
+    )]
+    Range {
+        /// Which cell.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// A negative radius.
+    #[error(
+        "the radius {0:?} is negative: radii count from the axis, so fold a scan over the whole diameter there first"
+    )]
+    Negative(f64),
+    /// The first row is not at the axis.
+    #[error(
+        "the smallest radius is {first:?}, and the rows behind it are at most {spacing:?} apart: measure the centre too, or \
+         shift the radii so that they count from it"
+    )]
+    Hollow {
+        /// The smallest radius.
+        first: f64,
+        /// The largest distance of the first rows.
+        spacing: f64,
+    },
+    /// A radius that an earlier line gives another gap.
+    #[error("the radius {radius:?} has another gap in line {line}")]
+    Twice {
+        /// The radius.
+        radius: f64,
+        /// The earlier line.
+        line: usize,
+    },
+}
+
+/// The faults of a file, in the order of their lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Faults {
+    /// The line of each, from 1, and what is wrong; the first [`FAULTS_SHOWN`].
+    pub shown: Vec<(usize, Fault)>,
+    /// How many there are.
+    pub total: usize,
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (line, fault)) in self.shown.iter().enumerate() {
+            write!(f, "{}line {line}: {fault}", if i > 0 { "\n" } else { "" })?;
+        }
+        match self.total - self.shown.len() {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+/// Why a text gives no profile.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TextError {
+    /// Bytes that are no text.
+    #[error("line {0}: is not UTF-8 text")]
+    NotText(usize),
+    /// Lines with faults.
+    #[error("{0}")]
+    Faults(Faults),
+    /// The columns the other way round.
+    #[error(
+        "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" behind it: a profile has \
+         the radius first"
+    )]
+    Swapped {
+        /// The line of the header.
+        line: usize,
+        /// The name of the gap.
+        first: String,
+        /// The name of the radius.
+        second: String,
+    },
+    /// Too few or too many rows.
+    #[error("has {0} rows, and a profile has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
+    Rows(usize),
+    /// A unit that is none of length.
+    #[error("line {line}: the unit \"{unit}\" of the {what} {}", .measures.as_ref().map_or_else(|| "is not known".to_owned(), |measures| format!("is {measures}, not a length")))]
+    Unit {
+        /// The line of the header.
+        line: usize,
+        /// Which column.
+        what: &'static str,
+        /// The unit, safe to show.
+        unit: String,
+        /// What is measured in it, if it is known.
+        measures: Option<String>,
+    },
+    /// A unit for one column alone.
+    #[error(
+        "line {line}: the header gives the {named} in {unit} and names no unit of the {other}: write both, as in \
+         r [um], h [nm]"
+    )]
+    OneUnit {
+        /// The line of the header.
+        line: usize,
+        /// The column with a unit.
+        named: &'static str,
+        /// Its unit.
+        unit: String,
+        /// The column without.
+        other: &'static str,
+    },
+}
+
+/// The two columns, as messages call them.
+const COLUMNS: [&str; 2] = ["radius", "gap"];
+
+/// Names by which a header tells the columns apart.
+const RADIUS_NAMES: &[&str] = &["r", "radius", "rho", "x", "distance", "position"];
+/// The same of the gap.
+const GAP_NAMES: &[&str] = &["h", "gap", "height", "z", "depth"];
+
+impl Columns {
+    /// The same with the gaps in the unit of the radii, and that unit, where the header names them.
+    ///
+    /// # Errors
+    /// [`TextError::Unit`] for a unit that is none of length, [`TextError::OneUnit`] where one column has none.
+    pub fn in_one_unit(mut self) -> Result<(Self, Option<Unit>), TextError> {
+        let line = self.header.unwrap_or(1);
+        let mut units = [None, None];
+        for ((unit, text), what) in units.iter_mut().zip(&self.units).zip(COLUMNS) {
+            *unit = text.as_deref().map(|text| length(text, line, what)).transpose()?;
+        }
+        let one = |unit: &Unit, named, other| {
+            Err(TextError::OneUnit { line, named: COLUMNS[named], unit: unit.ascii(), other: COLUMNS[other] })
+        };
+        match units {
+            [None, None] => Ok((self, None)),
+            [Some(unit), None] => one(&unit, 0, 1),
+            [None, Some(unit)] => one(&unit, 1, 0),
+            [Some(radius), Some(gap)] => {
+                if radius != gap {
+                    let factor = radius.from_si(gap.to_si(1.0));
+                    for h in &mut self.gaps {
+                        *h *= factor;
+                    }
+                }
+                Ok((self, Some(radius)))
+            }
+        }
+    }
+}
+
+/// The unit of length `text`, of the column `what` in the header in `line`.
+fn length(text: &str, line: usize, what: &'static str) -> Result<Unit, TextError> {
+    let unit = Unit::parse(text, 0).ok();
+    let refused = |measures| TextError::Unit { line, what, unit: quote(text), measures };
+    match unit {
+        Some(unit) if unit.dimension() == Quantity::Length.dimension() => Ok(unit),
+        Some(unit) => Err(refused(Some(unit.measures()))),
+        None => Err(refused(None)),
+    }
+}
+
+/// What parts the cells of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Separator {
+    Character(char),
+    Spaces,
+}
+
+impl Separator {
+    /// What a line shows.
+    fn of(line: &str) -> Self {
+        [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
+    }
+
+    /// The cells of a row.
+    fn cells(self, line: &str) -> Vec<&str> {
+        match self {
+            Self::Character(c) => line.split(c).map(bare).collect(),
+            Self::Spaces => line.split_whitespace().map(bare).collect(),
+        }
+    }
+}
+
+/// A cell without the space and the quotation marks around it.
+fn bare(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
+}
+
+/// A column as a header has it: its name, and its unit as written.
+type Head = (String, Option<String>);
+
+/// The two columns of a header, or `None` when it has another number of cells.
+///
+/// What stands in brackets is not parted, and belongs to the cell before it.
+fn heads(line: &str, separator: Separator) -> Option<[Head; 2]> {
+    let mut cells: Vec<Head> = vec![Default::default()];
+    let mut open: Option<(char, String)> = None;
+    for c in line.chars() {
+        match (&mut open, separator) {
+            (Some((close, unit)), _) if c == *close => {
+                let unit = unit.trim().to_owned();
+                open = None;
+                // Spaces between a name and its unit have opened a cell too many.
+                if separator == Separator::Spaces && cells.len() > 1 && cells.last()?.0.is_empty() {
+                    cells.pop();
+                }
+                cells.last_mut()?.1 = (!unit.is_empty()).then_some(unit);
+            }
+            (Some((_, unit)), _) => unit.push(c),
+            (None, _) if c == '[' || c == '(' => {
+                open = Some((if c == '[' { ']' } else { ')' }, String::new()));
+            }
+            (None, Separator::Character(parting)) if c == parting => cells.push(Default::default()),
+            (None, Separator::Spaces) if c.is_whitespace() => {
+                let (name, unit) = cells.last()?;
+                if !(name.is_empty() && unit.is_none()) {
+                    cells.push(Default::default());
+                }
+            }
+            (None, _) => cells.last_mut()?.0.push(c),
+        }
+    }
+    if separator == Separator::Spaces {
+        cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
+    }
+    let cells = <[Head; 2]>::try_from(cells).ok()?;
+    Some(cells.map(|(name, unit)| match unit {
+        Some(unit) => (name.trim().to_owned(), Some(unit)),
+        None => unbracketed(bare(&name)),
+    }))
+}
+
+/// A name with its unit behind a slash or a space, where that is one of length: `r / um`, `height nm`.
+///
+/// Another word there may be anything: `r/R` is a ratio.
+fn unbracketed(text: &str) -> Head {
+    let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
+    match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
+        Some((name, unit)) if !name.is_empty() && is_length(unit) => (name.to_owned(), Some(unit.to_owned())),
+        _ => (text.to_owned(), None),
+    }
+}
+
+fn is_length(unit: &str) -> bool {
+    Unit::parse(unit, 0).is_ok_and(|unit| unit.dimension() == Quantity::Length.dimension())
+}
+
+/// The text of a remark.
+fn remark(line: &str) -> Option<&str> {
+    ["#", "%", "//"].into_iter().find_map(|mark| line.strip_prefix(mark))
+}
+
+/// A row with its line.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    line: usize,
+    radius: f64,
+    gap: f64,
+}
+
+/// Reads the profile in `bytes`, the content of a file.
+///
+/// # Errors
+/// [`TextError`] with the lines that are wrong.
+pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = bytes.get(..error.valid_up_to()).unwrap_or_default();
+        TextError::NotText(before.split(|byte| *byte == b'\n').count())
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut faults = Faults { shown: Vec::new(), total: 0 };
+    let mut rows: Vec<Row> = Vec::new();
+    let mut separator = None;
+    // The header, or a remark that may be one.
+    let (mut header, mut candidate) = (None, None);
+    for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
+        if text.chars().any(|c| c != '\t' && is_unsafe(c)) {
+            faults.add(line, Fault::Unprintable);
+            continue;
+        }
+        if text.is_empty() {
+            continue;
+        }
+        if let Some(remark) = remark(text) {
+            if separator.is_none() {
+                candidate = Some((line, remark));
+            }
+            continue;
+        }
+        if text.len() > LONGEST_LINE {
+            faults.add(line, Fault::Long(text.len()));
+            continue;
+        }
+        if separator.is_none() && header.is_none() && is_header(text) {
+            header = Some((line, text));
+            continue;
+        }
+        let separator = *separator.get_or_insert_with(|| Separator::of(text));
+        match row(text, separator) {
+            Ok((radius, gap)) => rows.push(Row { line, radius, gap }),
+            Err(fault) => faults.add(line, fault),
+        }
+    }
+    let mut columns = Columns::default();
+    if let Some(separator) = separator {
+        (columns.header, columns.units) = units(header, candidate, separator)?;
+    }
+    gather(rows, &mut columns, &mut faults);
+    if faults.total > 0 {
+        return Err(TextError::Faults(faults));
+    }
+    if !ROW_RANGE.contains(&columns.radii.len()) {
+        return Err(TextError::Rows(columns.radii.len()));
+    }
+    Ok(columns)
+}
+
+impl Faults {
+    fn add(&mut self, line: usize, fault: Fault) {
+        if self.shown.len() < FAULTS_SHOWN {
+            self.shown.push((line, fault));
+        }
+        self.total += 1;
+    }
+}
+
+/// A line before the first row of which no cell begins a number.
+fn is_header(line: &str) -> bool {
+    let cells = Separator::of(line).cells(line);
+    cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
+        && cells.iter().all(|cell| cell.parse::<f64>().is_err())
+        && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
+/// The units of the header and its line, where it has any; of a remark only if it names both.
+///
+/// # Errors
+/// [`TextError::Swapped`].
+fn units(
+    header: Option<(usize, &str)>,
+    remark: Option<(usize, &str)>,
+    separator: Separator,
+) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
+    // A header may be parted otherwise than the rows below it.
+    let read = |(line, text): (usize, &str)| {
+        let heads = heads(text, separator).or_else(|| heads(text, Separator::of(text)));
+        heads.map(|heads| (line, heads))
+    };
+    let found = match header {
+        Some(header) => read(header),
+        None => remark
+            .and_then(|(line, text)| read((line, text.trim())))
+            .filter(|(_, heads)| heads.iter().all(|(_, unit)| unit.is_some())),
+    };
+    let Some((line, [(first, radii), (second, gaps)])) = found else { return Ok((None, [None, None])) };
+    let is = |name: &str, names: &[&str]| names.contains(&name.to_lowercase().as_str());
+    if is(&first, GAP_NAMES) && is(&second, RADIUS_NAMES) {
+        return Err(TextError::Swapped { line, first: quote(&first), second: quote(&second) });
+    }
+    let named = radii.is_some() || gaps.is_some();
+    Ok((named.then_some(line), [radii, gaps]))
+}
+
+/// The radius and the gap of a row.
+fn row(text: &str, separator: Separator) -> Result<(f64, f64), Fault> {
+    let cells = separator.cells(text);
+    let &[radius, gap] = cells.as_slice() else {
+        return Err(match cells.len() {
+            1 => Fault::Missing(COLUMNS[1]),
+            many => Fault::Cells(many),
+        });
+    };
+    let (radius, gap) = (number(radius, COLUMNS[0])?, number(gap, COLUMNS[1])?);
+    if radius < 0.0 { Err(Fault::Negative(radius)) } else { Ok((radius, gap)) }
+}
+
+fn number(text: &str, what: &'static str) -> Result<f64, Fault> {
+    if text.is_empty() {
+        return Err(Fault::Missing(what));
+    }
+    let number: f64 = text.parse().map_err(|_| Fault::Number { what, text: quote(text) })?;
+    if number.abs() <= LARGEST_NUMBER {
+        // −0 is 0, so that rows are compared as numbers.
+        Ok(number + 0.0)
+    } else {
+        Err(Fault::Range { what, text: quote(text) })
+    }
+}
+
+/// Sorts the rows, takes each radius once, and looks whether they begin at the axis.
+fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
+    if !rows.is_sorted_by(|a, b| a.radius <= b.radius) {
+        columns.notes.push("the rows were not in the order of their radii and have been sorted".to_owned());
+        // Stable: of equal radii the earlier line stays first.
+        rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    }
+    let innermost = rows.first().map(|row| row.line);
+    let mut last: Option<Row> = None;
+    let (mut repeated, mut twice) = (0, Vec::new());
+    for row in rows {
+        match last {
+            Some(Row { line, radius, gap }) if radius.total_cmp(&row.radius).is_eq() => {
+                if gap.total_cmp(&row.gap).is_eq() {
+                    repeated += 1;
+                } else {
+                    twice.push((row.line, Fault::Twice { radius, line }));
+                }
+            }
+            _ => {
+                columns.radii.push(row.radius);
+                columns.gaps.push(row.gap);
+                last = Some(row);
+            }
+        }
+    }
+    if repeated > 0 {
+        let rows = if repeated == 1 { "1 row was" } else { &format!("{repeated} rows were") };
+        columns.notes.push(format!("{rows} there twice and counted once"));
+    }
+    // Of uneven radii one distance says little: the widest of the first ones.
+    let inner = columns.radii.windows(2).take(*ROW_RANGE.start() - 1).map(|pair| pair[1] - pair[0]);
+    let spacing = inner.fold(0.0, f64::max);
+    if let (Some(line), Some(&first)) = (innermost, columns.radii.first())
+        && columns.radii.len() > 1
+        && first > spacing * (1.0 + ROUNDED)
+    {
+        twice.push((line, Fault::Hollow { first, spacing }));
+    }
+    faults.total += twice.len();
+    faults.shown.append(&mut twice);
+    faults.shown.sort_by_key(|(line, _)| *line);
+    faults.shown.truncate(FAULTS_SHOWN);
+}
+
+#[cfg(test)]
+mod tests;

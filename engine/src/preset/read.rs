@@ -1,0 +1,96 @@
+//! TOML text and `--set` assignments → preset.
+//!
+//! The file is laid down first, then the assignments in order; the whole is checked once, and the assignments of groups
+//! are made last. Every value remembers where it came from, so a message can name the line or the assignment.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `document` | documents and assignments laid down |
+//! | `sheet` | what is known of each key, and where it came from |
+//! | `whole` | the layers as one preset, or all that is wrong |
+//! | `mistake` | a mistake and its place |
+
+mod document;
+mod mistake;
+mod sheet;
+mod whole;
+
+pub use mistake::{Mistake, Origin, ReadError};
+pub use sheet::line;
+
+use super::measured::Files;
+use super::model::Preset;
+use crate::gap::shapes::Rows;
+use crate::text::show_name;
+use sheet::{Place, Sheet};
+use std::path::Path;
+use std::sync::Arc;
+use toml::de::DeTable;
+
+/// How many mistakes are collected before reading stops.
+const MISTAKES: usize = 20;
+
+/// Reads a preset that names no files; `name` names the text in messages.
+///
+/// # Errors
+/// Every mistake found, with its line.
+pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
+    read_with(name, text, &[] as &[&str])
+}
+
+/// Reads a preset and lays `KEY=VALUE` assignments over it, in order.
+///
+/// # Errors
+/// Every mistake found, with its line or assignment.
+pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Result<Preset, ReadError> {
+    read_in(Files::NONE, None, name, text, assignments)
+}
+
+/// Reads a preset whose `files` are relative to `folder`, or to the current one; those of assignments always are relative
+/// to the current one.
+///
+/// # Errors
+/// Every mistake found, with its line or assignment.
+pub fn read_in<S: AsRef<str>>(
+    files: Files,
+    folder: Option<&Path>,
+    name: &str,
+    text: &str,
+    assignments: &[S],
+) -> Result<Preset, ReadError> {
+    let folder = folder.map(Path::to_path_buf);
+    let mut sheet = Sheet { name: show_name(name), files, folder, ..Sheet::default() };
+    match DeTable::parse(text) {
+        Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
+        Err(error) => sheet.syntax(text, &error),
+    }
+    for assignment in assignments {
+        sheet.assign(assignment.as_ref());
+    }
+    sheet.finish()
+}
+
+/// Reads a preset as a session holds it, and says whether it has keys or words of before, which are read as they were
+/// meant. Its profile, where it has one, is `rows`, whatever its file holds by now; no file is read.
+///
+/// # Errors
+/// Every mistake found, with its line.
+pub fn read_holding(
+    files: Files,
+    name: &str,
+    text: &str,
+    rows: Option<Arc<Rows>>,
+) -> Result<(Preset, bool), ReadError> {
+    // Without rows the file is not asked for either: a profile that has none is a mistake.
+    let rows = Some(rows.unwrap_or_default());
+    let mut sheet = Sheet { name: show_name(name), files, rows, takes_former: true, ..Sheet::default() };
+    match DeTable::parse(text) {
+        Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
+        Err(error) => sheet.syntax(text, &error),
+    }
+    let was_former = sheet.was_former;
+    Ok((sheet.finish()?, was_former))
+}
+
+#[cfg(test)]
+mod tests;

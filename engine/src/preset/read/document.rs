@@ -1,0 +1,198 @@
+//! Documents and assignments laid down: tables, arrays of waves, single keys.
+
+use super::MISTAKES;
+use super::mistake::Origin;
+use super::sheet::{Place, Sheet};
+use crate::gap::shapes::harmonics::MOST_WAVES;
+use crate::preset::family;
+use crate::preset::former::{self, Kept};
+use crate::preset::groups;
+use crate::preset::invalid::Invalid;
+use crate::preset::measured::located;
+use crate::preset::model::unknown_key;
+use crate::preset::rows::{parameter, tables};
+use crate::preset::schema::{CHOOSERS, Key, Kind, PARAMETERS};
+use crate::preset::value::Value;
+use crate::text::closest;
+use crate::text::{quote, sanitize};
+use std::sync::Arc;
+use toml::de::{DeArray, DeTable, DeValue};
+
+impl Sheet {
+    /// Lays down the keys of a table, and of the tables in it.
+    pub(super) fn lay(&mut self, prefix: &str, table: &DeTable<'_>, place: &Place<'_>) {
+        for (key, value) in table {
+            if self.mistakes.len() >= MISTAKES {
+                return;
+            }
+            let name: &str = key.get_ref();
+            let full = match (prefix, name) {
+                ("", _) => name.to_owned(),
+                // `lambda = { value = 1, … }` is `lambda = 1` and more.
+                (_, "value") if family::is_parameter(prefix) => prefix.to_owned(),
+                _ => format!("{prefix}.{name}"),
+            };
+            let origin = self.origin(place, key.span().start);
+            // A quoted key with a dot in it is none of ours, whatever it spells.
+            let plain = !name.contains('.');
+            let row = parameter(&full).filter(|_| plain);
+            if self.takes_former
+                && let Some(kept) = former::kept(&full, value.get_ref())
+            {
+                self.was_former = true;
+                if let (Kept::Word(word), Some(row)) = (kept, &row) {
+                    self.put(row, Ok(word.into()), origin);
+                }
+                continue;
+            }
+            let known_table = Some(&*full).filter(|table| plain && is_table(table));
+            match (value.get_ref(), row, known_table) {
+                (DeValue::Array(waves), _, Some(family::WAVE_TABLE)) => {
+                    self.tables.insert(family::WAVE_TABLE.into(), origin.clone());
+                    self.lay_waves(waves, origin, place);
+                }
+                (DeValue::Table(inner), row, Some(table)) if name != "value" => {
+                    self.tables.insert(table.to_owned().into(), origin.clone());
+                    match row {
+                        Some(row) if inner.is_empty() => {
+                            self.put(&row, Err(row.wrong_type("an empty table".to_owned())), origin);
+                        }
+                        _ => self.lay(table, inner, place),
+                    }
+                }
+                (other, Some(row), _) => {
+                    let value = Value::from_toml(other).map_err(|found| row.wrong_type(found));
+                    let folder = match place {
+                        Place::File(_) => self.folder.as_deref(),
+                        Place::Assignment(_) => None,
+                    };
+                    let value = value.and_then(|value| match &self.rows {
+                        Some(rows) if row.kind == Kind::File => Ok(Value::Profile(Arc::clone(rows))),
+                        _ => located(self.files, &row, row.check(value)?, folder),
+                    });
+                    self.put(&row, value, origin);
+                }
+                (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),
+                (_, None, None) => {
+                    let invalid = match (place, closest(&full, tables())) {
+                        // A table by a wrong name is worth one message, and no guess among the keys.
+                        (_, Some(table)) if holds_tables(value.get_ref()) => {
+                            Invalid::UnknownKey { key: quote(&full), meant: Some(table.into()) }
+                        }
+                        _ => unknown_key(&full, None),
+                    };
+                    self.mistake(origin, invalid);
+                }
+            }
+        }
+    }
+
+    /// Lays down the waves of an array.
+    fn lay_waves(&mut self, waves: &DeArray<'_>, origin: Origin, place: &Place<'_>) {
+        if matches!(place, Place::Assignment(_)) {
+            self.entries.retain(|key, _| family::below(key, family::WAVE_TABLE).is_none());
+        }
+        if waves.len() > MOST_WAVES {
+            let invalid = Invalid::Range {
+                key: family::WAVE_TABLE.into(),
+                value: format!("{} waves", waves.len()),
+                allowed: format!("at most {MOST_WAVES}"),
+            };
+            return self.mistake(origin, invalid);
+        }
+        for (i, wave) in waves.iter().enumerate() {
+            if self.mistakes.len() >= MISTAKES {
+                return;
+            }
+            let table = format!("{}.{}", family::WAVE_TABLE, i + 1);
+            let origin = self.origin(place, wave.span().start);
+            match wave.get_ref() {
+                DeValue::Table(wave) => {
+                    self.tables.insert(table.clone().into(), origin);
+                    self.lay(&table, wave, place);
+                }
+                other => self.mistake(origin, not_table(&table, found(other))),
+            }
+        }
+    }
+
+    /// Lays down one `KEY=VALUE`.
+    pub(super) fn assign(&mut self, assignment: &str) {
+        if self.mistakes.len() >= MISTAKES {
+            return;
+        }
+        let place = Place::Assignment(assignment);
+        let origin = self.origin(&place, 0);
+        let Some((key, text)) = assignment.split_once('=') else {
+            return self.mistake(origin, Invalid::Assignment);
+        };
+        let key = key.trim();
+        let parsed = DeValue::parse(text.trim());
+        let inner = parsed.as_ref().ok().and_then(|value| value.get_ref().as_table());
+        if let (family::WAVE_TABLE, Ok(Some(waves))) =
+            (key, parsed.as_ref().map(|value| value.get_ref().as_array()))
+        {
+            return self.lay_waves(waves, origin, &place);
+        }
+        if groups::row(key).is_some() {
+            return self.groups.push((key.to_owned(), text.to_owned(), origin));
+        }
+        match (parameter(key), Some(key).filter(|key| is_table(key)), inner) {
+            (_, Some(table), Some(inner)) if !inner.is_empty() => self.lay(table, inner, &place),
+            (Some(row), _, _) => {
+                let value = row.parse(text).and_then(|value| located(self.files, &row, value, None));
+                self.put(&row, value, origin);
+            }
+            (None, Some(table), _) => {
+                self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
+            }
+            (None, None, _) => {
+                // The file is laid down by now.
+                let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
+                let unknown = unknown_key(key, shape.map(ToString::to_string).as_deref());
+                self.mistake(origin, unknown);
+            }
+        }
+    }
+
+    pub(super) fn syntax(&mut self, text: &str, error: &toml::de::Error) {
+        let span = error.span().unwrap_or_default();
+        let origin = self.origin(&Place::File(text), span.start);
+        // The parser's words quote no source text, but nothing promises that they never will.
+        let mut what = sanitize(error.message(), 120);
+        if let Some(at) = text.get(span).map(str::trim).filter(|at| !at.is_empty()) {
+            what = format!("{what}: {}", quote(at));
+        }
+        self.mistake(origin, Invalid::Syntax { what });
+    }
+}
+
+/// Whether a key holds other keys.
+fn is_table(key: &str) -> bool {
+    family::is_table(key) || tables().any(|table| table == key)
+}
+
+/// Whether a value is a table, or an array of them.
+fn holds_tables(value: &DeValue<'_>) -> bool {
+    let of_tables = |array: &DeArray<'_>| array.iter().any(|value| value.get_ref().is_table());
+    value.is_table() || value.as_array().is_some_and(of_tables)
+}
+
+fn not_table(table: &str, found: String) -> Invalid {
+    let inside = PARAMETERS.iter().find(|row| row.table() == Some(table));
+    let table = Key::from(table.to_owned());
+    let example = match (inside, &*table) {
+        (Some(row), _) => row.key.clone(),
+        (None, family::PARAMETER_TABLE) => family::parameter_key("R").into(),
+        (None, family::WAVE_TABLE) => family::wave_key(1, "amplitude").into(),
+        (None, wave) => format!("{wave}.amplitude").into(),
+    };
+    Invalid::NotTable { table, found, example }
+}
+
+fn found(value: &DeValue<'_>) -> String {
+    match Value::from_toml(value) {
+        Ok(value) => format!("\"{}\"", quote(&value.to_string())),
+        Err(found) => found,
+    }
+}

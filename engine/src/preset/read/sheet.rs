@@ -1,0 +1,100 @@
+//! The layers laid down so far: what is known of each key, and where it came from.
+
+use super::mistake::{Mistake, Origin};
+use crate::gap::shapes::Rows;
+use crate::preset::invalid::Invalid;
+use crate::preset::measured::Files;
+use crate::preset::model::put;
+use crate::preset::rows::parameter;
+use crate::preset::schema::{CHOOSERS, Key, Parameter, START_KEYS};
+use crate::preset::value::Value;
+use crate::preset::values::Values;
+use crate::text::quote;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What is known of one key.
+pub(super) struct Entry {
+    pub(super) value: Result<Value, Invalid>,
+    pub(super) origin: Origin,
+}
+
+/// The layers laid down so far.
+#[derive(Default)]
+pub(super) struct Sheet {
+    pub(super) name: String,
+    /// Where the rows of profiles come from.
+    pub(super) files: Files,
+    /// The folder of the file.
+    pub(super) folder: Option<PathBuf>,
+    /// The rows of its profile, where they are known and no file is to be read.
+    pub(super) rows: Option<Arc<Rows>>,
+    /// Whether keys and words of before are read as they were meant, as a session holds them.
+    pub(super) takes_former: bool,
+    /// Whether there were any.
+    pub(super) was_former: bool,
+    /// Whether an assignment chose a formula: its parameters need not fit those of the file.
+    pub(super) refit: bool,
+    pub(super) entries: BTreeMap<Key, Entry>,
+    /// Assignments of groups: laid over the whole, when all they follow from is known.
+    pub(super) groups: Vec<(String, String, Origin)>,
+    /// Where the file's tables begin.
+    pub(super) tables: BTreeMap<Key, Origin>,
+    pub(super) mistakes: Vec<Mistake>,
+}
+
+/// Where the values being laid down come from.
+pub(super) enum Place<'a> {
+    File(&'a str),
+    Assignment(&'a str),
+}
+
+impl Sheet {
+    pub(super) fn origin(&self, place: &Place<'_>, at: usize) -> Origin {
+        match place {
+            Place::File(text) => Origin::File { name: self.name.clone(), line: Some(line(text, at)) },
+            Place::Assignment(text) => Origin::Assignment(quote(text)),
+        }
+    }
+
+    /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
+    /// the waves of another shape, the size of another basis.
+    pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: Origin) {
+        if matches!(origin, Origin::Assignment(_)) {
+            self.refit = self.refit || row.key == "gap.formula";
+            if START_KEYS.contains(&&*row.key) {
+                self.entries.retain(|key, _| !START_KEYS.contains(&&**key));
+            }
+            if let (Ok(word), true) = (&value, CHOOSERS.contains(&&*row.key)) {
+                let word = word.to_string();
+                self.entries.retain(|key, entry| {
+                    matches!(entry.origin, Origin::Assignment(_))
+                        || parameter(key).is_some_and(|other| other.fits(&row.key, &word))
+                });
+            }
+        }
+        match value {
+            Ok(value) => {
+                let mut one = Values::new();
+                put(&mut one, row, value);
+                for (key, value) in one {
+                    self.entries.insert(key, Entry { value: Ok(value), origin: origin.clone() });
+                }
+            }
+            Err(invalid) => {
+                let whole = row.table().filter(|_| row.is_part()).unwrap_or(&row.key).to_owned();
+                self.entries.insert(whole.into(), Entry { value: Err(invalid), origin });
+            }
+        }
+    }
+
+    pub(super) fn mistake(&mut self, origin: Origin, invalid: Invalid) {
+        self.mistakes.push(Mistake { origin, invalid });
+    }
+}
+
+/// The line of a byte, from 1.
+pub fn line(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count()
+}

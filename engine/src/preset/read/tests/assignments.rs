@@ -1,0 +1,115 @@
+//! Assignments laid over a file.
+
+use super::{WAVY, edited, messages, set};
+use crate::gap::Shape;
+use crate::preset::model::BasisSpec;
+use crate::preset::{read, read_with};
+use crate::problem::{Control, Start};
+use crate::ritz::Grading;
+
+#[test]
+fn assignments_are_laid_over_the_file_in_order() {
+    assert_eq!(set(&["basis.rings=400"]).basis, BasisSpec::Rings { rings: 400, grading: Grading::Uniform });
+    assert_eq!(
+        set(&["basis.rings=400", "basis.rings = 50"]).basis,
+        BasisSpec::Rings { rings: 50, grading: Grading::Uniform }
+    );
+    assert_eq!(set(&["title=a = b"]).title, "a = b");
+    for spring in [
+        "path.control=stiffness=0.15",
+        "path.control.stiffness=0.15",
+        "path.control={stiffness=0.15}",
+        "path={control={stiffness=0.15}}",
+    ] {
+        assert_eq!(set(&[spring]).path.control, Control::Stiffness(0.15), "{spring}");
+    }
+    assert_eq!(set(&["path.control.stiffness=1", "path.control=force"]).path.control, Control::Force);
+    assert_eq!(set(&["path.start_force=0.02"]).path.start, Start::Force(0.02));
+    assert_eq!(set(&["path.start_force=0.02", "path.start_approach=1"]).path.start, Start::Approach(1.0));
+    assert_eq!(set(&["gap.shape=sphere"]).gap, Shape::Sphere { radius_of_curvature: 1.0 });
+}
+
+#[test]
+fn a_basis_drops_and_brings_its_keys() {
+    assert_eq!(set(&["basis.kind=exact"]).basis, BasisSpec::Exact);
+    let text = WAVY.replace("\"rings\"\nrings = 200", "\"exact\"");
+    assert_eq!(read("w.toml", &text).unwrap().basis, BasisSpec::Exact);
+    assert_eq!(
+        read_with("w.toml", &text, &["basis.kind=rings", "basis.rings=9"]).unwrap().basis,
+        BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
+    );
+    for (old, new, expected) in [
+        ("\"rings\"", "\"exact\"", "w.toml:13: basis.rings belongs to rings, and the basis is exact"),
+        (
+            "\"rings\"",
+            "\"exat\"",
+            "w.toml:12: basis.kind = \"exat\" is not known: it must be \"exact\" or \"rings\"; did you mean exact?",
+        ),
+    ] {
+        assert_eq!(edited(old, new), expected);
+    }
+}
+
+#[test]
+fn keys_and_words_of_before_are_refused_with_what_to_write() {
+    let spectral = "basis.kind = \"spectral\" is called \"exact\" now: write kind = \"exact\" (basis.kind=exact in an \
+                    assignment)";
+    let functions = "basis.functions is no longer needed: the exact basis resolves every gap by itself; remove it and \
+                     write kind = \"exact\" (basis.kind=exact in an assignment)";
+    let old = "\"rings\"\nrings = 200";
+    assert_eq!(edited(old, "\"spectral\""), format!("w.toml:12: {spectral}"));
+    assert_eq!(edited(old, "\"rings\"\nfunctions = 48"), format!("w.toml:13: {functions}"));
+    // Both lines of a file are named.
+    let both = messages(&WAVY.replace(old, "\"spectral\"\nfunctions = \"auto\""), &[]);
+    assert_eq!(both, [format!("w.toml:12: {spectral}"), format!("w.toml:13: {functions}")]);
+    for (set, what) in [("basis.kind=spectral", spectral), ("basis.functions=48", functions)] {
+        let refused = read_with("w.toml", WAVY, &[set]).unwrap_err().to_string();
+        assert_eq!(refused, format!("--set {set}: {what}"));
+        let (key, value) = set.split_once('=').unwrap();
+        assert_eq!(read("w.toml", WAVY).unwrap().assign(key, value).unwrap_err().to_string(), what);
+    }
+}
+
+#[test]
+fn an_assignment_repairs_a_wrong_line() {
+    let text = WAVY.replace("= 200", "= 1");
+    assert_eq!(
+        read_with("w.toml", &text, &["basis.rings=9"]).unwrap().basis,
+        BasisSpec::Rings { rings: 9, grading: Grading::Uniform }
+    );
+}
+
+#[test]
+fn a_wrong_assignment_is_named() {
+    for (assignment, expected) in [
+        ("gap.amplitude=-1", "--set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
+        ("gap.amplitude", "--set gap.amplitude: an assignment is KEY=VALUE"),
+        (
+            "gap.wavelenght=1",
+            "--set gap.wavelenght=1: unknown key gap.wavelenght; did you mean gap.wavelength?",
+        ),
+        ("gap=1", "--set gap=1: gap is a table, not \"1\"; set one of its keys, as gap.shape"),
+        ("=1", "--set =1: unknown key "),
+        (
+            "path.start_contact_radius=0.001",
+            "--set path.start_contact_radius=0.001: path.end_contact_radius = 0.002 is not below",
+        ),
+        (
+            "gap.radius_of_curvature=0.01",
+            "--set gap.radius_of_curvature=0.01: path.start_contact_radius = 0.5 is out of range",
+        ),
+        ("format=3", "--set format=3: format = 3 is not known"),
+    ] {
+        let lines = messages(WAVY, &[assignment]);
+        assert!(lines[0].starts_with(expected), "{lines:?}\n{expected}");
+    }
+    let lines = messages(WAVY, &["gap.shape=sphere", "gap.amplitude=1"]);
+    assert_eq!(
+        lines,
+        ["--set gap.amplitude=1: gap.amplitude belongs to wavy-sphere, and the gap is a sphere"]
+    );
+    let sphere =
+        "[material]\neffective_modulus=1\nwork_of_adhesion=0\n[gap]\nshape='sphere'\nradius_of_curvature=1";
+    let lines = messages(sphere, &["gap.shape=wavy-sphere"]);
+    assert!(lines[0].starts_with("w.toml:4: gap.amplitude is missing"), "{lines:?}");
+}

@@ -1,0 +1,264 @@
+//! The table of parameters: what a row says, and which rows there are.
+//!
+//! The rows themselves are in `schema/table.rs`. A new parameter is a new row there, a field of [`Preset`](super::Preset) and its two lines in
+//! `model` (get) and `build`; a test demands that none of the three is forgotten.
+
+mod table;
+
+pub use table::PARAMETERS;
+pub(super) use table::row;
+
+use crate::units::{Quantity, Shown, Unit, UnitSystem};
+use std::borrow::Cow;
+
+/// The format number of the files this program reads and writes.
+pub const FORMAT: i64 = 1;
+/// The smallest magnitude accepted for a number that is not zero: far below any quantity in SI units.
+pub const SMALLEST: f64 = 1e-30;
+/// The largest magnitude accepted: its powers in reduced units still fit a double.
+pub const LARGEST: f64 = 1e30;
+/// The contact radius at which a path starts when nothing is said, over the radius of curvature.
+pub const START_OVER_CURVATURE: f64 = 0.5;
+/// The contact radius at which a path ends when nothing is said, over the one where it starts.
+pub const END_OVER_START: f64 = 0.004;
+/// The largest contact radius accepted, over the radius of curvature: the paraboloid means nothing so far out.
+pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
+/// The three ways to say where a path starts; a preset has exactly one.
+pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
+
+/// The word that leaves a value to the program.
+pub const AUTO: &str = "auto";
+/// The word for the exact basis.
+pub const EXACT: &str = "exact";
+/// The word for no smoothing.
+pub const NONE: &str = "none";
+
+/// What kind of value a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A number above zero, changed in steps of its logarithm.
+    Positive,
+    /// Zero or a number above it.
+    NonNegative,
+    /// Any finite number.
+    Finite,
+    /// A whole number from `min` to `max`.
+    Integer {
+        /// The smallest accepted.
+        min: i64,
+        /// The largest accepted.
+        max: i64,
+    },
+    /// Printable text.
+    Text {
+        /// The longest accepted.
+        max_chars: usize,
+    },
+    /// A number from `min` to `max`.
+    Between {
+        /// The smallest accepted.
+        min: f64,
+        /// The largest accepted.
+        max: f64,
+    },
+    /// A file with a measured profile.
+    File,
+    /// A number above zero, or `none`, or [`AUTO`].
+    Smoothing,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// What the loading device prescribes.
+    Control,
+}
+
+/// What a parameter is when a file does not give it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fallback {
+    /// It must be given (where it applies).
+    Required,
+    /// This number.
+    Number(f64),
+    /// This whole number.
+    Integer(i64),
+    /// This text, choice or control.
+    Text(&'static str),
+    /// It follows from other values, in these words.
+    Described(&'static str),
+}
+
+/// Where a parameter means something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Applies {
+    /// In every preset.
+    Always,
+    /// Only where the choice `key` is one of `words`.
+    With {
+        /// The key that chooses.
+        key: &'static str,
+        /// Its words.
+        words: &'static [&'static str],
+    },
+    /// Only while the device is a spring.
+    Spring,
+}
+
+/// A dotted key: of the table, or made from what a preset says.
+pub type Key = Cow<'static, str>;
+
+/// A row of the table, or one of its own for a key that only some presets have.
+pub type Row = Cow<'static, Parameter>;
+
+/// One row of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// The dotted TOML key.
+    pub key: Key,
+    /// A short name for the screen, in ASCII.
+    pub label: Cow<'static, str>,
+    /// What it is, in one line.
+    pub meaning: Cow<'static, str>,
+    /// Its dimension in words; empty for text, choices and pure numbers.
+    pub dimension: Cow<'static, str>,
+    /// What is measured, for values with units; a pure number where there is no such quantity.
+    pub quantity: Quantity,
+    /// A unit of its own, in which an SI preset has it typed, shown and written, in place of that of the quantity.
+    pub unit: Option<Unit>,
+    /// What values it takes.
+    pub kind: Kind,
+    /// What it is when not given.
+    pub fallback: Fallback,
+    /// Where it means something.
+    pub applies: Applies,
+}
+
+/// The key of the coefficient of a power law, whose dimension follows from the exponent.
+pub const COEFFICIENT: &str = "gap.coefficient";
+/// The keys whose word decides which other keys apply.
+pub const CHOOSERS: [&str; 3] = ["gap.shape", "basis.kind", "units"];
+/// The words of the key `units`.
+pub const SYSTEMS: [&str; 2] = ["reduced", "SI"];
+/// The keys of the units in which an SI preset is shown, each with its quantity.
+pub const DISPLAY: [(&str, Quantity); 6] = [
+    ("display.length", Quantity::Length),
+    ("display.force", Quantity::Force),
+    ("display.stress", Quantity::Stress),
+    ("display.adhesion", Quantity::EnergyPerArea),
+    ("display.energy", Quantity::Energy),
+    ("display.stiffness", Quantity::ForcePerLength),
+];
+
+/// The table that a dotted key stands in, if any.
+#[must_use]
+pub fn table_of(key: &str) -> Option<&str> {
+    key.rsplit_once('.').map(|(table, _)| table)
+}
+
+impl Kind {
+    /// Whether its values are real numbers, which may be typed with a unit.
+    #[must_use]
+    pub fn is_number(self) -> bool {
+        match self {
+            Self::Positive | Self::NonNegative | Self::Finite | Self::Between { .. } | Self::Smoothing => {
+                true
+            }
+            Self::Integer { .. } | Self::Text { .. } | Self::File | Self::Choice(_) | Self::Control => false,
+        }
+    }
+}
+
+impl Parameter {
+    /// The table the key stands in, if any.
+    #[must_use]
+    pub fn table(&self) -> Option<&str> {
+        table_of(&self.key)
+    }
+
+    /// The last part of the key.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.key.rsplit_once('.').map_or(&*self.key, |(_, name)| name)
+    }
+
+    /// Whether the key is a part of another parameter's value, as `path.control.stiffness` is.
+    #[must_use]
+    pub fn is_part(&self) -> bool {
+        let is_whole = |row: &Parameter| row.kind == Kind::Control && Some(&*row.key) == self.table();
+        PARAMETERS.iter().any(is_whole)
+    }
+
+    /// The unit in which a preset of these units has it typed and shown, if there is one.
+    #[must_use]
+    pub fn unit_in<'a>(&'a self, units: &'a UnitSystem) -> Option<&'a Unit> {
+        let quantity = if self.kind == Kind::Control { Quantity::ForcePerLength } else { self.quantity };
+        self.own_unit_in(units).or_else(|| units.unit(quantity))
+    }
+
+    /// The unit of its own, where it counts: bare numbers are of it.
+    pub(super) fn own_unit_in(&self, units: &UnitSystem) -> Option<&Unit> {
+        self.unit.as_ref().filter(|_| *units != UnitSystem::Reduced)
+    }
+
+    /// How a number of it, in SI or reduced units, is shown.
+    #[must_use]
+    pub fn shown<'a>(&'a self, units: &'a UnitSystem, x: f64) -> Shown<'a> {
+        let unit = self.unit_in(units);
+        Shown { number: unit.map_or(x, |unit| unit.from_si(x)), unit }
+    }
+
+    /// A number in SI with its SI unit, to be read back as the very same number, where a bare one would count in a unit
+    /// of its own.
+    pub(super) fn exact_in_si(&self, units: &UnitSystem, x: f64) -> Option<String> {
+        let base = self.own_unit_in(units)?.dimension().si();
+        Some(format!("{x:?} {}", if base.is_empty() { "rad" } else { &base }))
+    }
+
+    /// Whether a person changes it by factors rather than by differences.
+    #[must_use]
+    pub fn is_logarithmic(&self) -> bool {
+        matches!(self.kind, Kind::Positive)
+    }
+
+    /// Whether it means something where the choice `chooser` is `word`.
+    #[must_use]
+    pub fn fits(&self, chooser: &str, word: &str) -> bool {
+        match self.applies {
+            Applies::With { key, words } => key != chooser || words.contains(&word),
+            Applies::Always | Applies::Spring => true,
+        }
+    }
+
+    /// The values it takes, in words.
+    #[must_use]
+    pub fn allowed(&self) -> String {
+        match self.kind {
+            Kind::Positive => format!("a number from {SMALLEST:?} to {LARGEST:?}"),
+            Kind::NonNegative => format!("0 or a number from {SMALLEST:?} to {LARGEST:?}"),
+            Kind::Finite => format!("a number from -{LARGEST:?} to {LARGEST:?}"),
+            Kind::Integer { min, max } if min == max => format!("the number {min}"),
+            Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
+            Kind::Between { min, max } => format!("a number from {min:?} to {max:?}"),
+            Kind::File => "the name of a file".to_owned(),
+            Kind::Smoothing => format!("\"{NONE}\", \"{AUTO}\" or a number from {SMALLEST:?} to {LARGEST:?}"),
+            Kind::Text { max_chars } => format!("printable text of at most {max_chars} characters"),
+            Kind::Choice(words) => {
+                words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
+            }
+            Kind::Control => "\"displacement\", \"force\" or { stiffness = k } with k > 0".to_owned(),
+        }
+    }
+
+    /// What it is when not given, in words.
+    #[must_use]
+    pub fn fallback_text(&self) -> String {
+        match self.fallback {
+            Fallback::Required => "required".to_owned(),
+            Fallback::Number(x) => format!("{x:?}"),
+            Fallback::Integer(n) => n.to_string(),
+            Fallback::Text(text) => format!("\"{text}\""),
+            Fallback::Described(words) => words.to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,350 @@
+//! The equilibrium curve between two contact radii: its states to draw, its limit points, and the arc-length tracer.
+
+use super::equilibrium::{Equilibrium, Point, Scales, Stability, State, unknown};
+use super::monotone::{Limit, Monotone};
+use crate::continuation::trace::trace;
+use crate::continuation::{Branch, End, Settings, Stop, step_size};
+use crate::disc::exact::outer_side;
+use crate::disc::{Basis, Local, Place, Solution, Table};
+use crate::gap::Gap;
+use crate::problem::{Control, Reduced, Units};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt;
+use std::sync::Arc;
+
+/// States drawn on each panel of the solution, which is half a wave wide.
+const STATES_PER_PANEL: f64 = 20.0;
+/// Largest step between states relative to the radius: the curve behaves like √s towards s = 0.
+const RATIO: f64 = 0.025;
+/// Most states of a curve.
+pub const MOST_STATES: f64 = 20_000.0;
+/// A trace this near to a corner, in units of the ranges of δ, P and s, goes straight to it.
+const CORNER_STEP: f64 = 0.02;
+/// The edge moves at most this share of a wave per arc-length step: without it traces go astray.
+pub const WAVE_SHARE: f64 = 1.0 / 12.0;
+
+/// Why a curve ends where it does.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum CurveStop {
+    /// It reached the end contact radius.
+    End,
+    /// The basis has no equilibrium beyond.
+    NoEquilibrium(f64),
+    /// The tracer stopped for another reason.
+    Tracer(Stop),
+}
+
+impl fmt::Display for CurveStop {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
+impl CurveStop {
+    /// Why, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        match self {
+            Self::End => "the end contact radius was reached".to_owned(),
+            Self::NoEquilibrium(s) => {
+                let s = said(shown, Quantity::Length, *s);
+                format!("the basis has no equilibrium below the contact radius {s} (a finer basis may help)")
+            }
+            Self::Tracer(stop) => stop.to_string(),
+        }
+    }
+
+    /// The same with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        match self {
+            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
+            other => other,
+        }
+    }
+}
+
+/// One state of the curve, without its energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The slopes of the curve.
+    pub slopes: Stability,
+}
+
+/// The equilibrium curve, its states from the largest contact radius to the smallest.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// The equations it solves, with its scales.
+    pub equilibrium: Equilibrium,
+    /// The equilibria over all radii, from the axis to the outer end of the curve or further.
+    pub solution: Arc<dyn Solution>,
+    /// Its states, running inward.
+    pub samples: Vec<Sample>,
+    /// Why it ends.
+    pub stop: CurveStop,
+    /// The stretches held, by control: those of the whole solution.
+    held: Vec<Arc<Monotone>>,
+}
+
+/// The settings of the arc-length tracer for a gap with this feature length.
+pub fn settings(equilibrium: &Equilibrium) -> Settings {
+    let mut settings = Settings::new(unknown::COUNT);
+    if let Some(wave) = equilibrium.problem.gap.feature_length() {
+        settings.largest_increment[unknown::CONTACT_RADIUS] =
+            WAVE_SHARE * wave / equilibrium.scales.contact_radius;
+    }
+    settings
+}
+
+/// Radii from `from` inward to `to`, both included, in steps of at most `ratio` of themselves and `step`.
+pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
+    // With more steps than there may be they grow, so that the last still is at `to`.
+    let step = step.max(2.0 * (from - to) / MOST_STATES);
+    let inner = std::iter::successors(Some(from), |s| Some(s - (ratio * s).min(step)));
+    let mut radii: Vec<f64> = inner.take_while(|s| *s > to).collect();
+    radii.push(to);
+    radii
+}
+
+/// How many states a curve has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// Enough to be drawn.
+    Drawn,
+    /// Those between panels, where only limit points and unloadings are wanted.
+    Borders,
+}
+
+/// The places of a curve's states from the radius `from` inward to `to`: every panel of the solution with as many, the
+/// borders at which it has a corner from both sides.
+fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Place> {
+    let [first, last] = [from, to].map(|s| solution.place(s));
+    let Some(first) = first else { return Vec::new() };
+    let last = last.map_or(0, |place| place.panel);
+    let per_panel = (MOST_STATES / (first.panel + 1 - last) as f64).clamp(1.0, STATES_PER_PANEL);
+    let mut places = vec![first];
+    for panel in (last..=first.panel).rev() {
+        let span = solution.span(panel);
+        let (outer, inner) = (span.hi.min(from), span.lo.max(to));
+        let steps = match detail {
+            Detail::Drawn => radii(outer, inner, RATIO, (span.hi - span.lo) / per_panel),
+            Detail::Borders => Vec::new(),
+        };
+        let inside = steps.iter().skip(1).take(steps.len().saturating_sub(2));
+        places.extend(inside.map(|s| Place { panel, x: span.place(*s) }));
+        // The outer side of a border that is a corner, and then the border itself.
+        let corner = solution.at(Place { panel, x: -1.0 }).stretch == 0.0;
+        if inner > to && corner {
+            places.push(Place { panel, x: -1.0 });
+        }
+        if inner > to && panel > last {
+            places.push(Place { panel: panel - 1, x: 1.0 });
+        } else if inner <= to {
+            places.push(Place { panel, x: span.place(to) });
+        }
+    }
+    places
+}
+
+impl Curve {
+    /// The curve from the contact radius `from` down to `to`.
+    ///
+    /// `None` when there is no equilibrium at `from`, or `go_on` said no.
+    pub fn new(
+        problem: Reduced,
+        basis: Arc<dyn Basis>,
+        table: Arc<Table>,
+        [from, to]: [f64; 2],
+        detail: Detail,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Option<Self> {
+        let solution = basis.solution(&problem, to, from, &mut go_on)?;
+        let sample = |at: Local| {
+            let Local { contact_radius, approach, force, .. } = at;
+            Sample { contact_radius, approach, force, slopes: at.stability() }
+        };
+        // As far as it is connected.
+        let mut samples: Vec<Sample> = Vec::new();
+        let mut stop = CurveStop::End;
+        for on_panel in places(&*solution, from, to, detail).chunk_by(|a, b| a.panel == b.panel) {
+            let panel = on_panel[0].panel;
+            if !samples.is_empty() && !solution.is_joined(panel) {
+                stop = CurveStop::NoEquilibrium(samples.last().map_or(from, |s| s.contact_radius));
+                break;
+            }
+            for some in on_panel.chunks(4) {
+                let x = std::array::from_fn(|i| some[i.min(some.len() - 1)].x);
+                samples.extend(solution.at_four(panel, x).into_iter().take(some.len()).map(sample));
+            }
+        }
+        // A radius asked for is the one answered with, not what the panel's variable makes of it.
+        samples.first_mut()?.contact_radius = from;
+        let last = samples.last_mut()?;
+        if stop == CurveStop::End {
+            if last.contact_radius > to * (1.0 + 1e-9) {
+                stop = CurveStop::NoEquilibrium(last.contact_radius);
+            } else {
+                last.contact_radius = to;
+            }
+        }
+        let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
+        let equilibrium = Equilibrium { problem, basis, table, scales };
+        Some(Self { equilibrium, solution, samples, stop, held: Vec::new() })
+    }
+
+    /// The same with a table of the gap of its own.
+    pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
+        let table = Table::new(Arc::clone(&problem.gap), from, &mut || true).ok()?;
+        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, || true)
+    }
+
+    /// The largest contact radius of the curve.
+    pub fn outermost(&self) -> f64 {
+        self.samples.first().map_or(0.0, |at| at.contact_radius)
+    }
+
+    /// The smallest contact radius of the curve.
+    pub fn innermost(&self) -> f64 {
+        self.samples.last().map_or(0.0, |at| at.contact_radius)
+    }
+
+    /// The same curve on a solution that reaches further out, to `to` or as far as the gap is known; false when nothing
+    /// could be added.
+    pub fn reach(&mut self, to: f64) -> bool {
+        let to = to.min(self.equilibrium.problem.largest_contact());
+        if to <= self.solution.reach() {
+            return false;
+        }
+        let Equilibrium { problem, basis, .. } = &self.equilibrium;
+        let Some(solution) = basis.solution(problem, self.innermost(), to, &mut || true) else {
+            return false;
+        };
+        let further = solution.reach() > self.solution.reach();
+        self.solution = solution;
+        self.held =
+            self.held.iter().map(|held| Arc::new(Monotone::of(&*self.solution, held.control))).collect();
+        further
+    }
+
+    /// The stretches of `control` over the whole solution.
+    pub fn monotone(&self, control: Control) -> Arc<Monotone> {
+        let held = self.held.iter().find(|held| held.control == control);
+        held.map_or_else(|| Arc::new(Monotone::of(&*self.solution, control)), Arc::clone)
+    }
+
+    /// Holds the stretches of `control` from now on: they are found once.
+    pub fn hold(&mut self, control: Control) {
+        if self.held.iter().all(|held| held.control != control) {
+            self.held.push(self.monotone(control));
+        }
+    }
+
+    /// The limit points of `control` on the curve, to rounding, from the start inward.
+    pub fn limit_points(&self, control: Control) -> Vec<Limit> {
+        let (lo, hi) = (self.innermost(), self.outermost());
+        let monotone = self.monotone(control);
+        let on_curve =
+            monotone.limits.iter().rev().filter(|at| lo <= at.contact_radius && at.contact_radius <= hi);
+        on_curve.copied().collect()
+    }
+
+    /// The radii of the corners of the curve, where the slope of the gap jumps, ascending.
+    pub fn corners(&self) -> Vec<f64> {
+        let outer = |panel| self.solution.at(Place { panel, x: -1.0 });
+        (1..self.solution.len())
+            .map(outer)
+            .filter(|at| at.stretch == 0.0 && at.slopes[0] != 0.0)
+            .map(|at| at.contact_radius)
+            .collect()
+    }
+
+    /// The state at a place, with its energy.
+    pub fn state(&self, place: Place) -> State {
+        let Local { contact_radius, approach, force, .. } = self.solution.at(place);
+        State { contact_radius, approach, force, energy: self.solution.energy(place) }
+    }
+
+    /// The first point of a walk outward from the corner at the radius `s`: at the distance `length`, in units of the scales, or at
+    /// the end of the panel. `None` where there is no corner.
+    ///
+    /// Just outside a corner the curve is vertical, which no tangent by s can say.
+    pub fn beyond_corner(&self, s: f64, length: f64) -> Option<Point> {
+        let place = self.solution.place(s)?;
+        let Place { panel, .. } = outer_side(&*self.solution, place);
+        if panel == place.panel {
+            return None;
+        }
+        let corner = self.equilibrium.explicit(s)?;
+        let span = self.solution.span(panel);
+        let distance = |x: f64| {
+            let point = self.equilibrium.explicit(span.radius(x));
+            point.map_or(f64::INFINITY, |point| (point.y - corner.y).norm())
+        };
+        let (mut near, mut far) = (-1.0, 1.0);
+        if distance(far) > length {
+            for _ in 0..60 {
+                let middle = 0.5 * (near + far);
+                if distance(middle) > length { far = middle } else { near = middle }
+            }
+        }
+        self.equilibrium.explicit(span.radius(far))
+    }
+
+    /// The same stretch of curve by spherical arc-length continuation, landing exactly on its end and on each corner on
+    /// the way, from which it goes on with the tangent of the other side.
+    ///
+    /// `adjust` may change the settings of the tracer. The scales of the arc length are the ranges of δ, P and s.
+    pub fn traced(
+        &self,
+        adjust: impl FnOnce(&mut Settings),
+        mut go_on: impl FnMut() -> bool,
+    ) -> Option<(Branch<{ unknown::COUNT }>, CurveStop)> {
+        let mut settings = settings(&self.equilibrium);
+        adjust(&mut settings);
+        let (from, to) = (self.outermost(), self.innermost());
+        let ends: Vec<f64> =
+            self.corners().into_iter().rev().filter(|s| to < *s && *s < from).chain([to]).collect();
+        let mut branch = Branch::default();
+        let mut start = self.equilibrium.explicit(from)?;
+        for end in ends {
+            let last = self.equilibrium.explicit(end)?;
+            let corner = end > to;
+            let value = end / self.equilibrium.scales.contact_radius;
+            // Next to a corner the curve is vertical, and what Newton's method knows of it ends at the corner.
+            let is_near = |branch: &Branch<{ unknown::COUNT }>| {
+                let near = |point: &Point| (point.y - last.y).norm() <= CORNER_STEP;
+                corner && branch.points.last().is_some_and(near)
+            };
+            let mut wanted = true;
+            let aim = End { unknown: unknown::CONTACT_RADIUS, value };
+            let (mut piece, stop) = trace(&self.equilibrium, start, aim, &settings, |branch| {
+                wanted = wanted && go_on();
+                wanted && !is_near(branch)
+            });
+            branch.work += piece.work;
+            let landed = wanted && stop != Stop::End && is_near(&piece);
+            if landed {
+                let mut point = last.clone();
+                if let Some(before) = piece.points.last() {
+                    point.length = (point.y - before.y).norm();
+                    point.turning = step_size::turning(before, &point);
+                }
+                piece.points.push(point);
+            }
+            let joint = usize::from(!branch.points.is_empty());
+            branch.points.extend(piece.points.into_iter().skip(joint));
+            if stop != Stop::End && !landed {
+                return Some((branch, CurveStop::Tracer(stop)));
+            }
+            start = last;
+        }
+        Some((branch, self.stop))
+    }
+}

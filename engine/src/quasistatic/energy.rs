@@ -1,0 +1,102 @@
+//! What a jump dissipates, computed twice.
+//!
+//! At constant control the device and the bodies together hold the potential
+//!
+//! ```text
+//! displacement  U            force  U − Pδ            stiffness k  U + ½k(Δ − δ)² = U + P²/2k
+//! ```
+//!
+//! A jump dissipates its drop. Along the curve dU = P dδ, so the drop is also the area between the curve and the control
+//! line, in a form in which the stiffness does not appear,
+//!
+//! ```text
+//! snap       ∫_{s₂}^{s₁} (P − P₁)(dδ/ds) ds + ½(P₁ − P₂)(δ₁ − δ₂)
+//! pull-off   ∫₀^{s₁} (P − P₁)(dδ/ds) ds + P₁δ₁ + P₁²/2k
+//! ```
+//!
+//! After a pull-off the curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is
+//! no such place: the load falls for ever and no loss is reported. Both numbers are read from one table: that they agree
+//! checks the event and the quadrature, not the table.
+
+use super::equilibrium::State;
+use crate::disc::{Place, Solution, sources::GAUSS};
+use crate::problem::Control;
+
+/// The potential of bodies and device at `state`, but for a constant of the control.
+pub fn potential(control: Control, value: f64, state: &State) -> f64 {
+    match control {
+        Control::Displacement => state.energy,
+        Control::Force => state.energy - value * state.approach,
+        Control::Stiffness(k) => state.energy + 0.5 * state.force * state.force / k,
+    }
+}
+
+/// The energy lost in a jump as the drop of the potential; `after` is `None` for a pull-off.
+///
+/// `None` for a pull-off under a dead load.
+pub fn loss(control: Control, before: &State, after: Option<&State>) -> Option<f64> {
+    let Some(after) = after else {
+        return (control != Control::Force).then(|| potential(control, 0.0, before));
+    };
+    // The device's part as a product: its energy can be a billion times the loss, and would cancel.
+    let device = match control {
+        Control::Displacement => 0.0,
+        Control::Force => -before.force * (before.approach - after.approach),
+        Control::Stiffness(k) => 0.5 * (before.force - after.force) * (before.force + after.force) / k,
+    };
+    Some(before.energy - after.energy + device)
+}
+
+/// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
+///
+/// `None` for a pull-off under a dead load, or where the basis has no equilibrium on the way.
+pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Option<Place>) -> Option<f64> {
+    let line = solution.at(before);
+    let compliance = match control {
+        Control::Displacement => 0.0,
+        Control::Force if after.is_none() => return None,
+        Control::Force => f64::INFINITY,
+        Control::Stiffness(k) => 1.0 / k,
+    };
+    let end = after.unwrap_or(Place { panel: 0, x: -1.0 });
+    // Outward the same stretch is passed the other way.
+    let is_inward = (end.panel, end.x) <= (before.panel, before.x);
+    let (end, before, sign) = if is_inward { (end, before, 1.0) } else { (before, end, -1.0) };
+    let mut sum = 0.0;
+    for panel in end.panel..=before.panel {
+        if panel < before.panel && !solution.is_joined(panel) {
+            return None;
+        }
+        if panel == 0 && after.is_none() {
+            // To the axis: where adhesion alone rules, δ is a power of √s.
+            let span = solution.span(0);
+            let outer = if before.panel == 0 { solution.at(before).contact_radius } else { span.hi };
+            let [from, to] = [span.lo.sqrt(), outer.sqrt()];
+            for [x, weight] in GAUSS.iter() {
+                let root = 0.5 * (from + to) + 0.5 * (to - from) * x;
+                let at = solution.at(Place { panel, x: span.place(root * root) });
+                let slope = at.slopes[0] / at.stretch * 2.0 * root;
+                sum += 0.5 * (to - from) * weight * (at.force - line.force) * slope;
+            }
+            continue;
+        }
+        let from = if panel == end.panel { end.x } else { -1.0 };
+        let to = if panel == before.panel { before.x } else { 1.0 };
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let span = solution.span(panel);
+        let [_, width] = span.line();
+        for four in GAUSS.as_chunks::<4>().0 {
+            let found = solution.at_four(panel, four.map(|[x, _]| middle + half * x));
+            for (at, [_, weight]) in found.iter().zip(four) {
+                sum += weight * half * width * (at.force - line.force) * at.slopes[0];
+            }
+        }
+    }
+    if let Some(to) = after.map(|place| solution.at(place)) {
+        return Some(sign * sum + 0.5 * (line.force - to.force) * (line.approach - to.approach));
+    }
+    // Rings begin a little outside the axis: what is missing there is a rectangle to rounding.
+    let first = solution.at(end);
+    let rest = (first.force - line.force) * first.approach;
+    Some(sum + rest + line.force * line.approach + 0.5 * line.force * line.force * compliance)
+}

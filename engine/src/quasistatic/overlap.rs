@@ -1,0 +1,270 @@
+//! Where a curve or a path passes states that are not admissible, and at which crest.
+//!
+//! Where the state is stable under displacement control the gap at every radius outside falls as the disc grows,
+//!
+//! ```text
+//! d gap(r)/ds = −(2/π)[√(2πγs)/√(r² − s²) + (dδ/ds) arccos(s/r)] < 0   where dδ/ds ≥ 0,
+//! ```
+//!
+//! so on such a stretch the verdict can change once: its two ends tell, and one root in between. Elsewhere, and without
+//! adhesion, where the pressure has a say, every state of the curve is looked at.
+
+use super::admissible::{Admissibility, Crest, Judge};
+use super::curve::Curve;
+use super::monotone::Monotone;
+use crate::problem::Control;
+use std::sync::Arc;
+
+/// An end is located when its bracket is this small relative to it.
+const LOCATED: f64 = 1e-9;
+
+/// Neighbouring states of a curve that are not admissible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// The largest contact radius.
+    pub from: f64,
+    /// The smallest contact radius.
+    pub to: f64,
+    /// The crest that overlaps most among the states looked at; `None` where only the pressure is at fault.
+    pub crest: Option<Crest>,
+}
+
+impl Overlap {
+    /// Whether the state of contact radius `s` is one of them.
+    pub fn contains(&self, s: f64) -> bool {
+        self.to <= s && s <= self.from
+    }
+}
+
+/// The states of `curve` that are not admissible, from its start inward.
+pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
+    overlaps_while(curve, &mut || true).unwrap_or_default()
+}
+
+/// The same; `go_on` is asked before each state, `None` when it said no.
+pub fn overlaps_while(curve: &Curve, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Overlap>> {
+    passed_while(curve, &[[curve.outermost(), curve.innermost()]], go_on)
+}
+
+/// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
+/// what a path passes, see [`Unloading::pieces`](super::Unloading::pieces).
+///
+/// `go_on` is asked before each state, `None` when it said no.
+pub fn passed_while(
+    curve: &Curve,
+    pieces: &[[f64; 2]],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Vec<Overlap>> {
+    let mut curve = curve.clone();
+    curve.reach(pieces.iter().map(|[from, _]| *from).fold(0.0, f64::max));
+    let mut search = Search {
+        judge: curve.equilibrium.judge(),
+        stretches: curve.monotone(Control::Displacement),
+        curve: &curve,
+        go_on,
+        found: Vec::new(),
+        open: None,
+    };
+    for &[from, to] in pieces {
+        search.piece(from, to)?;
+        search.open = None;
+    }
+    Some(search.found)
+}
+
+/// Why a state is not admissible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cause {
+    /// A crest overlaps; its number, where it has one.
+    Crest(Option<u64>),
+    /// The disc would have to pull.
+    Pressure,
+}
+
+struct Search<'a> {
+    curve: &'a Curve,
+    judge: Judge,
+    stretches: Arc<Monotone>,
+    go_on: &'a mut dyn FnMut() -> bool,
+    found: Vec<Overlap>,
+    /// The fault of the interval that is still open.
+    open: Option<Cause>,
+}
+
+impl Search<'_> {
+    /// The state of radius `s`; `None` when it is no longer wanted.
+    fn state(&mut self, s: f64) -> Option<Admissibility> {
+        if !(self.go_on)() {
+            return None;
+        }
+        let place = self.curve.solution.place(s)?;
+        Some(self.judge.verdict(s, self.curve.solution.at(place).approach))
+    }
+
+    /// One piece, from `from` inward to `to`.
+    fn piece(&mut self, from: f64, to: f64) -> Option<()> {
+        let monotone = Arc::clone(&self.stretches);
+        let adhesive = self.curve.equilibrium.problem.work_of_adhesion > 0.0;
+        for stretch in monotone.stretches.iter().rev() {
+            let (outer, inner) = (stretch.radii[1].min(from), stretch.radii[0].max(to));
+            if inner > outer || (inner >= outer && from > to) {
+                continue;
+            }
+            if stretch.rising && adhesive {
+                self.once(outer, inner)?;
+            } else {
+                self.each(outer, inner)?;
+            }
+        }
+        Some(())
+    }
+
+    /// A stretch on which the verdict can change once, from inadmissible outside to admissible inside.
+    fn once(&mut self, outer: f64, inner: f64) -> Option<()> {
+        let outside = self.state(outer)?;
+        if outside.holds {
+            self.open = None;
+            return Some(());
+        }
+        let inside = self.state(inner)?;
+        let end = if inside.holds { self.end(outer, inner)? } else { inner };
+        self.add(outer, end, &outside);
+        if inside.holds {
+            self.open = None;
+        }
+        Some(())
+    }
+
+    /// A stretch whose states are looked at one by one.
+    fn each(&mut self, outer: f64, inner: f64) -> Option<()> {
+        let curve = self.curve;
+        let between = curve.samples.iter().map(|at| at.contact_radius).filter(|s| inner < *s && *s < outer);
+        let mut last: Option<(f64, bool)> = None;
+        for s in std::iter::once(outer).chain(between).chain([inner]) {
+            let here = self.state(s)?;
+            match last {
+                Some((good, true)) if !here.holds => {
+                    let from = self.end(s, good)?;
+                    self.add(from, s, &here);
+                }
+                Some((bad, false)) if here.holds => {
+                    let to = self.end(bad, s)?;
+                    if let Some(overlap) = self.found.last_mut() {
+                        overlap.to = to;
+                    }
+                    self.open = None;
+                }
+                _ if !here.holds => self.add(s, s, &here),
+                _ => self.open = None,
+            }
+            last = Some((s, here.holds));
+        }
+        Some(())
+    }
+
+    /// Adds the states from `from` inward to `to`, at fault as `state`, to the interval that is open, or begins one: at another
+    /// crest, or for the pressure, an interval is one of its own.
+    fn add(&mut self, from: f64, to: f64, state: &Admissibility) {
+        let crest = state.overlapping();
+        let cause = crest.map_or(Cause::Pressure, |crest| Cause::Crest(crest.wave));
+        match self.found.last_mut() {
+            Some(overlap) if self.open == Some(cause) => {
+                overlap.to = to;
+                let gap = |crest: Option<Crest>| crest.map_or(f64::INFINITY, |crest| crest.gap);
+                if gap(crest) < gap(overlap.crest) {
+                    overlap.crest = crest;
+                }
+            }
+            _ => self.found.push(Overlap { from, to, crest }),
+        }
+        self.open = Some(cause);
+    }
+
+    /// The last radius that is not admissible between one that is not and one that is, by halving.
+    fn end(&mut self, mut bad: f64, mut good: f64) -> Option<f64> {
+        while (good - bad).abs() > LOCATED * bad {
+            let middle = 0.5 * (good + bad);
+            if self.state(middle)?.holds { good = middle } else { bad = middle }
+        }
+        Some(bad)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::disc::{Exact, Table};
+    use crate::gap::Shape;
+    use crate::problem::{Problem, Reduced};
+    use crate::quasistatic::Detail;
+    use crate::quasistatic::unload::unload;
+    use std::f64::consts::TAU;
+    use std::sync::Arc;
+
+    fn wavy(amplitude: f64, wavelength: f64, gamma: f64) -> Reduced {
+        let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength };
+        Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced()
+    }
+
+    fn curve(problem: &Reduced, to: f64) -> Curve {
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let basis = Arc::new(Exact::new(Arc::clone(&table), 0.5));
+        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, || true).unwrap()
+    }
+
+    fn holds(curve: &Curve, s: f64) -> bool {
+        let equilibrium = &curve.equilibrium;
+        let at = equilibrium.basis.equilibrium(&equilibrium.problem, s).unwrap();
+        equilibrium.judge().judge(s, at.approach).holds
+    }
+
+    #[test]
+    fn a_curve_says_where_it_is_inadmissible_and_at_which_crest() {
+        let problem = wavy(0.0025, 0.05, 1e-4);
+        let curve = curve(&problem, 0.04);
+        let found = overlaps(&curve);
+        // One below each crest from the tenth to the second: the edge is between it and the last trough.
+        let crests: Vec<u64> = found.iter().filter_map(|overlap| overlap.crest?.wave).collect();
+        assert_eq!(crests, [10, 9, 8, 7, 6, 5, 4, 3, 2]);
+        for overlap in &found {
+            let holds = |s: f64| holds(&curve, s);
+            let (out, inward) = (1.0 + 2e-6, 1.0 - 2e-6);
+            assert!(holds(overlap.from * out) && !holds(overlap.from * inward), "{overlap:?}");
+            assert!(!holds(overlap.to * out) && holds(overlap.to * inward), "{overlap:?}");
+        }
+        // Every state of the figures of the paper is possible.
+        let problem = wavy(0.0025, 0.05, 0.025 / TAU);
+        assert_eq!(overlaps(&super::tests::curve(&problem, 0.02)), []);
+    }
+
+    #[test]
+    fn a_path_passes_what_is_on_its_stable_pieces_alone() {
+        let problem = wavy(0.0025, 0.05, 1e-4);
+        let whole = curve(&problem, 0.04);
+        let on_curve = overlaps(&whole);
+        for control in [Control::Displacement, Control::Force] {
+            let path = unload(&whole, control).unwrap();
+            let passed = passed_while(&whole, &path.pieces, &mut || true).unwrap();
+            let on_path = |s: f64| path.pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
+            for overlap in &passed {
+                assert!(on_path(overlap.from) && on_path(overlap.to), "{overlap:?}");
+                // An end is one of the curve's, or that of a piece: a limit point or a landing.
+                for s in [overlap.from, overlap.to] {
+                    let of_curve = on_curve.iter().any(|o| near(o.from, s) || near(o.to, s));
+                    assert!(of_curve || path.pieces.as_flattened().contains(&s), "{s} {path:?}");
+                }
+            }
+            let unseen = on_curve.iter().filter(|o| on_path(0.5 * (o.from + o.to)));
+            assert!(unseen.clone().all(|o| passed.iter().any(|p| p.contains(0.5 * (o.from + o.to)))));
+            // No more than asked for is looked at.
+            let mut left = 3;
+            let mut go_on = || {
+                left -= 1;
+                left >= 0
+            };
+            assert_eq!(passed_while(&whole, &path.pieces, &mut go_on), None);
+        }
+        assert_eq!(overlaps_while(&whole, &mut || false), None);
+    }
+}

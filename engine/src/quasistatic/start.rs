@@ -1,0 +1,178 @@
+//! The state a path starts from.
+
+use super::monotone::Monotone;
+use crate::disc::Basis;
+use crate::gap::Gap;
+use crate::problem::{Control, Reduced, Start, Units};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt;
+
+/// Why a start state was not found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The basis has no equilibrium at the radius.
+    NoEquilibrium(f64),
+    /// No contact carries the value.
+    OutOfReach {
+        /// `approach` or `force`.
+        name: &'static str,
+        /// The value asked for.
+        value: f64,
+        /// The smallest on the curve.
+        smallest: f64,
+    },
+    /// The value is beyond what is known of the gap.
+    NotKnown {
+        /// `approach` or `force`.
+        name: &'static str,
+        /// The value asked for.
+        value: f64,
+        /// The largest radius tried.
+        searched: f64,
+        /// The largest radius known.
+        known: f64,
+    },
+    /// The curve was not found to rise above the value.
+    NotReached {
+        /// `approach` or `force`.
+        name: &'static str,
+        /// The value asked for.
+        value: f64,
+        /// The largest radius tried.
+        largest: f64,
+    },
+}
+
+impl fmt::Display for StartError {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
+impl StartError {
+    /// What is wrong, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        let radius = |s| said(shown, Quantity::Length, s);
+        let of = |name, x| {
+            let quantity = if name == "force" { Quantity::Force } else { Quantity::Length };
+            said(shown, quantity, x)
+        };
+        match *self {
+            Self::NoEquilibrium(s) => format!("there is no equilibrium at the contact radius {}", radius(s)),
+            Self::OutOfReach { name, value, smallest } => {
+                let (value, smallest) = (of(name, value), of(name, smallest));
+                format!("no contact has the {name} {value}; the smallest on the curve is {smallest}")
+            }
+            Self::NotKnown { name, value, searched, known } => {
+                let (value, searched, known) = (of(name, value), radius(searched), radius(known));
+                format!(
+                    "no contact up to the radius {searched} has the {name} {value}, and the gap is known up to the \
+                     radius {known} only"
+                )
+            }
+            Self::NotReached { name, value, largest } => {
+                let (value, largest) = (of(name, value), radius(largest));
+                format!("no contact up to the radius {largest} reaches the {name} {value}")
+            }
+        }
+    }
+
+    /// The same error with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        let of = |name: &str| if name == "force" { units.force } else { units.length };
+        match self {
+            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
+            Self::OutOfReach { name, value, smallest } => {
+                Self::OutOfReach { name, value: value * of(name), smallest: smallest * of(name) }
+            }
+            Self::NotKnown { name, value, searched, known } => Self::NotKnown {
+                name,
+                value: value * of(name),
+                searched: searched * units.length,
+                known: known * units.length,
+            },
+            Self::NotReached { name, value, largest } => {
+                Self::NotReached { name, value: value * of(name), largest: largest * units.length }
+            }
+        }
+    }
+}
+
+/// How far out a start is looked for, as a multiple of the radius where a paraboloid of the reference length takes the value.
+const FARTHEST: f64 = 1e12;
+
+/// A search ends when it takes more panels than this.
+const MOST_PANELS: usize = 100_000;
+
+/// A curve above the value over so many times its radius is not looked at further out.
+const ABOVE: f64 = 2.0;
+
+/// The contact radius of the start state.
+///
+/// For an approach or a preload the curve is looked at further and further out, until it stays above the value over a
+/// factor of two in radius; the outermost state that takes it, stable under the control, is the start. Where the gap is
+/// known up to a radius only, the outermost within it is.
+///
+/// # Errors
+/// [`StartError`] when there is none.
+pub fn contact_radius(
+    problem: &Reduced,
+    basis: &dyn Basis,
+    start: Start,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<f64, StartError> {
+    let (control, value, name) = match start {
+        Start::ContactRadius(s) => {
+            return basis.equilibrium(problem, s).map(|_| s).ok_or(StartError::NoEquilibrium(s));
+        }
+        Start::Approach(value) => (Control::Displacement, value, "approach"),
+        Start::Force(value) => (Control::Force, value, "force"),
+    };
+    // The radii at which a paraboloid of R = 1 takes the value, with and without adhesion.
+    let elastic = if control == Control::Force { value.abs().cbrt() } else { value.abs().sqrt() };
+    let adhesive = problem.work_of_adhesion.cbrt();
+    let unit = elastic.max(adhesive).max(f64::MIN_POSITIVE);
+    let largest = FARTHEST * unit;
+    let most = problem.largest_contact();
+    let from = 1e-3 * unit.min(most);
+    let mut reach = (2.0 * unit).min(most);
+    loop {
+        let solution = basis.solution(problem, from, reach, go_on);
+        if let Some(solution) = &solution {
+            let monotone = Monotone::of(&**solution, control);
+            let stretches = &monotone.stretches;
+            let last = stretches.iter().rposition(|stretch| stretch.rising && stretch.takes(value));
+            // What lies further out is above the value: over a factor of two, or to where the gap ends.
+            let outer = if reach < most { reach / ABOVE } else { reach * (1.0 - 1e-9) };
+            let above = stretches.iter().all(|stretch| {
+                let lowest = stretch.values[0].min(stretch.values[1]);
+                let inside = stretch.radii[1] <= outer || Some(stretch) == last.map(|at| &stretches[at]);
+                inside || lowest > value || stretch.radii[0] < outer && !stretch.takes(value)
+            });
+            // Where it still falls it may reach the value further out.
+            let ends = stretches.last().is_some_and(|stretch| stretch.rising && stretch.values[1] > value);
+            let found = last.map(|at| {
+                let place = monotone.solve(&**solution, &stretches[at], value);
+                solution.at(place).contact_radius
+            });
+            let known = found.is_some() && reach >= most;
+            if known || ends && above && found.is_none_or(|s| s <= outer) {
+                let smallest =
+                    stretches.iter().flat_map(|stretch| stretch.values).fold(f64::INFINITY, f64::min);
+                return found.ok_or(StartError::OutOfReach { name, value, smallest });
+            }
+        }
+        if reach >= most {
+            let known = problem.gap.largest_radius().unwrap_or(most);
+            return Err(StartError::NotKnown { name, value, searched: reach, known });
+        }
+        let panels = solution.map_or(usize::MAX, |solution| solution.len());
+        if reach >= largest || panels > MOST_PANELS {
+            return Err(StartError::NotReached { name, value, largest: reach });
+        }
+        reach = (2.0 * reach).min(most);
+    }
+}

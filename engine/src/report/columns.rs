@@ -1,0 +1,78 @@
+//! What the columns of CSV measure, for the person who reads their numbers.
+//!
+//! The header names stay as they are and no comment stands above them: programs read these files. So the units are told
+//! beside them.
+
+use crate::problem::Control;
+use crate::units::{Quantity, UnitSystem};
+
+/// What a column of numbers measures; `None` for pure numbers, words and verdicts.
+fn quantity(column: &str, control: Control) -> Option<Quantity> {
+    let of_state = ["before_", "after_", "exact_"].iter().find_map(|prefix| column.strip_prefix(prefix));
+    match of_state.unwrap_or(column) {
+        "contact_radius" | "approach" | "area_slope" => Some(Quantity::Length),
+        "force" => Some(Quantity::Force),
+        "energy" | "dissipated" | "dissipated_by_area" => Some(Quantity::Energy),
+        "contact_stiffness" | "tangent_stiffness" => Some(Quantity::ForcePerLength),
+        // What the grips hold: a spring's other end is moved.
+        "control_value" => Some(if control == Control::Force { Quantity::Force } else { Quantity::Length }),
+        _ => None,
+    }
+}
+
+/// The units of the columns in one line; `None` in reduced units, which have none.
+pub fn units(columns: &[&str], control: Control, units: &UnitSystem) -> Option<String> {
+    if *units == UnitSystem::Reduced {
+        return None;
+    }
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for column in columns {
+        let Some(unit) = quantity(column, control).and_then(Quantity::si) else { continue };
+        match groups.iter_mut().find(|(known, _)| *known == unit) {
+            Some((_, names)) => names.push(column),
+            None => groups.push((unit, vec![column])),
+        }
+    }
+    let told: Vec<String> =
+        groups.iter().map(|(unit, names)| format!("{} in {unit}", names.join(", "))).collect();
+    Some(format!("units of the CSV: {}", told.join("; ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{trace, unload};
+    use crate::units::DisplayUnits;
+
+    #[test]
+    fn every_column_has_its_unit_or_needs_none() {
+        let pure = [
+            "step",
+            "newton_iterations",
+            "stable_displacement",
+            "stable_force",
+            "stable_chosen",
+            "admissible",
+            "exact_relative_difference",
+            "kind",
+            "before_wave",
+            "after_wave",
+            "reason",
+        ];
+        let all = trace::COLUMNS.iter().chain(trace::EXACT_COLUMNS).chain(unload::COLUMNS);
+        for column in all {
+            assert_eq!(quantity(column, Control::Force).is_none(), pure.contains(column), "{column}");
+        }
+        let si = UnitSystem::Si(DisplayUnits::default());
+        assert_eq!(
+            units(trace::COLUMNS, Control::Force, &si).unwrap(),
+            "units of the CSV: contact_radius, approach, area_slope in m; force in N; energy in J; \
+             contact_stiffness, tangent_stiffness in N/m"
+        );
+        let value = |control| units(&["control_value"], control, &si).unwrap();
+        assert!(
+            value(Control::Force).ends_with(" in N") && value(Control::Stiffness(1.0)).ends_with(" in m")
+        );
+        assert_eq!(units(trace::COLUMNS, Control::Force, &UnitSystem::Reduced), None);
+    }
+}

@@ -1,0 +1,286 @@
+//! The equilibrium curve as a document.
+
+use super::number::{significant, with_unit};
+use super::overlap::{self, OverlapReport};
+use super::problem::ProblemReport;
+use super::unload::control_name;
+use super::{SCHEMA, rows};
+use crate::case::{Case, CaseError};
+use crate::preset::Preset;
+use crate::problem::Control;
+use crate::quasistatic::overlap::overlaps;
+use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point};
+use crate::theory::{self, Exact};
+use crate::units::Quantity;
+use serde::Serialize;
+
+/// The equilibrium curve with its limit points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TraceReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// What was computed.
+    pub problem: ProblemReport,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
+    /// Said when the start is unstable under the control: an unloading does not begin there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_note: Option<String>,
+    /// Why the trace ended, in words.
+    pub stop: String,
+    /// The smallest force on the curve.
+    pub curve_min_force: Option<f64>,
+    /// The smallest approach on the curve.
+    pub curve_min_approach: Option<f64>,
+    /// The limit points under displacement, force and the device, each from the start inward.
+    pub limit_points: Vec<LimitReport>,
+    /// Where the curve is not admissible, from the start inward.
+    pub inadmissible: Vec<OverlapReport>,
+    /// The points.
+    pub points: Vec<PointReport>,
+}
+
+/// One point of the curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PointReport {
+    /// Its number, from 0.
+    pub step: usize,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// U = −Φ.
+    pub energy: f64,
+    /// Newton rounds spent on it.
+    pub newton_iterations: usize,
+    /// Its stability under each control.
+    pub stable: StableReport,
+    /// ∂P/∂δ at the contact radius held fast, a force per length.
+    pub contact_stiffness: f64,
+    /// dP/dδ along the curve, a force per length; null where it is infinite, at a limit point of displacement.
+    pub tangent_stiffness: Option<f64>,
+    /// dA/dδ along the curve, A = πs², a length; null where it is infinite.
+    pub area_slope: Option<f64>,
+    /// Whether the bodies stay apart outside the disc and, without adhesion, nothing pulls inside.
+    pub admissible: bool,
+    /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<ExactReport>,
+}
+
+/// The exact solution at the contact radius of a point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExactReport {
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// U.
+    pub energy: f64,
+    /// P of the point less the exact P, over the exact P: near P = 0 rounding is seen.
+    pub relative_difference: f64,
+}
+
+impl PointReport {
+    /// The state at `step` of a curve of `case`, which is not admissible where it lies in one of `overlapping`.
+    fn new(
+        case: &Case,
+        equilibrium: &Equilibrium,
+        step: usize,
+        point: &Point,
+        overlapping: &[Overlap],
+    ) -> Self {
+        let units = case.units();
+        let state = equilibrium.state(point).in_units(units);
+        let stability = equilibrium.stability(point);
+        let stiffness = equilibrium.stiffness(point).in_units(units);
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let s = equilibrium.contact_radius(point);
+        Self {
+            step,
+            contact_radius: state.contact_radius,
+            approach: state.approach,
+            force: state.force,
+            energy: state.energy,
+            newton_iterations: point.rounds,
+            stable: StableReport {
+                displacement: stability.under(Control::Displacement),
+                force: stability.under(Control::Force),
+                chosen: stability.under(case.control),
+            },
+            contact_stiffness: stiffness.contact,
+            tangent_stiffness: finite(stiffness.tangent),
+            area_slope: finite(stiffness.area_slope),
+            admissible: !overlapping.iter().any(|overlap| overlap.contains(s)),
+            exact: None,
+        }
+    }
+}
+
+impl ExactReport {
+    /// `force` of a point beside the exact equilibrium at its radius.
+    fn new(force: f64, exact: &theory::Equilibrium) -> Self {
+        Self {
+            approach: exact.approach,
+            force: exact.force,
+            energy: exact.energy,
+            relative_difference: (force - exact.force) / exact.force.abs(),
+        }
+    }
+}
+
+/// Stability under each control.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct StableReport {
+    /// When the approach is held.
+    pub displacement: bool,
+    /// When the force is held.
+    pub force: bool,
+    /// When the chosen control is held.
+    pub chosen: bool,
+}
+
+/// One limit point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LimitReport {
+    /// The control that turns there.
+    pub control: Control,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The crest of the edge; none for a gap without waves.
+    pub wave: Option<u64>,
+}
+
+/// The columns of the points as CSV; they never change, new ones come behind them.
+pub const COLUMNS: &[&str] = &[
+    "step",
+    "contact_radius",
+    "approach",
+    "force",
+    "energy",
+    "newton_iterations",
+    "stable_displacement",
+    "stable_force",
+    "stable_chosen",
+    "contact_stiffness",
+    "tangent_stiffness",
+    "area_slope",
+    "admissible",
+];
+
+/// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
+pub const EXACT_COLUMNS: &[&str] =
+    &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
+
+/// Why an unloading does not begin where the curve does.
+fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<String> {
+    let length = |s| with_unit(&preset.units, Quantity::Length, s, true, |s| significant(s, 6));
+    (!start.stable.chosen).then(|| {
+        format!(
+            "the start (contact radius {}) is unstable under {} control: an unloading does not begin there",
+            length(start.contact_radius),
+            control_name(case.control)
+        )
+    })
+}
+
+impl TraceReport {
+    /// Traces `preset` by arc length and reports it.
+    ///
+    /// # Errors
+    /// [`CaseError`] when it cannot be computed.
+    pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
+        let case = Case::new(preset)?;
+        let curve = case.curve(|| true)?;
+        let (branch, stop) = case.trace(&curve)?;
+        Ok(Self::new(preset, &case, &curve, &branch.points, stop))
+    }
+
+    /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
+    #[must_use]
+    pub fn beside(mut self, exact: &Exact) -> Self {
+        let radii: Vec<f64> = self.points.iter().map(|point| point.contact_radius).collect();
+        let mut unresolved = 0;
+        for (point, exact) in self.points.iter_mut().zip(exact.curve(&radii)) {
+            unresolved += usize::from(!exact.resolved);
+            point.exact = Some(ExactReport::new(point.force, &exact));
+        }
+        if unresolved > 0 {
+            self.warnings.push(format!(
+                "the integrals of the exact solution are not resolved at {unresolved} of {} points: its waves are too \
+                 many, and its digits there uncertain",
+                self.points.len()
+            ));
+        }
+        self
+    }
+
+    /// The document of a curve of `case`, its points `traced` along it by arc length.
+    pub fn new(preset: &Preset, case: &Case, curve: &Curve, traced: &[Point], stop: CurveStop) -> Self {
+        let units = case.units();
+        let equilibrium = &curve.equilibrium;
+        let overlapping = overlaps(curve);
+        let inadmissible = OverlapReport::all(&overlapping, units);
+        let points: Vec<PointReport> = traced
+            .iter()
+            .enumerate()
+            .map(|(step, point)| PointReport::new(case, equilibrium, step, point, &overlapping))
+            .collect();
+        let limit_points: Vec<LimitReport> = case
+            .controls()
+            .into_iter()
+            .flat_map(|control| curve.limit_points(control))
+            .map(|limit| LimitReport {
+                control: case.shown_control(limit.control),
+                contact_radius: limit.contact_radius * units.length,
+                approach: limit.approach * units.length,
+                force: limit.force * units.force,
+                wave: equilibrium.wave(limit.contact_radius),
+            })
+            .collect();
+        let smallest = |of: fn((f64, f64)) -> f64| {
+            let points = points.iter().map(|p| (p.approach, p.force));
+            let limits = limit_points.iter().map(|p| (p.approach, p.force));
+            points.chain(limits).map(of).min_by(f64::total_cmp)
+        };
+        Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, case),
+            warnings: case
+                .warnings(curve.outermost())
+                .into_iter()
+                .chain(overlap::warning("the curve", &inadmissible, &preset.units))
+                .collect(),
+            notes: case.notes(curve.outermost()),
+            start_note: points.first().and_then(|start| start_note(preset, case, start)),
+            stop: stop.in_units(units).words(&preset.units),
+            curve_min_force: smallest(|(_, force)| force),
+            curve_min_approach: smallest(|(approach, _)| approach),
+            limit_points,
+            inadmissible,
+            points,
+        }
+    }
+
+    /// The points as CSV.
+    ///
+    /// # Errors
+    /// As [`rows::csv`].
+    pub fn csv(&self) -> Result<String, rows::RowsError> {
+        if self.points.iter().all(|point| point.exact.is_none()) {
+            return rows::csv(COLUMNS, &self.points);
+        }
+        rows::csv(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
+    }
+}

@@ -1,0 +1,89 @@
+//! The bases that are verified, and what each is held to.
+//!
+//! The bounds of the rings are for 200 of them, the default number: what a user may expect, up to twice what is
+//! measured. Those of the exact basis leave rounding some room.
+
+use super::cases::Figure;
+use crate::disc::{Basis, Exact, TableError};
+use crate::problem::Problem;
+use crate::ritz::{Rings, RingsError};
+use std::sync::Arc;
+
+/// Why a basis could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum VerifyError {
+    /// Ring elements.
+    #[error(transparent)]
+    Rings(#[from] RingsError),
+    /// The table of a gap.
+    #[error(transparent)]
+    Table(#[from] TableError),
+}
+
+/// What is verified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Settings {
+    /// N of the ring elements, 200 by default: the bounds are for it. Orders of convergence are observed from a
+    /// quarter of it.
+    pub rings: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { rings: 200 }
+    }
+}
+
+/// The largest differences that pass on the wavy spheres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Of δ, P and s at limit points and landings, over their ranges on the curve.
+    pub state: f64,
+    /// Of the smallest force and approach and of their contact radii, relative.
+    pub extreme: f64,
+    /// Of a loss, relative.
+    pub loss: f64,
+}
+
+/// N = 200. Measured are 0.06 % of the range, 0.1 % of the extreme values, 0.8 % of the losses.
+const RINGS: Bounds = Bounds { state: 1e-3, extreme: 2e-3, loss: 1e-2 };
+
+/// Rounding; losses are small differences of energies.
+const EXACT: Bounds = Bounds { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
+
+/// A basis on trial.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Its name with its number.
+    pub name: String,
+    /// The basis.
+    pub basis: Arc<dyn Basis>,
+    /// What it is held to.
+    pub bounds: Bounds,
+}
+
+/// The exact basis for `problem` in a largest contact of radius `s`.
+///
+/// # Errors
+/// [`VerifyError::Table`].
+pub fn exact(problem: &Problem, s: f64) -> Result<Arc<dyn Basis>, VerifyError> {
+    Ok(Arc::new(Exact::of(&problem.reduced(), s)?))
+}
+
+impl Settings {
+    /// Both bases for the paths of `figure`.
+    ///
+    /// # Errors
+    /// [`VerifyError`] when one cannot be made.
+    pub fn candidates(&self, figure: &Figure) -> Result<Vec<Candidate>, VerifyError> {
+        let exact = exact(&figure.problem, figure.start)?;
+        Ok(vec![
+            Candidate { name: "exact basis".to_owned(), basis: exact, bounds: EXACT },
+            Candidate {
+                name: format!("{} rings", self.rings),
+                basis: Rings::shared(self.rings).map_err(VerifyError::Rings)?,
+                bounds: RINGS,
+            },
+        ])
+    }
+}

@@ -1,0 +1,156 @@
+//! The unloading of a figure under three controls: every limit point, landing and loss against the exact path.
+//!
+//! The exact path is [`theory::unloading`](crate::theory::unloading): roots of the slopes of Guduru's closed form, the
+//! landings by monotone pieces between them, the losses from its energies (P. R. Guduru,
+//! doi:10.1016/j.jmps.2006.09.004; the paper's Fig. 10). Losses are compared twice: the drop of the potential with the
+//! exact one, and the area between the curve and the control line with that drop, instability by instability.
+
+use super::balance;
+use super::cases::Figure;
+use super::row::{Group, Row};
+use super::settings::Candidate;
+use crate::disc::Basis;
+use crate::problem::Control;
+use crate::quasistatic::unload::unload;
+use crate::quasistatic::{Curve, Event, State, Unloading};
+use crate::theory::unloading::{self, INWARD_REACH, Jump, limit_points};
+use crate::theory::{Disc, Equilibrium, Exact};
+use std::sync::Arc;
+
+/// Where a swept curve ends, as a share of its start: the default of presets.
+const END: f64 = 0.004;
+
+/// The drop of the potential and the area agree to this share of the loss.
+const TWO_LOSSES: f64 = 1e-6;
+
+/// The curve of `figure` in `basis`.
+pub fn swept(figure: &Figure, basis: &Arc<dyn Basis>) -> Option<Curve> {
+    Curve::of(figure.problem.reduced(), Arc::clone(basis), figure.start, END * figure.start)
+}
+
+/// s, δ and P as they are compared.
+const QUANTITIES: [&str; 3] = ["contact radius", "approach", "force"];
+
+fn of_ours(state: &State) -> [f64; 3] {
+    [state.contact_radius, state.approach, state.force]
+}
+
+fn of_exact(state: &Equilibrium) -> [f64; 3] {
+    [state.contact_radius, state.approach, state.force]
+}
+
+/// The unloadings of `figure` in one basis, a group for each control.
+pub fn groups(figure: &Figure, candidate: &Candidate) -> Vec<Group> {
+    let exact = Exact::of(&figure.problem);
+    let curve = swept(figure, &candidate.basis);
+    let group = |control| {
+        let title = format!("{} under {control} control, {}", figure.name, candidate.name);
+        let measure = "states over their range, losses relative";
+        let rows = rows(&*exact, figure, candidate, curve.as_ref(), control);
+        Group { title, measure, rows }
+    };
+    figure.controls().into_iter().map(group).collect()
+}
+
+fn rows(
+    exact: &dyn Disc,
+    figure: &Figure,
+    candidate: &Candidate,
+    curve: Option<&Curve>,
+    control: Control,
+) -> Vec<Row> {
+    let Some((curve, path)) = curve.zip(unloading::unload(exact, control, figure.start)) else {
+        return vec![Row::worst("equilibrium curve", [], 1.0, 0.0)];
+    };
+    let ranges = ranges(exact, figure);
+    let mut rows = limits(exact, figure, candidate, curve, control, ranges);
+    match unload(curve, control) {
+        Ok(ours) => {
+            rows.extend(states(&ours, &path.jumps, candidate, ranges));
+            rows.extend(losses(&ours, &path.jumps, candidate));
+            rows.push(balance::row(curve, &ours));
+        }
+        Err(_) => rows.push(Row::worst("unloading", [], 1.0, 0.0)),
+    }
+    rows
+}
+
+/// The ranges of s, δ and P on the exact curve from the start inward.
+fn ranges(exact: &dyn Disc, figure: &Figure) -> [f64; 3] {
+    /// As fine as a chart: only the size matters.
+    const POINTS: u32 = 1000;
+    let radii = (1..=POINTS).map(|i| figure.start * f64::from(i) / f64::from(POINTS));
+    let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    for s in radii {
+        for (range, x) in ranges.iter_mut().zip([s, exact.approach(s), exact.force(s)]) {
+            *range = [range[0].min(x), range[1].max(x)];
+        }
+    }
+    ranges.map(|[lo, hi]| hi - lo)
+}
+
+/// All limit points of the curve, on the path or inside a jump.
+fn limits(
+    exact: &dyn Disc,
+    figure: &Figure,
+    candidate: &Candidate,
+    curve: &Curve,
+    control: Control,
+    ranges: [f64; 3],
+) -> Vec<Row> {
+    let ours: Vec<f64> = curve.limit_points(control).iter().map(|limit| limit.contact_radius).collect();
+    let exact: Vec<f64> = limit_points(exact, control, figure.start, INWARD_REACH * figure.start)
+        .iter()
+        .map(|limit| limit.state.contact_radius)
+        .collect();
+    let what = format!("contact radius, worst of {}", exact.len());
+    vec![
+        Row::new("limit points on the curve", ours.len() as f64, exact.len() as f64, 1.0, 0.0),
+        Row::worst(what, ours.into_iter().zip(exact), ranges[0], candidate.bounds.state),
+    ]
+}
+
+/// The states that the instabilities leave, and those they reach.
+fn states(ours: &Unloading, exact: &[Jump], candidate: &Candidate, ranges: [f64; 3]) -> Vec<Row> {
+    let count = |snap: bool| exact.iter().filter(|jump| jump.after.is_some() == snap).count() as f64;
+    let ours_count = |snap: bool| ours.events.iter().filter(|e| e.after.is_some() == snap).count() as f64;
+    let mut rows = vec![
+        Row::new("snaps", ours_count(true), count(true), 1.0, 0.0),
+        Row::new("pull-offs", ours_count(false), count(false), 1.0, 0.0),
+    ];
+    let pairs: Vec<(&Event, &Jump)> = ours.events.iter().zip(exact).collect();
+    for (k, quantity) in QUANTITIES.into_iter().enumerate() {
+        let left = pairs.iter().map(|(event, jump)| (of_ours(&event.before)[k], of_exact(&jump.before)[k]));
+        let what = format!("{quantity} before, worst of {}", exact.len());
+        rows.push(Row::worst(what, left, ranges[k], candidate.bounds.state));
+    }
+    for (k, quantity) in QUANTITIES.into_iter().enumerate() {
+        let reached = pairs.iter().filter_map(|(event, jump)| {
+            Some((of_ours(event.after.as_ref()?)[k], of_exact(jump.after.as_ref()?)[k]))
+        });
+        let what = format!("{quantity} after, worst of {}", count(true));
+        rows.push(Row::worst(what, reached, ranges[k], candidate.bounds.state));
+    }
+    rows
+}
+
+/// What each instability loses, in both ways; a pull-off under a dead load has no loss.
+fn losses(ours: &Unloading, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (number, (event, jump)) in ours.events.iter().zip(exact).enumerate() {
+        let Some(exact) = jump.dissipated else { continue };
+        let drop = event.dissipated.unwrap_or(f64::NAN);
+        let area = event.dissipated_by_area.unwrap_or(f64::NAN);
+        let kind = if jump.after.is_some() { "snap" } else { "pull-off" };
+        let number = number + 1;
+        rows.push(Row::relative(format!("{number} {kind}: loss"), drop, exact, candidate.bounds.loss));
+        rows.push(Row::own(
+            format!("{number} {kind}: area against drop"),
+            area,
+            drop,
+            drop.abs(),
+            TWO_LOSSES,
+        ));
+    }
+    rows
+}

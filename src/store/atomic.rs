@@ -1,0 +1,443 @@
+//! Writing a file whole or not at all.
+//!
+//! Links are followed; a temporary file is made beside the target with its permissions, written, synced and read
+//! back; the target is looked at once more; then the rename, and the folder is synced. At every moment the name
+//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched. A
+//! temporary left by a kill is removed by the next save in the folder.
+
+use super::file::{Fingerprint, kind_of, read_bytes};
+use super::temporary;
+use pulloff_engine::text::show_path;
+use rustix::fs::{Access, access};
+use rustix::io::Errno;
+use std::fs::{File, Metadata};
+use std::io::{self, Read, Seek, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::RwLockReadGuard;
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+/// How many links in a row are followed; the kernel's own limit.
+const LINKS: usize = 40;
+
+/// What to do about a file that is there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Overwrite {
+    /// Refuse.
+    Never,
+    /// Replace it only if it is the file that was loaded.
+    IfUnchanged(Fingerprint),
+    /// Replace it: the person said so.
+    Always,
+}
+
+/// Why a file was not written. Paths in it are already safe to show.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// There is a file, and it is not to be replaced.
+    #[error("{path}: exists already")]
+    Exists {
+        /// The file.
+        path: String,
+    },
+    /// The file is not the one that was loaded.
+    #[error("{path}: was changed by someone else since it was read")]
+    Changed {
+        /// The file.
+        path: String,
+    },
+    /// The file is read-only: its owner does not want it changed, or it is not ours to change.
+    #[error("{path}: is read-only, and is not replaced")]
+    ReadOnly {
+        /// The file.
+        path: String,
+    },
+    /// A folder, a pipe, a device.
+    #[error("{path}: is {what}, not a regular file")]
+    NotRegular {
+        /// The file.
+        path: String,
+        /// What it is.
+        what: &'static str,
+    },
+    /// What was read back is not what it should be.
+    #[error("{path}: what was written does not read back: {why}")]
+    NotReadBack {
+        /// The file.
+        path: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// Another saver holds the folder.
+    #[error("{path}: another pulloff is saving in this folder; try again")]
+    Locked {
+        /// The file.
+        path: String,
+    },
+    /// The system says no.
+    #[error("{path}: cannot {doing}: {cause}")]
+    Io {
+        /// The file.
+        path: String,
+        /// What was being done.
+        doing: &'static str,
+        /// What the system says.
+        cause: io::Error,
+    },
+}
+
+/// What the system says of a write, where its own words are too few.
+#[must_use]
+pub fn explained(cause: io::Error) -> io::Error {
+    match cause.kind() {
+        kind @ io::ErrorKind::FileTooLarge => {
+            io::Error::new(kind, "over the limit on the size of files (ulimit -f)")
+        }
+        _ => cause,
+    }
+}
+
+/// Writes `bytes` to `path` whole or not at all, and says how to recognise the file written.
+///
+/// # Errors
+/// The file must not be replaced, or cannot be written; nothing has changed then. Only if the last step fails,
+/// syncing the folder, is the new file in its place, and may be gone after a power loss.
+pub fn write_atomically(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<Fingerprint, WriteError> {
+    write_verified(path, bytes, overwrite, |_| Ok(()))
+}
+
+/// As [`write_atomically`], after `verify` approved what was read back from the disk.
+///
+/// # Errors
+/// As there, or `verify` refuses.
+pub fn write_verified(
+    path: &Path,
+    bytes: &[u8],
+    overwrite: Overwrite,
+    verify: impl FnOnce(&[u8]) -> Result<(), String>,
+) -> Result<Fingerprint, WriteError> {
+    let failed =
+        |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause: explained(cause) };
+    let mut begun = Begun::new(path, overwrite)?;
+    let temporary = begun.temporary.as_file_mut();
+    temporary.write_all(bytes).map_err(failed("write"))?;
+    temporary.flush().map_err(failed("write"))?;
+    temporary.sync_all().map_err(failed("write"))?;
+    temporary.rewind().map_err(failed("read back"))?;
+    let mut back = Vec::with_capacity(bytes.len());
+    temporary.read_to_end(&mut back).map_err(failed("read back"))?;
+    let refused = |why| WriteError::NotReadBack { path: show_path(path), why };
+    if back != bytes {
+        return Err(refused("the disk gives other bytes".to_owned()));
+    }
+    verify(&back).map_err(refused)?;
+    let file = begun.put()?;
+    let metadata = file.metadata().map_err(failed("look at what was written"))?;
+    Ok(Fingerprint::new(&metadata, bytes))
+}
+
+/// As [`write_atomically`] for a file that is not held in memory: `fill` writes it. It is not read back.
+///
+/// # Errors
+/// As there, or those of `fill`.
+pub fn write_filled<E: From<WriteError>>(
+    path: &Path,
+    overwrite: Overwrite,
+    fill: impl FnOnce(&mut File) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed =
+        |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause: explained(cause) };
+    let mut begun = Begun::new(path, overwrite)?;
+    fill(begun.temporary.as_file_mut())?;
+    begun.temporary.as_file().sync_all().map_err(failed("write"))?;
+    begun.put()?;
+    Ok(())
+}
+
+/// A temporary file beside the one whose place it will take.
+struct Begun<'a> {
+    path: &'a Path,
+    target: PathBuf,
+    overwrite: Overwrite,
+    folder: File,
+    temporary: NamedTempFile,
+    /// Given up last: the end of the process waits until the temporary is gone.
+    writing: RwLockReadGuard<'static, ()>,
+}
+
+impl<'a> Begun<'a> {
+    fn new(path: &'a Path, overwrite: Overwrite) -> Result<Self, WriteError> {
+        let target = follow(path)?;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        let old = guard(path, &target, overwrite)?;
+        // Opened while an error still leaves everything as it was.
+        let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
+        let writing = temporary::begin();
+        let temporary = temporary::beside(folder_of(&target), old.as_ref())
+            .map_err(failed("make a file in its folder"))?;
+        Ok(Self { path, target, overwrite, folder, temporary, writing })
+    }
+
+    /// Puts it in its place.
+    fn put(self) -> Result<File, WriteError> {
+        // What is bound first is dropped last.
+        let Self { writing: _writing, path, target, overwrite, folder, temporary } = self;
+        let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
+        // Someone may have come in between; from here to the rename is as short as it can be.
+        let old = guard(path, &target, overwrite)?;
+        let file = if old.is_none() {
+            // Nothing was there: then nothing is replaced, even if something appears now.
+            temporary.persist_noclobber(&target)
+        } else {
+            temporary.persist(&target)
+        }
+        .map_err(|error| match error.error.kind() {
+            io::ErrorKind::AlreadyExists => WriteError::Exists { path: show_path(path) },
+            _ => failed("put it in its place")(error.error),
+        })?;
+        sync_folder(&folder).map_err(failed("make sure that its folder keeps it"))?;
+        Ok(file)
+    }
+}
+
+/// The file that a path names after all links, whether or not it exists.
+///
+/// # Errors
+/// The links run in a circle, or cannot be read.
+pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
+    let failed = |cause| WriteError::Io { path: show_path(path), doing: "follow its links", cause };
+    let mut target = path.to_owned();
+    for _ in 0..LINKS {
+        match target.symlink_metadata() {
+            Ok(metadata) if metadata.is_symlink() => {
+                let next = target.read_link().map_err(failed)?;
+                // An absolute link replaces the path; a relative one starts at the link's folder.
+                target = folder_of(&target).join(next);
+            }
+            Ok(_) => return Ok(target),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(target),
+            Err(error) => return Err(failed(error)),
+        }
+    }
+    Err(failed(io::Error::from(io::ErrorKind::TooManyLinks)))
+}
+
+/// The folder a file is in.
+#[must_use]
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Looks at what is there, and refuses what must not be replaced.
+fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Metadata>, WriteError> {
+    let shown = || show_path(path);
+    let metadata = match target.symlink_metadata() {
+        Ok(metadata) => metadata,
+        // A file that is gone is not overwritten by writing it again.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(cause) => return Err(WriteError::Io { path: shown(), doing: "look at it", cause }),
+    };
+    if !metadata.is_file() {
+        return Err(WriteError::NotRegular { path: shown(), what: kind_of(&metadata) });
+    }
+    match overwrite {
+        Overwrite::Never => return Err(WriteError::Exists { path: shown() }),
+        Overwrite::IfUnchanged(known) => {
+            let same = read_bytes(target, metadata.len()).is_ok_and(|(_, now)| now == known);
+            if !same {
+                return Err(WriteError::Changed { path: shown() });
+            }
+        }
+        Overwrite::Always => {}
+    }
+    writable(path, target, &metadata)?;
+    Ok(Some(metadata))
+}
+
+/// Refuses a file that is read-only: a rename would go through all the same, against what its owner wants.
+fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), WriteError> {
+    // Nothing is forbidden to root, and its owner may want it unchanged all the same.
+    let is_marked = metadata.mode() & 0o222 == 0;
+    if is_marked || access(target, Access::WRITE_OK) == Err(Errno::ACCESS) {
+        return Err(WriteError::ReadOnly { path: show_path(path) });
+    }
+    Ok(())
+}
+
+/// Refuses what can be no file of results that grows in its place: a folder, a device, a file that is read-only.
+///
+/// # Errors
+/// As said; the system says no.
+pub fn check_growing(path: &Path) -> Result<(), WriteError> {
+    let metadata = match path.metadata() {
+        Ok(metadata) => metadata,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(cause) => return Err(WriteError::Io { path: show_path(path), doing: "look at it", cause }),
+    };
+    if !metadata.is_file() {
+        return Err(WriteError::NotRegular { path: show_path(path), what: kind_of(&metadata) });
+    }
+    writable(path, path, &metadata)
+}
+
+/// Makes the rename last. File systems that cannot sync a folder have their own ways.
+fn sync_folder(folder: &File) -> io::Result<()> {
+    match folder.sync_all() {
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+            Ok(())
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::{CWD, FileType, Mode, mknodat};
+    use std::fs::{self, Permissions};
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    fn mode(path: &Path) -> u32 {
+        path.metadata().unwrap().mode() & 0o7777
+    }
+
+    #[test]
+    fn a_new_file_has_the_permissions_of_any_new_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, theirs) = (folder.path().join("ours.csv"), folder.path().join("theirs.csv"));
+        write_atomically(&ours, b"a,b\n", Overwrite::Never).unwrap();
+        fs::write(&theirs, b"").unwrap();
+        assert_eq!(fs::read(&ours).unwrap(), b"a,b\n");
+        assert_eq!(mode(&ours), mode(&theirs));
+        assert_eq!(names(folder.path()), ["ours.csv", "theirs.csv"]);
+    }
+
+    #[test]
+    fn a_replaced_file_keeps_its_permissions() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        for old in [0o644, 0o600, 0o664, 0o755] {
+            fs::write(&path, "old").unwrap();
+            fs::set_permissions(&path, Permissions::from_mode(old)).unwrap();
+            write_atomically(&path, b"new", Overwrite::Always).unwrap();
+            assert_eq!((mode(&path), fs::read(&path).unwrap()), (old, b"new".to_vec()));
+        }
+    }
+
+    #[test]
+    fn links_are_followed_and_stay_links() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("dotfiles")).unwrap();
+        fs::write(at("dotfiles/real"), "old").unwrap();
+        symlink("dotfiles/real", at("relative")).unwrap();
+        symlink(at("relative"), at("absolute")).unwrap();
+        symlink("dotfiles/later", at("dangling")).unwrap();
+        write_atomically(&at("absolute"), b"new", Overwrite::Always).unwrap();
+        write_atomically(&at("dangling"), b"born", Overwrite::Never).unwrap();
+        assert_eq!(fs::read(at("dotfiles/real")).unwrap(), b"new");
+        assert_eq!(fs::read(at("dotfiles/later")).unwrap(), b"born");
+        assert!(at("absolute").symlink_metadata().unwrap().is_symlink());
+        assert!(at("dangling").symlink_metadata().unwrap().is_symlink());
+        symlink("circle", at("circle")).unwrap();
+        let error = write_atomically(&at("circle"), b"", Overwrite::Always).unwrap_err();
+        assert!(error.to_string().contains("cannot follow its links"), "{error}");
+    }
+
+    #[test]
+    fn what_must_not_be_replaced_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let first = write_atomically(&path, b"one", Overwrite::Never).unwrap();
+        let never = write_atomically(&path, b"two", Overwrite::Never).unwrap_err();
+        assert!(matches!(never, WriteError::Exists { .. }), "{never}");
+        // The fingerprint of a write is good for the next one.
+        let second = write_atomically(&path, b"two", Overwrite::IfUnchanged(first)).unwrap();
+        let stale = write_atomically(&path, b"three", Overwrite::IfUnchanged(first)).unwrap_err();
+        assert!(matches!(stale, WriteError::Changed { .. }), "{stale}");
+        fs::write(&path, "someone else's longer text").unwrap();
+        let changed = write_atomically(&path, b"three", Overwrite::IfUnchanged(second)).unwrap_err();
+        assert!(matches!(changed, WriteError::Changed { .. }), "{changed}");
+        assert_eq!(fs::read(&path).unwrap(), b"someone else's longer text");
+        write_atomically(&path, b"four", Overwrite::Always).unwrap();
+        // A file that is gone is written anew.
+        fs::remove_file(&path).unwrap();
+        write_atomically(&path, b"five", Overwrite::IfUnchanged(second)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o444)).unwrap();
+        let print = read_bytes(&path, 100).unwrap().1;
+        let marked = write_atomically(&path, b"six", Overwrite::IfUnchanged(print)).unwrap_err();
+        assert!(matches!(marked, WriteError::ReadOnly { .. }), "{marked}");
+        let asked = write_atomically(&path, b"six", Overwrite::Always).unwrap_err();
+        assert_eq!(asked.to_string(), format!("{}: is read-only, and is not replaced", show_path(&path)));
+        assert_eq!(
+            (fs::read(&path).unwrap(), names(folder.path())),
+            (b"five".to_vec(), vec!["a".to_owned()])
+        );
+    }
+
+    #[test]
+    fn only_regular_files_are_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        mknodat(CWD, &pipe, FileType::Fifo, Mode::from_raw_mode(0o600), 0).unwrap();
+        for path in [pipe.as_path(), folder.path(), Path::new("/dev/null"), Path::new("/")] {
+            let error = write_atomically(path, b"x", Overwrite::Always).unwrap_err();
+            assert!(matches!(error, WriteError::NotRegular { .. }), "{error}");
+        }
+        assert_eq!(names(folder.path()), ["pipe"]);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "old").unwrap();
+        let refused = write_verified(&path, b"torn", Overwrite::Always, |_| Err("no preset".to_owned()));
+        assert!(refused.unwrap_err().to_string().ends_with("does not read back: no preset"));
+        // Someone writes between our writing and our rename.
+        let fingerprint = read_bytes(&path, 100).unwrap().1;
+        let raced = write_verified(&path, b"ours", Overwrite::IfUnchanged(fingerprint), |_| {
+            fs::write(&path, "theirs").map_err(|e| e.to_string())
+        });
+        assert!(matches!(raced, Err(WriteError::Changed { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"theirs");
+        let appeared = folder.path().join("b");
+        let raced = write_verified(&appeared, b"ours", Overwrite::Never, |_| {
+            fs::write(&appeared, "theirs").map_err(|e| e.to_string())
+        });
+        assert!(matches!(raced, Err(WriteError::Exists { .. })));
+        assert_eq!(fs::read(&appeared).unwrap(), b"theirs");
+        for path in ["missing/a", "a/b", ""] {
+            let error = write_atomically(&folder.path().join(path), b"x", Overwrite::Always).unwrap_err();
+            assert!(!error.to_string().contains('\n'), "{error}");
+        }
+        assert!(write_atomically(Path::new(""), b"x", Overwrite::Always).is_err());
+        assert_eq!(names(folder.path()), ["a", "b"]);
+    }
+
+    #[test]
+    fn a_read_only_folder_leaves_the_old_file() {
+        if rustix::process::geteuid().is_root() {
+            return; // Permissions do not bind root.
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "old").unwrap();
+        fs::set_permissions(folder.path(), Permissions::from_mode(0o555)).unwrap();
+        let error = write_atomically(&path, b"new", Overwrite::Always).unwrap_err();
+        fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).unwrap();
+        assert!(error.to_string().contains("cannot make a file in its folder: Permission denied"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+}

@@ -1,0 +1,175 @@
+//! The files of profiles: the engine reads no disk, and asks here for the rows that a preset names.
+
+use super::file::{FileError, read_bytes};
+use super::shipped;
+use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
+use pulloff_engine::preset::profile::{Columns, LARGEST, TextError, parse};
+use pulloff_engine::preset::read::{self, ReadError};
+use pulloff_engine::preset::{Files, Preset};
+use pulloff_engine::text::{is_unsafe, quote, show_path};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// The files of this program's presets: its own data, and the disk.
+pub const FILES: Files = Files(load);
+
+/// Why a file gives no profile.
+#[derive(Debug, Error)]
+pub enum ProfileError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The text of the file is no profile.
+    #[error("{path}: {cause}")]
+    Text {
+        /// The file, safe to show.
+        path: String,
+        /// What is wrong.
+        cause: TextError,
+    },
+}
+
+/// Reads the profile in the file `path`.
+///
+/// # Errors
+/// [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
+pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
+    let (bytes, _) = read_bytes(path, LARGEST)?;
+    parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
+}
+
+/// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that
+/// begins with [`SHIPPED_DATA`].
+///
+/// # Errors
+/// Why there are no rows, in words that are safe to show.
+pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+    if name.is_empty() || name.chars().any(is_unsafe) {
+        return Err(format!("\"{}\" is no name of a file", quote(name)));
+    }
+    let columns = if let Some(data) = name.strip_prefix(SHIPPED_DATA) {
+        let text = shipped::data(data).ok_or_else(|| {
+            let known: Vec<String> =
+                shipped::DATA.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();
+            format!("\"{}\" does not come with the program; there is {}", quote(name), known.join(", "))
+        })?;
+        parse(text.as_bytes()).map_err(|error| words(&error))?
+    } else {
+        let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+        read_profile(&path).map_err(|error| words(&error))?
+    };
+    rows(folder, name, columns)
+}
+
+/// Reads a preset, whose files are relative to the current folder; `name` names the text in messages.
+///
+/// # Errors
+/// Every mistake found, with its line.
+pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
+    read_with(name, text, &[] as &[&str])
+}
+
+/// Reads a preset and lays `KEY=VALUE` assignments over it, in order.
+///
+/// # Errors
+/// Every mistake found, with its line or assignment.
+pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Result<Preset, ReadError> {
+    read_in(None, name, text, assignments)
+}
+
+/// Reads a preset whose files are relative to `folder`, or to the current one; those of assignments always are relative
+/// to the current one.
+///
+/// # Errors
+/// Every mistake found, with its line or assignment.
+pub fn read_in<S: AsRef<str>>(
+    folder: Option<&Path>,
+    name: &str,
+    text: &str,
+    assignments: &[S],
+) -> Result<Preset, ReadError> {
+    read::read_in(FILES, folder, name, text, assignments)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pulloff_engine::preset::write;
+
+    #[test]
+    fn a_profile_is_read_from_beside_its_preset() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> =
+            (0..20).map(f64::from).map(|i| format!("{i}, {}\n", i * i / 1000.0)).collect();
+        let rows = rows.concat();
+        std::fs::write(folder.path().join("scan.csv"), format!("r, h\n{rows}")).unwrap();
+        std::fs::write(folder.path().join("units.csv"), format!("# mine\nr [um], h [nm]\n{rows}")).unwrap();
+        let text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='scan.csv'\n                    [path]\nstart_contact_radius=5\n";
+        let read =
+            |text: &str, assignments: &[&str]| read_in(Some(folder.path()), "p.toml", text, assignments);
+        let preset = read(text, &[]).unwrap();
+        // h = r²/1000.
+        assert!((preset.gap.radius_of_curvature().unwrap() - 500.0).abs() < 1e-6);
+        assert_eq!(preset.get("gap.smoothing"), Some("none".into()));
+        assert_eq!(read(text, &["gap.smoothing=4"]).unwrap().get("gap.smoothing"), Some(4.0.into()));
+        for (old, new, expected) in [
+            ("scan.csv", "none.csv", "p.toml:6: gap.file: "),
+            ("scan.csv", ".", "p.toml:6: gap.file: "),
+            ("scan.csv", "shipped:x", "p.toml:6: gap.file: \"shipped:x\" does not come with the program"),
+            (
+                "radius=5",
+                "radius=19",
+                "p.toml:8: path.start_contact_radius = 19.0 is out of range: the gap is known",
+            ),
+            ("[path]\nstart_contact_radius=5\n", "", "p.toml: path.start_contact_radius = 250.0"),
+        ] {
+            let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+        let message = read(&text.replace("scan.csv", "units.csv"), &[]).unwrap_err().to_string();
+        assert!(
+            message.starts_with("p.toml:6: gap.file: ") && message.contains("units.csv: line 2: "),
+            "{message}"
+        );
+        assert!(message.contains("names a unit, um, and the problem is in reduced units"), "{message}");
+        let si = "units='SI'\n".to_owned() + &text.replace("scan.csv", "units.csv").replace("=5", "='5 um'");
+        let si = read(&si, &[]).unwrap();
+        assert!(
+            (si.gap.radius_of_curvature().unwrap() - 0.5).abs() < 1e-9,
+            "{:?}",
+            si.gap.radius_of_curvature()
+        );
+        let message = read(text, &["gap.smoothing=20"]).unwrap_err().to_string();
+        assert!(
+            message.contains("gap.smoothing: ") && message.contains("at most 19, the last radius"),
+            "{message}"
+        );
+        // A copy elsewhere still finds its rows.
+        let other = tempfile::tempdir().unwrap();
+        let moved = preset.placed_in(other.path());
+        let back = read_in(Some(other.path()), "q.toml", &write(&moved), &[] as &[&str]).unwrap();
+        assert_eq!(back.gap.radius_of_curvature(), preset.gap.radius_of_curvature());
+        assert_eq!(preset.placed_in(folder.path()), preset);
+    }
+
+    #[test]
+    fn files_are_regular_and_named_in_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<_> = (0..20).map(|i| format!("{i},{}", i * i)).collect();
+        let rows = rows.join("\n");
+        let path = folder.path().join("profile.csv");
+        std::fs::write(&path, &rows).unwrap();
+        assert_eq!(read_profile(&path).unwrap(), parse(rows.as_bytes()).unwrap());
+        std::fs::write(&path, "0,0\n").unwrap();
+        assert!(
+            read_profile(&path)
+                .unwrap_err()
+                .to_string()
+                .ends_with("profile.csv: has 1 rows, and a profile has 8 to 1000000")
+        );
+        assert!(
+            read_profile(folder.path()).unwrap_err().to_string().ends_with("is a folder, not a regular file")
+        );
+    }
+}

@@ -1,0 +1,207 @@
+//! Reading regular files of bounded size, and recognising them again.
+
+use pulloff_engine::text::show_path;
+use serde::{Deserialize, Serialize};
+use std::fs::{File, Metadata, OpenOptions};
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{self, Read};
+use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
+use std::path::Path;
+use thiserror::Error;
+
+/// The largest preset file, in bytes.
+pub const LARGEST: u64 = 1 << 20;
+
+/// A file as it was at one moment: size, time, inode, content. Equal only if nothing changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fingerprint {
+    length: u64,
+    seconds: i64,
+    nanoseconds: i64,
+    device: u64,
+    inode: u64,
+    content: u64,
+}
+
+impl Fingerprint {
+    /// Of a file with this metadata and content.
+    #[must_use]
+    pub fn new(metadata: &Metadata, content: &[u8]) -> Self {
+        // Saved with sessions: should another build of the program hash otherwise, the file counts as changed, and the
+        // person is asked before it is replaced.
+        let mut hasher = DefaultHasher::new();
+        hasher.write(content);
+        Self {
+            length: metadata.len(),
+            seconds: metadata.mtime(),
+            nanoseconds: metadata.mtime_nsec(),
+            device: metadata.dev(),
+            inode: metadata.ino(),
+            content: hasher.finish(),
+        }
+    }
+}
+
+/// Why a file cannot be read.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// The system says no.
+    #[error("{}: cannot read: {cause}", .path)]
+    Io {
+        /// The file, safe to show.
+        path: String,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// A folder, a pipe, a device.
+    #[error("{path}: is {what}, not a regular file")]
+    NotRegular {
+        /// The file, safe to show.
+        path: String,
+        /// What it is.
+        what: &'static str,
+    },
+    /// Larger than a preset can be.
+    #[error("{path}: has {bytes} bytes, more than the {limit} that are read")]
+    TooLarge {
+        /// The file, safe to show.
+        path: String,
+        /// Its size.
+        bytes: u64,
+        /// The largest size.
+        limit: u64,
+    },
+    /// A pipe or a device that gives more than a preset can be.
+    #[error("{path}: has more than the {limit} bytes that are read")]
+    Endless {
+        /// The name, safe to show.
+        path: String,
+        /// The largest size.
+        limit: u64,
+    },
+    /// Bytes that are no text.
+    #[error("{path}: is not UTF-8 text (byte {at} on)")]
+    NotText {
+        /// The file, safe to show.
+        path: String,
+        /// The first bad byte, from 0.
+        at: usize,
+    },
+}
+
+/// What a file that is not regular is.
+#[must_use]
+pub fn kind_of(metadata: &Metadata) -> &'static str {
+    let kind = metadata.file_type();
+    if kind.is_dir() {
+        "a folder"
+    } else if kind.is_fifo() {
+        "a pipe"
+    } else if kind.is_socket() {
+        "a socket"
+    } else if kind.is_char_device() || kind.is_block_device() {
+        "a device"
+    } else {
+        "a special file"
+    }
+}
+
+/// The text of a regular file of at most `limit` bytes.
+///
+/// # Errors
+/// It cannot be read, is not regular, is larger, or is not UTF-8.
+pub fn read_text(path: &Path, limit: u64) -> Result<(String, Fingerprint), FileError> {
+    let (bytes, fingerprint) = read_bytes(path, limit)?;
+    Ok((text(&show_path(path), bytes)?, fingerprint))
+}
+
+/// The bytes of what messages call `name` as text.
+pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        FileError::NotText { path: name.to_owned(), at }
+    })
+}
+
+/// The content of a regular file of at most `limit` bytes.
+///
+/// # Errors
+/// It cannot be read, is not regular, or is larger.
+pub fn read_bytes(path: &Path, limit: u64) -> Result<(Vec<u8>, Fingerprint), FileError> {
+    let io = |cause| FileError::Io { path: show_path(path), cause };
+    // Looked at before it is opened, since opening a device can have effects; and again after, since the
+    // name may have changed hands.
+    check_regular(path, &path.metadata().map_err(io)?)?;
+    let file = open(path).map_err(io)?;
+    let metadata = file.metadata().map_err(io)?;
+    check_regular(path, &metadata)?;
+    let too_large = |bytes| FileError::TooLarge { path: show_path(path), bytes, limit };
+    if metadata.len() > limit {
+        return Err(too_large(metadata.len()));
+    }
+    let mut bytes = Vec::new();
+    (&file).take(limit + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() as u64 > limit {
+        return Err(too_large(bytes.len() as u64));
+    }
+    let fingerprint = Fingerprint::new(&metadata, &bytes);
+    Ok((bytes, fingerprint))
+}
+
+fn check_regular(path: &Path, metadata: &Metadata) -> Result<(), FileError> {
+    if metadata.is_file() {
+        Ok(())
+    } else {
+        Err(FileError::NotRegular { path: show_path(path), what: kind_of(metadata) })
+    }
+}
+
+/// Opens without waiting for the other end of a pipe that may have taken the file's place.
+fn open(path: &Path) -> io::Result<File> {
+    let flags = rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY;
+    OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::{CWD, FileType, Mode, mknodat};
+
+    #[test]
+    fn only_regular_bounded_text_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("good"), "héllo").unwrap();
+        std::fs::write(at("bytes"), b"ab\xff").unwrap();
+        std::fs::write(at("large"), vec![b' '; 101]).unwrap();
+        mknodat(CWD, at("pipe"), FileType::Fifo, Mode::from_raw_mode(0o600), 0).unwrap();
+        std::os::unix::fs::symlink(at("good"), at("link")).unwrap();
+        std::os::unix::fs::symlink(at("pipe"), at("link-to-pipe")).unwrap();
+        let error = |path: &Path| read_text(path, 100).unwrap_err().to_string();
+        assert_eq!(read_text(&at("good"), 100).unwrap().0, "héllo");
+        assert_eq!(read_text(&at("link"), 100).unwrap().0, "héllo");
+        assert!(error(&at("bytes")).ends_with("is not UTF-8 text (byte 2 on)"));
+        assert!(error(&at("large")).ends_with("has 101 bytes, more than the 100 that are read"));
+        assert!(error(&at("pipe")).ends_with("is a pipe, not a regular file"));
+        assert!(error(&at("link-to-pipe")).ends_with("is a pipe, not a regular file"));
+        assert!(error(folder.path()).ends_with("is a folder, not a regular file"));
+        assert!(error(Path::new("/dev/null")).ends_with("is a device, not a regular file"));
+        assert!(error(&at("missing")).contains("cannot read: No such file"));
+    }
+
+    #[test]
+    fn a_fingerprint_sees_every_change() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        std::fs::write(&path, "one").unwrap();
+        let print = || read_bytes(&path, 100).unwrap().1;
+        let first = print();
+        assert_eq!(first, print());
+        let metadata = path.metadata().unwrap();
+        assert_ne!(Fingerprint::new(&metadata, b"one"), Fingerprint::new(&metadata, b"two"));
+        // Same content and size in another file.
+        std::fs::write(folder.path().join("b"), "one").unwrap();
+        std::fs::rename(folder.path().join("b"), &path).unwrap();
+        assert_ne!(first, print());
+    }
+}

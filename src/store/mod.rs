@@ -1,0 +1,31 @@
+//! Disk: the presets of a person and those that come with the program, the data of profiles, saving.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`presets`] | the folder of a person's presets: resolve, load, list, save |
+//! | [`shipped`] | the presets that come with the program, with their data |
+//! | [`data`] | the files of profiles, which the engine is given as rows |
+//! | [`beside`] | the data of a profile copied beside a preset |
+//! | [`name`] | which names a person's preset may have |
+//! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
+//! | [`stream`] | standard input and output, pipes and devices, which are read and written straight |
+//! | [`atomic`] | writing a file whole or not at all |
+//! | [`temporary`] | the temporary file of a save, and what a killed save has left |
+//! | [`lock`] | one saver at a time in a folder |
+
+pub mod atomic;
+pub mod beside;
+pub mod data;
+pub mod file;
+pub mod lock;
+pub mod name;
+pub mod presets;
+pub mod shipped;
+pub mod stream;
+pub mod temporary;
+
+pub use atomic::{Overwrite, WriteError, write_atomically};
+pub use data::{FILES, ProfileError, load, read, read_in, read_profile, read_with};
+pub use file::Fingerprint;
+pub use presets::{Listed, Listing, Loaded, Source, Store, StoreError, make_folder, save_file};
+pub use shipped::SHIPPED;

@@ -1,0 +1,153 @@
+//! The presets that come with the program: the paper's cases and one of every other gap, embedded from the
+//! top-level `presets` folder with their data.
+
+/// A preset, or data, that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shipped {
+    /// Its name.
+    pub name: &'static str,
+    /// Its file, comments included.
+    pub text: &'static str,
+}
+
+/// The data that come with the program, for profiles.
+pub static DATA: &[Shipped] =
+    &[Shipped { name: "rough-sphere.csv", text: include_str!("../../presets/data/rough-sphere.csv") }];
+
+/// The shipped data of this name.
+#[must_use]
+pub fn data(name: &str) -> Option<&'static str> {
+    DATA.iter().find(|shipped| shipped.name == name).map(|shipped| shipped.text)
+}
+
+/// The preset opened when none is named.
+pub const DEFAULT: &str = "wavy-sphere";
+
+/// The presets that come with the program, the default first.
+pub static SHIPPED: &[Shipped] = &[
+    Shipped { name: DEFAULT, text: include_str!("../../presets/wavy-sphere.toml") },
+    Shipped { name: "fig-1-hertz", text: include_str!("../../presets/fig-1-hertz.toml") },
+    Shipped { name: "fig-3-jkr", text: include_str!("../../presets/fig-3-jkr.toml") },
+    Shipped { name: "fig-8", text: include_str!("../../presets/fig-8.toml") },
+    Shipped { name: "fig-9", text: include_str!("../../presets/fig-9.toml") },
+    Shipped { name: "fig-9-si", text: include_str!("../../presets/fig-9-si.toml") },
+    Shipped { name: "fig-10-force", text: include_str!("../../presets/fig-10-force.toml") },
+    Shipped { name: "exact-sphere", text: include_str!("../../presets/exact-sphere.toml") },
+    Shipped { name: "cone", text: include_str!("../../presets/cone.toml") },
+    Shipped { name: "power-law", text: include_str!("../../presets/power-law.toml") },
+    Shipped { name: "harmonics", text: include_str!("../../presets/harmonics.toml") },
+    Shipped { name: "random-waves", text: include_str!("../../presets/random-waves.toml") },
+    Shipped { name: "formula", text: include_str!("../../presets/formula.toml") },
+    Shipped { name: "profile", text: include_str!("../../presets/profile.toml") },
+];
+
+/// The shipped preset of this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Shipped> {
+    SHIPPED.iter().find(|shipped| shipped.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::read;
+    use pulloff_engine::gap::Shape;
+    use pulloff_engine::preset::model::{BasisSpec, Preset, is_of_units};
+    use pulloff_engine::preset::schema::Row;
+    use pulloff_engine::preset::shape::is_range;
+    use pulloff_engine::problem::Start;
+    use pulloff_engine::problem::{Control, Groups};
+    use pulloff_engine::ritz::Grading;
+    use std::collections::BTreeSet;
+
+    /// How many ranges its parameters have.
+    fn ranges(preset: &Preset) -> usize {
+        let keys = preset.values().into_iter().filter(|(row, _)| is_range(&row.key));
+        keys.count()
+    }
+
+    fn load(name: &str) -> Preset {
+        read(name, find(name).unwrap().text).unwrap()
+    }
+
+    #[test]
+    fn every_file_of_the_folder_is_shipped_and_says_what_to_look_at() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/presets");
+        let files: BTreeSet<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            // The profiles that presets name have a folder of their own.
+            .filter(|name| name != "data")
+            .collect();
+        let names: BTreeSet<_> = SHIPPED.iter().map(|shipped| format!("{}.toml", shipped.name)).collect();
+        assert_eq!(files, names);
+        for shipped in SHIPPED {
+            let preset = load(shipped.name);
+            assert!(shipped.text.starts_with("# ") && !preset.title.is_empty());
+            // The paper's figures in the paper's discretization, the others in the exact one.
+            let basis = if shipped.name.starts_with("fig-") {
+                BasisSpec::Rings { rings: 200, grading: Grading::Uniform }
+            } else {
+                BasisSpec::Exact
+            };
+            assert_eq!(preset.basis, basis);
+            assert!(preset.path.end_contact_radius.is_some());
+            // Complete: every key that applies is in the file.
+            for (row, _) in preset.values().into_iter().filter(|(row, _)| !is_range(&row.key)) {
+                assert!(
+                    shipped.text.contains(&format!("\n{} = ", row.name())),
+                    "{} {}",
+                    shipped.name,
+                    row.key
+                );
+            }
+            // Of the rows that mean something here, two of three starts, the stiffness and the range of action may be
+            // missing.
+            let kind = preset.get("basis.kind").unwrap().to_string();
+            let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
+            // The knobs leave out the format, the units and their display.
+            let units = preset
+                .values()
+                .iter()
+                .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
+                .count();
+            assert_eq!(
+                preset.values().len() + 4,
+                ranges(&preset) + preset.knobs().filter(fits).count() + units
+            );
+        }
+    }
+
+    #[test]
+    fn they_are_the_cases_of_the_paper() {
+        let adhesion = |name| Groups::of(&load(name).problem(), None).adhesion.unwrap();
+        for (name, expected) in [
+            ("fig-1-hertz", 0.0),
+            ("fig-3-jkr", 0.05),
+            ("fig-8", 0.05),
+            ("fig-9", 0.025),
+            ("fig-10-force", 0.025),
+        ] {
+            assert!((adhesion(name) - expected).abs() < 1e-16, "{name}");
+        }
+        let fig9 = load("fig-9");
+        assert_eq!(
+            fig9.gap,
+            Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 }
+        );
+        assert_eq!(fig9.path.start, Start::ContactRadius(0.5));
+        let mut force = load("fig-10-force");
+        assert_eq!(force.path.control, Control::Force);
+        (force.path.control, force.title) = (Control::Displacement, fig9.title.clone());
+        assert_eq!(force, fig9);
+        let mut default = load(DEFAULT);
+        assert_eq!(default.path.start, Start::ContactRadius(0.41));
+        (default.path.start, default.title, default.basis) =
+            (fig9.path.start, fig9.title.clone(), fig9.basis);
+        assert_eq!(default, fig9);
+        assert_eq!(
+            load("fig-8").gap,
+            Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.001, wavelength: 0.1 }
+        );
+    }
+}
