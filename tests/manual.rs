@@ -1,13 +1,71 @@
-//! The README says what the program does: its generated parts are current.
+//! The documentation says what the program does: its generated parts are current, its links lead somewhere, and the
+//! paths and names in ARCHITECTURE.md are those of the code.
 //!
-//! `UPDATE_README=1 cargo test --test manual` writes them.
+//! A generated part stands between the marks `<!-- NAME -->` and `<!-- /NAME -->`, each on a line of its own, in README.md or
+//! in a chapter of the book; [`generated`] makes its text from its name. `UPDATE_DOCS=1 cargo test --test manual` writes
+//! them.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::preset::manual::key_table;
+use pulloff_engine::preset::manual::key_table;
+use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+/// The most lines of README.md: what is longer belongs into the book.
+const README_LINES: usize = 150;
+/// The chapters of the book.
+const BOOK: &str = "docs/src";
+/// The other files with links.
+const PAGES: [&str; 6] = [
+    "README.md",
+    "ARCHITECTURE.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+    "engine/README.md",
+    "examples/cluster/README.md",
+];
+/// The generated parts; each is in some file.
+const PARTS: [&str; 10] = [
+    "screen",
+    "keys",
+    "preset keys",
+    "output: -h",
+    "output: presets list",
+    "output: sweep quantities",
+    "output: trace wavy-sphere | head -1",
+    "output: unload wavy-sphere",
+    "output: verify --only uniform",
+    "code: engine/examples/fig_9.rs",
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(file: &str) -> String {
+    fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+/// The chapters of the book and its table of contents, as paths from the root.
+fn chapters() -> Vec<String> {
+    let mut chapters = Vec::new();
+    let mut folders = vec![PathBuf::from(BOOK)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(root().join(&folder)).unwrap().map(Result::unwrap) {
+            let path = folder.join(entry.file_name());
+            if entry.file_type().unwrap().is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                chapters.push(path.to_str().unwrap().to_owned());
+            }
+        }
+    }
+    chapters.sort();
+    chapters
+}
 
 /// Standard output of the program in an empty home.
 fn output(arguments: &[&str]) -> String {
@@ -19,27 +77,24 @@ fn output(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-fn fenced(text: &str) -> String {
-    format!("```text\n{text}```\n")
-}
-
-/// `text` with the part between the marks `<!-- name -->` and `<!-- /end -->` replaced.
-fn replaced(text: &str, name: &str, end: &str, part: &str) -> String {
-    let (from, to) = (format!("<!-- {name} -->\n"), format!("<!-- /{end} -->\n"));
-    let start = text.find(&from).unwrap() + from.len();
-    let length = text[start..].find(&to).unwrap();
-    format!("{}{part}{}", &text[..start], &text[start + length..])
+/// The output of a command, the first N lines of it where ` | head -N` stands behind.
+fn shown(command: &str) -> String {
+    let (command, lines) = match command.split_once(" | head -") {
+        Some((command, lines)) => (command, lines.parse().unwrap()),
+        None => (command, usize::MAX),
+    };
+    let all = output(&command.split(' ').collect::<Vec<_>>());
+    all.lines().take(lines).fold(String::new(), |text, line| text + line + "\n")
 }
 
 /// The explorer at its second limit point, as text.
-#[cfg(feature = "tui")]
 fn screen() -> String {
     use pulloff::explorer::{Id, Inline, update};
     use pulloff::tui::{app::App, theme::Theme, view};
     use ratatui::{Terminal, backend::TestBackend};
 
     let folder = tempfile::tempdir().unwrap();
-    let store = pulloff::preset::Store::at(folder.path(), &[]);
+    let store = pulloff::store::Store::at(folder.path(), &[]);
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
     let (mut app, effects) = App::new(loaded, Theme::default());
     let driver = Inline::new(store);
@@ -62,33 +117,160 @@ fn screen() -> String {
     })
 }
 
+/// The text of a generated part.
+fn generated(name: &str) -> String {
+    let fenced = |language: &str, text: &str| format!("```{language}\n{text}```\n");
+    match name.split_once(": ") {
+        None if name == "screen" => fenced("text", &screen()),
+        None if name == "keys" => pulloff::tui::keymap::markdown(),
+        None if name == "preset keys" => key_table(),
+        Some(("output", command)) => fenced("text", &shown(command)),
+        Some(("code", file)) => fenced("rust", &text(file)),
+        _ => panic!("nothing generates <!-- {name} -->"),
+    }
+}
+
+/// `text` with its generated parts as they ought to be; their names are added to `seen`.
+fn current(file: &str, text: &str, seen: &mut BTreeSet<String>) -> String {
+    let mut whole = String::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        writeln!(whole, "{line}").unwrap();
+        let Some(name) = line.strip_prefix("<!-- ").and_then(|line| line.strip_suffix(" -->")) else {
+            continue;
+        };
+        let end = format!("<!-- /{name} -->");
+        assert!(lines.any(|line| line == end), "{file}: {line} has no {end}");
+        writeln!(whole, "{}{end}", generated(name)).unwrap();
+        seen.insert(name.to_owned());
+    }
+    whole
+}
+
 #[test]
-fn the_generated_parts_of_the_readme_are_current() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = std::fs::read_to_string(&path).unwrap();
-    let mut current = replaced(&readme, "key table", "key table", &key_table());
-    for command in ["unload wavy-sphere", "verify --only uniform", "presets list"] {
-        let text = fenced(&output(&command.split(' ').collect::<Vec<_>>()));
-        current = replaced(&current, &format!("output: {command}"), "output", &text);
+fn the_generated_parts_are_current() {
+    let mut seen = BTreeSet::new();
+    let mut old = Vec::new();
+    for file in chapters().iter().map(String::as_str).chain(["README.md"]) {
+        let before = text(file);
+        let after = current(file, &before, &mut seen);
+        if before == after {
+            continue;
+        }
+        if std::env::var_os("UPDATE_DOCS").is_some() {
+            fs::write(root().join(file), after).unwrap();
+        } else {
+            old.push(file.to_owned());
+        }
     }
-    #[cfg(feature = "tui")]
-    {
-        current = replaced(&current, "keys", "keys", &pulloff::tui::keymap::markdown());
-        current = replaced(&current, "screen", "screen", &fenced(&screen()));
+    assert_eq!(seen, PARTS.map(str::to_owned).into(), "each part is in some file, and no other is");
+    assert!(old.is_empty(), "out of date: {old:?}; UPDATE_DOCS=1 cargo test --test manual writes them");
+}
+
+/// The lines of a page outside of its fenced code.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_code = false;
+    text.lines().filter(move |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    })
+}
+
+/// The targets of the links and pictures of a page.
+fn links(text: &str) -> Vec<String> {
+    let line = |line: &str| -> Vec<String> {
+        // Code is no link.
+        let bare: String = line.split('`').step_by(2).collect::<Vec<_>>().join("`");
+        bare.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())).collect()
+    };
+    prose(text).flat_map(line).collect()
+}
+
+/// The anchors of a page's headings, as mdBook and GitHub make them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let anchor = |heading: &str| -> String {
+        let kept = heading.to_lowercase().replace(' ', "-");
+        kept.chars().filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).collect()
+    };
+    prose(text)
+        .filter(|line| line.starts_with('#'))
+        .map(|line| anchor(line.trim_start_matches('#').trim()))
+        .collect()
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    for file in chapters().iter().map(String::as_str).chain(PAGES) {
+        let folder = Path::new(file).parent().unwrap();
+        for link in links(&text(file)) {
+            if link.starts_with("https://") {
+                continue;
+            }
+            let (path, anchor) =
+                link.split_once('#').map_or((&*link, None), |(path, anchor)| (path, Some(anchor)));
+            let target = if path.is_empty() { PathBuf::from(file) } else { folder.join(path) };
+            assert!(root().join(&target).is_file(), "{file}: {link} leads nowhere");
+            // A book has nothing but what is in its folder.
+            let is_chapter = file.starts_with(BOOK);
+            assert!(!is_chapter || !path.starts_with(".."), "{file}: {link} leads out of the book");
+            if let Some(anchor) = anchor {
+                let there = anchors(&text(target.to_str().unwrap()));
+                assert!(there.contains(anchor), "{file}: {link} names no heading of {there:?}");
+            }
+        }
     }
-    // Of a trace only the columns are compared: the last digits of its points differ between machines.
-    let head = output(&["trace", "wavy-sphere"]).lines().take(3).fold(String::new(), |mut text, line| {
-        writeln!(text, "{line}").unwrap();
-        text
-    });
-    if std::env::var_os("UPDATE_README").is_some() {
-        current = replaced(&current, "output: trace wavy-sphere | head -3", "output", &fenced(&head));
-        std::fs::write(&path, current).unwrap();
-        return;
-    }
+}
+
+#[test]
+fn the_table_of_contents_has_every_chapter_once() {
+    let summary = format!("{BOOK}/SUMMARY.md");
+    let mut listed = links(&text(&summary));
+    listed.sort();
+    let there: Vec<String> = chapters()
+        .into_iter()
+        .filter(|chapter| *chapter != summary)
+        .map(|chapter| chapter[BOOK.len() + 1..].to_owned())
+        .collect();
+    assert_eq!(listed, there);
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = text("README.md").lines().count();
     assert!(
-        readme.contains(head.lines().next().unwrap()),
-        "the columns of a trace in README.md are out of date"
+        lines <= README_LINES,
+        "README.md has {lines} lines, more than {README_LINES}: the book has room"
     );
-    assert_eq!(readme, current, "README.md is out of date: UPDATE_README=1 cargo test --test manual");
+}
+
+/// A code span such as `src/store/presets.rs: Store::load, Loaded` names a file and what is in it.
+#[test]
+fn the_paths_and_names_of_the_architecture_are_those_of_the_code() {
+    const ROOTS: [&str; 10] = [
+        "src/",
+        "engine/",
+        "tests/",
+        "docs/",
+        "presets/",
+        "benches/",
+        "fuzz/",
+        "examples/",
+        ".ci/",
+        "Cargo.toml",
+    ];
+    for file in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
+        let page = text(file);
+        let spans = prose(&page).flat_map(|line| line.split('`').skip(1).step_by(2));
+        for span in spans.filter(|span| ROOTS.iter().any(|root| span.starts_with(root))) {
+            let (path, names) = span.split_once(": ").unwrap_or((span, ""));
+            assert!(root().join(path).exists(), "{file}: there is no {path}");
+            for name in names.split(", ").filter(|name| !name.is_empty()) {
+                let name = name.rsplit("::").next().unwrap_or(name);
+                let is_there =
+                    text(path).split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
+                assert!(is_there, "{file}: {path} has no {name}");
+            }
+        }
+    }
 }
