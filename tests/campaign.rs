@@ -41,7 +41,8 @@ use std::ops::Range;
 const STATES: f64 = 1e-8;
 /// Radii of limit points, as a share of themselves.
 const LIMITS: f64 = 1e-6;
-/// Losses, as a share of themselves, and of the range of δ times that of P.
+/// Losses, as a share of themselves, and of δ times P: their ranges on the path or, where that is short, their sizes, for a
+/// loss is a difference of energies.
 const LOSSES: [f64; 2] = [1e-6, 1e-14];
 /// What is further off than this is printed.
 const NOTABLE: f64 = 1e-10;
@@ -444,6 +445,9 @@ fn judge(problem: &Problem) -> Outcome {
         Ok(ours) => ours,
         Err(error) => return refused(problem, &error),
     };
+    if case.start * case.units().length > LARGEST_CONTACT * problem.end * problem.length {
+        return Outcome::Refused(format!("{}: starts where the quadrature does not look", problem.kind));
+    }
     let Some(Truth { disc, from, stretches }) = truth(problem) else {
         return Outcome::Wrong(format!(
             "started at {:e}, where nothing starts",
@@ -678,7 +682,9 @@ fn compare(
         for loss in [event.dissipated, event.dissipated_by_area] {
             match (loss, jump.loss) {
                 (Some(loss), Some(truth)) => {
-                    let (loss, floor) = (loss * unit, LOSSES[1] * ranges[0] * ranges[1]);
+                    let sizes = disc.sizes(jump.before.radius);
+                    let energy = (ranges[0] * ranges[1]).max(sizes[0] * sizes[1]);
+                    let (loss, floor) = (loss * unit, LOSSES[1] * energy);
                     let off = (loss - truth).abs();
                     if off > floor {
                         worst.losses = worst.losses.max(off / truth.abs());
