@@ -1,20 +1,9 @@
-//! Whether a fault is one that the person can mend, or one in which something failed: the two exit statuses 2 and 1.
+//! Whether the person can mend an error: exit status 2, else 1.
 //!
 //! The person can mend a bad value, a bad option, a path that leads nowhere or must not be written, a file that is there
-//! already. A full disk, a computation that ends early, a fault of the program are for nobody to mend by other words. One
-//! place says which is which, so that the same fault has the same status in every command and in scripts.
+//! already; but not a full disk, a computation that ends early, or a fault of the program. Each error type says which it
+//! is, so that it has the same status in every command and in scripts.
 
-use crate::explorer::archive::ArchiveError;
-use crate::plot::map::MapError;
-use crate::print::{DrawError, FormatError};
-use crate::store::beside::DataError;
-use crate::store::file::FileError;
-use crate::store::{StoreError, WriteError};
-use crate::sweep::OutputError;
-use crate::sweep::merge::MergeError;
-use crate::sweep::results::ResultsError;
-use crate::sweep::side::SideError;
-use crate::sweep::spec::LoadError;
 use pulloff_engine::case::CaseError;
 use rustix::io::Errno;
 use std::fmt;
@@ -78,157 +67,10 @@ impl Mend for io::Error {
     }
 }
 
-impl Mend for FileError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotRegular { .. } | Self::TooLarge { .. } | Self::Endless { .. } | Self::NotText { .. } => {
-                true
-            }
-        }
-    }
-}
-
-impl Mend for WriteError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotReadBack { .. } => false,
-            Self::Exists { .. }
-            | Self::Changed { .. }
-            | Self::ReadOnly { .. }
-            | Self::NotRegular { .. }
-            | Self::Locked { .. } => true,
-        }
-    }
-}
-
-impl Mend for StoreError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Data(error) => error.can_be_mended(),
-            Self::Folder { cause, .. } | Self::Delete { cause, .. } => cause.can_be_mended(),
-            Self::NotFound { .. }
-            | Self::Name(_)
-            | Self::Read(_)
-            | Self::Invalid(_)
-            | Self::NoFolder
-            | Self::Shipped(_) => true,
-        }
-    }
-}
-
-impl Mend for DataError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Other(_) => true,
-        }
-    }
-}
-
-impl Mend for ArchiveError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::Document(_) => false,
-            Self::NoFolder
-            | Self::NotFound { .. }
-            | Self::Empty
-            | Self::Running { .. }
-            | Self::Unreadable { .. } => true,
-        }
-    }
-}
-
 impl Mend for CaseError {
     /// A start or an end that cannot be is a value; what is computed from them may fail.
     fn can_be_mended(&self) -> bool {
         !matches!(self, Self::Cancelled)
-    }
-}
-
-impl Mend for SideError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Unknown { .. } => true,
-        }
-    }
-}
-
-impl Mend for ResultsError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Side(error) => error.can_be_mended(),
-            Self::NoColumn { .. } | Self::Table { .. } => true,
-        }
-    }
-}
-
-impl Mend for MapError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Results(error) => error.can_be_mended(),
-            Self::Grid(_) => true,
-        }
-    }
-}
-
-impl Mend for FormatError {
-    fn can_be_mended(&self) -> bool {
-        true
-    }
-}
-
-impl Mend for DrawError {
-    fn can_be_mended(&self) -> bool {
-        false
-    }
-}
-
-impl Mend for LoadError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Spec(_) => true,
-        }
-    }
-}
-
-impl Mend for OutputError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Write(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotOurs { cause, .. } => cause.can_be_mended(),
-            Self::Threads(_) => false,
-            Self::Busy { .. } | Self::OtherSweep { .. } | Self::OtherShard { .. } | Self::Changed { .. } => {
-                true
-            }
-        }
-    }
-}
-
-impl Mend for MergeError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Output(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotOurs { cause, .. } => cause.can_be_mended(),
-            Self::Exists { .. }
-            | Self::OtherSweep { .. }
-            | Self::OtherDivision { .. }
-            | Self::Doubled { .. }
-            | Self::Missing(_)
-            | Self::Incomplete { .. }
-            | Self::Changed { .. } => true,
-        }
     }
 }
 

@@ -3,13 +3,12 @@
 #[path = "support/session.rs"]
 mod session;
 
-use pulloff::explorer::files::Document;
+use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::{
     Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
 };
-use pulloff::store::save_file;
-use pulloff::store::{Overwrite, Source};
+use pulloff::store::{Overwrite, Source, save_file};
 use pulloff_engine::quasistatic::EventKind;
 use session::Session;
 
@@ -252,7 +251,7 @@ fn presets_are_saved_opened_and_never_replaced_unasked() {
 fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
     let mut session = Session::new("fig-8");
     session.all(&[Id::NextLimit, Id::Jump]);
-    for what in [Document::Curve, Document::Walk, Document::Events] {
+    for what in [ExportKind::Curve, ExportKind::Walk, ExportKind::Events] {
         for ending in ["csv", "json"] {
             let path = session.folder.path().join(format!("{}.{ending}", what.name()));
             let shown = path.to_str().unwrap().to_owned();
@@ -268,9 +267,9 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
             } else {
                 let rows = csv::Reader::from_reader(text.as_bytes()).into_records().count();
                 let expected = match what {
-                    Document::Curve => session.model.curve.as_ref().unwrap().points.len(),
-                    Document::Walk => session.model.history.path().len(),
-                    Document::Events | Document::Script => 2,
+                    ExportKind::Curve => session.model.curve.as_ref().unwrap().points.len(),
+                    ExportKind::Walk => session.model.history.path().len(),
+                    ExportKind::Events | ExportKind::Script => 2,
                 };
                 assert_eq!(rows, expected, "{what:?}");
             }

@@ -4,7 +4,6 @@
 #[path = "support/session.rs"]
 mod session;
 
-use pulloff::explorer::journal::Journal;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Progress, Reply, answer, update};
 use pulloff_engine::preset::Value;
@@ -179,11 +178,7 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
     drop(update(&mut session.model, Id::Step.into()));
     drop(update(&mut session.model, Id::Cancel.into()));
     assert!(session.model.queue.is_empty());
-    assert_eq!(
-        Journal::so_far(&session.model).unwrap(),
-        ["next-limit"],
-        "nothing was done with these values"
-    );
+    assert_eq!(session.model.script().unwrap(), ["next-limit"], "nothing was done with these values");
     for id in [Id::Step, Id::NextLimit, Id::PreviousLimit, Id::Run] {
         session.does(id);
         assert_eq!(session.model.history.len(), steps, "{id:?}");

@@ -6,7 +6,8 @@
 mod session;
 
 use fastrand::Rng;
-use pulloff::explorer::files::{Document, Done};
+use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::job::Done;
 use pulloff::explorer::journal::Journal;
 use pulloff::explorer::script::{self, Permission, play};
 use pulloff::explorer::walk::{Made, walk};
@@ -128,11 +129,11 @@ impl Late {
 /// The bytes of the walk, exported.
 fn walk_csv(model: &mut Model, driver: &Inline, folder: &Path) -> String {
     let path = folder.join("walk.csv");
-    export(model, driver, Document::Walk, &path);
+    export(model, driver, ExportKind::Walk, &path);
     std::fs::read_to_string(path).unwrap()
 }
 
-fn export(model: &mut Model, driver: &Inline, what: Document, path: &Path) {
+fn export(model: &mut Model, driver: &Inline, what: ExportKind, path: &Path) {
     let path = path.to_string_lossy().into_owned();
     for effect in update(model, Command::Export { what, path, replace: true }) {
         if let Some(Reply::File(done)) = driver.run(effect) {
@@ -145,7 +146,7 @@ fn export(model: &mut Model, driver: &Inline, what: Document, path: &Path) {
 fn replayed(model: &mut Model, driver: &Inline, folder: &Path) -> (String, String, String) {
     let walked = walk_csv(model, driver, folder);
     let path = folder.join("session.pulloff");
-    export(model, driver, Document::Script, &path);
+    export(model, driver, ExportKind::Script, &path);
     let text = std::fs::read_to_string(path).unwrap();
     let lines = script::read("session", &text).unwrap();
     let store = Store::at(folder.join("presets"), &[]);

@@ -11,10 +11,10 @@ use home::Home;
 use pty::Pty;
 use pulloff::explorer::archive::Archive;
 use pulloff::explorer::branches::branches;
-use pulloff::explorer::journal::Journal;
-use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
-use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
+use pulloff::explorer::{
+    Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, script, update,
+};
 use pulloff::figure::{Role, Subject};
 use pulloff::store::Store;
 use pulloff_engine::preset::{BasisSpec, write};
@@ -145,7 +145,7 @@ fn a_session_that_calls_the_exact_basis_spectral_opens_says_so_and_goes_on() {
     let (model, _) = read(&bytes).unwrap().resume(None);
     assert!(model.message.is_none(), "{:?}", model.message);
     // Its walk is a script that this program plays, but for the line that has no meaning any more.
-    let lines = Journal::so_far(&session.model).unwrap();
+    let lines = session.model.script().unwrap();
     assert!(
         lines.contains(&"set basis.kind=exact".to_owned())
             && lines.contains(&"set gap.amplitude=0.0024".to_owned())

@@ -1,7 +1,8 @@
 //! The branches of the walk: every end that was reached, and the way there from the walk of now.
 
-use super::history::{History, Node};
-use super::thin::{children, is_repeated};
+use super::history::History;
+use super::node::Node;
+use super::prune::{children, is_repeated};
 
 /// Most branches drawn and listed, the newest of them.
 pub const MOST: usize = 40;

@@ -1,7 +1,7 @@
-//! The one table of commands.
+//! Commands, and the one table that names and describes them.
 //!
-//! Dispatcher, footer, help screen and the manual's key table are read from it; the keymap of the terminal gives
-//! each id its keys.
+//! Footer, help screen, scripts and the manual's key table are read from it; the keymap of the terminal gives each id its
+//! keys.
 
 mod named;
 mod table;
@@ -9,8 +9,7 @@ mod table;
 pub use named::{by_name, spelled};
 pub use table::{ROWS, row_of};
 
-use super::model::{Model, Panel};
-use super::view::{Overlay, View};
+use super::view::{Overlay, Panel, View};
 use pulloff_engine::preset::Key;
 use std::path::PathBuf;
 
@@ -136,8 +135,35 @@ pub struct Row {
     pub short: &'static str,
     /// What it takes, if anything.
     pub argument: Option<&'static str>,
-    /// Whether it can be done now.
-    pub enabled: fn(&Model) -> bool,
+    /// What must be there before it can be done.
+    pub needs: Needs,
+}
+
+/// What must be there before a command can be done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing.
+    Nothing,
+    /// A state of the walk.
+    Walker,
+    /// A state of the walk, or no curve on its way.
+    WalkerOrNoCurve,
+    /// A state in which the edge can run.
+    Jump,
+    /// A state or a value to go back to.
+    Undo,
+    /// A state to go forward to.
+    Redo,
+    /// A second branch of the walk.
+    Branches,
+    /// A curve.
+    Curve,
+    /// A pinned curve.
+    Pins,
+    /// The Problem panel selected.
+    Parameter,
+    /// A view that shows a part of its chart only.
+    Zoom,
 }
 
 /// A key and the text of its value.
@@ -145,6 +171,12 @@ pub type Assignment = (Key, String);
 
 /// Most steps that one command takes.
 pub const MOST_STEPS: usize = 9999;
+
+/// The first step length: a fiftieth of the range of every quantity.
+pub const FIRST_LENGTH: f64 = 0.02;
+
+/// The step lengths a person can choose.
+pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 
 /// A command with its argument.
 #[derive(Debug, Clone, PartialEq)]
@@ -235,7 +267,7 @@ pub enum Command {
     /// Write the screen to a file ending in `.txt`, or a figure to one whose ending chooses its format.
     ExportPage {
         /// What is written.
-        page: super::files::Page,
+        page: super::export::Page,
         /// The path.
         path: String,
         /// Whether a file of that name is to be replaced.
@@ -244,7 +276,7 @@ pub enum Command {
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         /// The document.
-        what: super::files::Document,
+        what: super::export::ExportKind,
         /// The path.
         path: String,
         /// Whether a file of that name is to be replaced.

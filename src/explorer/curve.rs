@@ -1,14 +1,13 @@
 //! The background curve: everything the screen shows of a preset.
 //!
-//! It comes in two parts. A [`Sweep`] belongs to the problem: the curve itself does not know what is controlled. A
+//! It comes in two parts. A [`ProblemCurve`] belongs to the problem: the curve itself does not know what is controlled. A
 //! [`CurveData`] adds what belongs to the control: limit points, stability, events. Another control, or another
 //! stiffness of the device, needs the second part only.
 //!
 //! Which states are admissible takes longer than both, and is added to a curve that is on the screen already.
 
-use super::history::Setting;
-use super::model::same_curve;
 use super::progress::Progress;
+use super::setting::{Setting, same_curve};
 use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
@@ -47,7 +46,7 @@ pub struct Inadmissible {
 
 /// What belongs to the problem, whatever is controlled: the curve, swept once, and all that follows from it alone.
 #[derive(Debug, Clone)]
-pub struct Sweep {
+pub struct ProblemCurve {
     /// The preset it was swept for; its control does not matter here.
     pub preset: Preset,
     /// The same made ready.
@@ -78,7 +77,7 @@ pub struct Sweep {
 #[derive(Debug, Clone)]
 pub struct CurveData {
     /// What belongs to the problem, shared with the curves of the same problem under other controls.
-    pub sweep: Arc<Sweep>,
+    pub sweep: Arc<ProblemCurve>,
     /// The problem made ready, with the control.
     pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
@@ -96,7 +95,7 @@ pub struct CurveData {
     pub report: Option<UnloadReport>,
 }
 
-impl Sweep {
+impl ProblemCurve {
     /// Sweeps the curve of `preset`; `go_on` is told how far it is and asked between the blocks of a basis and
     /// between points.
     ///
@@ -159,7 +158,7 @@ impl CurveData {
     /// # Errors
     /// [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
-        Self::under(Arc::new(Sweep::compute(preset, &mut go_on)?), preset, go_on)
+        Self::under(Arc::new(ProblemCurve::compute(preset, &mut go_on)?), preset, go_on)
     }
 
     /// The curve of `sweep` under the control of `preset`, whose problem must be the sweep's: nothing is swept again.
@@ -169,7 +168,7 @@ impl CurveData {
     /// # Errors
     /// [`CaseError::Cancelled`] when `go_on` said no.
     pub fn under(
-        sweep: Arc<Sweep>,
+        sweep: Arc<ProblemCurve>,
         preset: &Preset,
         mut go_on: impl FnMut(Progress) -> bool,
     ) -> Result<Self, CaseError> {
@@ -244,7 +243,7 @@ impl CurveData {
             let overlaps = overlaps_while(&sweep.curve, go_on)?;
             let reports = OverlapReport::all(&overlaps, sweep.case.units());
             let parts = overlaps.iter().zip(reports).map(|(overlap, report)| sweep.part(overlap, report));
-            sweep = Arc::new(Sweep { inadmissible: Some(parts.collect()), ..(*sweep).clone() });
+            sweep = Arc::new(ProblemCurve { inadmissible: Some(parts.collect()), ..(*sweep).clone() });
         }
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {

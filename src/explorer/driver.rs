@@ -5,14 +5,16 @@
 //! states, files have a lane of their own, and none of them waits for another. Which states of a curve are admissible
 //! is found in the lane of the curves, until another curve is wanted.
 
-use super::curve::{CurveData, Sweep};
-use super::files::{self, Done, Job};
+use super::curve::{CurveData, ProblemCurve};
+use super::effect::{Check, Effect, Reply, Wish};
+use super::files;
+use super::job::Job;
 use super::model::Model;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
 use super::saves::Saves;
 use super::update::answer;
-use super::walk::{self, Made, Outcome, Request};
+use super::walk::{self, Request};
 use crate::fault;
 use crate::mend::Reason;
 use crate::store::Store;
@@ -24,92 +26,6 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
-
-/// What the model wants done.
-#[derive(Debug, Clone)]
-pub enum Effect {
-    /// Compute the curve of a preset; an older one still waiting is forgotten.
-    Curve(Box<Wish>),
-    /// Give up the curves and checks up to this number.
-    StopCurve(u64),
-    /// Find which states of a curve are admissible; given up as soon as another curve is wanted.
-    Check(Check),
-    /// Compute the inside of a state; an older one still waiting is forgotten.
-    Profile(Box<Ask>),
-    /// Walk.
-    Walk(Box<Request>),
-    /// End the walk of this number; its states so far stay.
-    StopWalk(u64),
-    /// Compute the curve of a pin of a resumed session, by its number.
-    Pin(usize, Box<Preset>),
-    /// Give up the curves of pins that are still on their way.
-    StopPins,
-    /// Work on files.
-    File(Box<Job>),
-}
-
-/// A curve that is wanted.
-#[derive(Debug, Clone)]
-pub struct Wish {
-    /// Its number.
-    pub id: u64,
-    /// The preset.
-    pub preset: Preset,
-    /// The sweep of the same problem, where it is known: then only what belongs to the control is computed.
-    pub sweep: Option<Arc<Sweep>>,
-}
-
-/// A curve whose admissibility is wanted.
-#[derive(Debug, Clone)]
-pub struct Check {
-    /// The number.
-    pub id: u64,
-    /// The curve.
-    pub curve: Arc<CurveData>,
-}
-
-/// What came of it.
-#[derive(Debug, Clone)]
-pub enum Reply {
-    /// A curve, or why there is none.
-    Curve {
-        /// Its number.
-        id: u64,
-        /// The curve.
-        result: Result<Arc<CurveData>, Reason>,
-    },
-    /// How far a curve is that takes long.
-    Progress {
-        /// The number of the curve.
-        id: u64,
-        /// How far.
-        progress: Progress,
-    },
-    /// The same curve with what is not admissible on it.
-    Checked {
-        /// The number it was asked for under.
-        id: u64,
-        /// The curve.
-        curve: Arc<CurveData>,
-    },
-    /// The inside of a state.
-    Profile(Arc<Inside>),
-    /// States walked.
-    Walked {
-        /// The request.
-        id: u64,
-        /// New states.
-        made: Vec<Made>,
-        /// How it ended; `None` while it goes on.
-        outcome: Option<Outcome>,
-    },
-    /// The curve of a pin, by its number, or `None` where there is none any more.
-    Pinned(usize, Option<Arc<CurveData>>),
-    /// Something about the session that a person should know.
-    Notice(String),
-    /// A job on files ended.
-    File(Box<Done>),
-}
 
 /// Runs every effect at once, on the caller's thread.
 #[derive(Debug)]
@@ -308,7 +224,7 @@ impl Workers {
 }
 
 fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
-    let mut last: Option<Arc<Sweep>> = None;
+    let mut last: Option<Arc<ProblemCurve>> = None;
     loop {
         let mut wish = match slot.take() {
             Task::Curve(wish) => {

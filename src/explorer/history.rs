@@ -1,136 +1,8 @@
 //! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
 
-use super::thin;
-use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::{Control, Reduced, Units};
-use pulloff_engine::quasistatic::{Admissibility, Event, Point, Scales, Stability, State, Stiffness};
+use super::node::Node;
+use super::prune;
 use std::sync::Arc;
-
-/// The problem a node was solved in: the parameters may change from node to node.
-///
-/// Its basis is not here. It belongs to the curve, which is computed anew when the walker comes back to the problem:
-/// so a long walk through many problems stays small, and a saved one is read without computing any of them.
-#[derive(Debug, Clone)]
-pub struct Setting {
-    /// The preset.
-    pub preset: Preset,
-    /// The problem in reduced units.
-    pub reduced: Reduced,
-    /// What is controlled, in reduced units.
-    pub control: Control,
-    /// The units of the unknowns: those of the curve on which the nodes lie.
-    pub scales: Scales,
-}
-
-impl Setting {
-    /// The problem of `preset` on a curve with these scales.
-    pub fn new(preset: Preset, scales: Scales) -> Self {
-        let reduced = preset.reduced();
-        let control = preset.path.control.in_units(reduced.units.stiffness);
-        Self { preset, reduced, control, scales }
-    }
-
-    /// The factors to the user's units.
-    pub fn units(&self) -> &Units {
-        &self.reduced.units
-    }
-
-    /// A control in the user's units.
-    pub fn shown_control(&self, control: Control) -> Control {
-        control.in_units(1.0 / self.units().stiffness)
-    }
-}
-
-/// How a node came about.
-#[derive(Debug, Clone, PartialEq)]
-pub enum NodeKind {
-    /// The start state.
-    Start,
-    /// A step.
-    Step,
-    /// A limit point of the control, located exactly.
-    Limit,
-    /// The landing of a jump, or `None` inside for a pull-off, with what it cost.
-    Jump(Box<Event>),
-    /// Moved to by hand: an event selected, the start again.
-    Moved,
-    /// Solved again after a parameter or the control had changed.
-    Solved,
-    /// Not solved after a change: the state before, with the reason.
-    Stale(String),
-}
-
-/// Where the edge would land from a limit point, and what it would cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ahead {
-    /// The landing, reduced; `None` where the bodies come apart.
-    pub after: Option<State>,
-    /// Energy lost, reduced; `None` for a pull-off under a dead load.
-    pub dissipated: Option<f64>,
-}
-
-/// One state of the walk.
-#[derive(Debug, Clone)]
-pub struct Node {
-    /// The node before.
-    pub parent: Option<usize>,
-    /// How it came about.
-    pub kind: NodeKind,
-    /// The problem it solves.
-    pub setting: Arc<Setting>,
-    /// The control it was reached under (reduced).
-    pub control: Control,
-    /// The point of the curve, in the scales of its setting.
-    pub point: Point,
-    /// The state, reduced.
-    pub state: State,
-    /// Steps since the start.
-    pub step: usize,
-    /// How force and area answer to the approach here, reduced.
-    pub stiffness: Stiffness,
-    /// At a limit point of the control: where the jump leads, if that is known.
-    pub ahead: Option<Ahead>,
-    /// Whether the state is admissible, and the nearest crest.
-    pub admissibility: Admissibility,
-    /// Decimal digits the basis can be trusted for here.
-    pub digits: f64,
-    /// The relative difference of P from the exact solution at the same contact radius.
-    pub from_exact: f64,
-    /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
-    pub begins: bool,
-    /// The number of the walk request that made it: what one command made has one number.
-    pub request: u64,
-}
-
-impl Node {
-    /// The slopes that tell the stability.
-    pub fn stability(&self) -> Stability {
-        self.setting.scales.stability(&self.point)
-    }
-
-    /// The bodies are apart: the walk ends here.
-    pub fn is_apart(&self) -> bool {
-        matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
-    }
-
-    /// Of a state that cannot be, the reduced r at fault: of the crest that would touch, with its number where it has one,
-    /// or `None` with it where the disc would have to pull.
-    pub fn fault_radius(&self) -> Option<(f64, Option<Option<u64>>)> {
-        let found = self.admissibility;
-        if found.holds || self.is_apart() {
-            return None;
-        }
-        match found.overlapping() {
-            Some(crest) => Some((crest.radius, Some(crest.wave))),
-            None => found.least_pressure.map(|(radius, _)| (radius, None)),
-        }
-    }
-
-    /// A limit point under `control`.
-    pub fn is_limit(&self, control: Control) -> bool {
-        self.kind == NodeKind::Limit && self.control == control
-    }
-}
 
 /// Nodes that share one piece of memory: a snapshot of the tree shares all pieces but the last with the tree itself.
 const CHUNK: usize = 256;
@@ -160,7 +32,7 @@ pub struct History {
     /// How often nodes were forgotten and the others numbered anew.
     numbering: u64,
     /// Nodes are looked through for what may be forgotten when there are so many.
-    thin_at: usize,
+    prune_at: usize,
 }
 
 impl History {
@@ -287,15 +159,15 @@ impl History {
         }
         self.add(Entry { node, forward: None });
         self.stand(at);
-        if self.len() > self.thin_at.max(thin::MOST) {
-            self.thin();
+        if self.len() > self.prune_at.max(prune::MOST) {
+            self.prune();
         }
     }
 
     /// Forgets plain states far back, and numbers the others anew.
-    fn thin(&mut self) {
+    fn prune(&mut self) {
         let nodes: Vec<&Node> = self.nodes().collect();
-        let stays = thin::staying(&nodes, self.cursor);
+        let stays = prune::staying(&nodes, self.cursor);
         let mut tree = Self { revision: self.revision + 1, numbering: self.numbering + 1, ..Self::default() };
         // Where each node went: itself, or the one before it that stays.
         let mut place: Vec<usize> = Vec::with_capacity(nodes.len());
@@ -321,7 +193,7 @@ impl History {
         }
         tree.cursor = self.cursor.map(|cursor| place[cursor]);
         // Where little could be forgotten it is not tried at every step.
-        tree.thin_at = tree.len() + tree.len() / 4;
+        tree.prune_at = tree.len() + tree.len() / 4;
         *self = tree;
     }
 

@@ -6,10 +6,9 @@
 //! back, a way reversed twice and what only a screen shows leave nothing, and the order is that in which states were made,
 //! whatever the timing was.
 
-use super::command::{Command, Id, MOST_STEPS};
+use super::command::{Command, FIRST_LENGTH, Id, MOST_STEPS};
 use super::curve::CurveData;
-use super::history::{Node, NodeKind};
-use super::model::{CurveError, FIRST_LENGTH, Model};
+use super::node::{Node, NodeKind};
 use super::script;
 use super::walk::{Action, Outcome};
 use crate::store::Source;
@@ -107,20 +106,14 @@ impl Journal {
         self.start.as_deref()
     }
 
-    /// The lines that lead to where `model` is now.
+    /// The lines that lead to `preset`, walked `way` (inward or not, step length); `failed` where it has no curve.
     ///
     /// # Errors
     /// Why there are none, in words.
-    pub fn so_far(model: &Model) -> Result<Vec<String>, String> {
-        let mut journal = model.journal.clone();
+    pub fn so_far(&self, preset: &Preset, way: (bool, f64), failed: bool) -> Result<Vec<String>, String> {
+        let mut journal = self.clone();
         journal.abandoned();
-        // Values whose curve was given up have no state: nothing was done with them.
-        let preset = match &model.curve {
-            Some(curve) if matches!(model.curve_error, Some(CurveError::GivenUp(_))) => &curve.setting.preset,
-            _ => &model.preset,
-        };
-        let failed = matches!(model.curve_error, Some(CurveError::Failed(_)));
-        journal.sync(preset, Some((model.inward, model.length)), failed);
+        journal.sync(preset, Some(way), failed);
         journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
     }
 

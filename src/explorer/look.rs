@@ -1,11 +1,10 @@
 //! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
 
 use super::command::Id;
-use super::driver::Effect;
-use super::model::{Level, Model, Panel};
+use super::effect::Effect;
+use super::model::{Level, Model};
 use super::profile::{Ask, Inside};
-use super::update::{number, tell};
-use super::view::{Overlay, View, Window};
+use super::view::{Overlay, Panel, View, Window};
 use pulloff_engine::quasistatic::jump::Run;
 use std::sync::Arc;
 
@@ -33,9 +32,9 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
     let times = if closer { CLOSER } else { 1.0 / CLOSER };
     match model.window(view).zoomed(times, about) {
         Some(window) => model.windows[view as usize] = window,
-        None if closer => tell(model, Level::Info, "no closer: there is nothing more to tell apart"),
+        None if closer => model.tell(Level::Info, "no closer: there is nothing more to tell apart"),
         None => {
-            tell(model, Level::Info, format!("no further away: {} shows the whole chart", Id::Fit.named()));
+            model.tell(Level::Info, format!("no further away: {} shows the whole chart", Id::Fit.named()));
         }
     }
 }
@@ -72,7 +71,7 @@ pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     model.overlays.toggle(overlay);
     let missing = model.curve.as_ref().is_some_and(|curve| curve.sweep.theory.envelope.is_none());
     if overlay == Overlay::Envelope && model.overlays.envelope && missing {
-        tell(model, Level::Info, format!("the envelope is {NO_ENVELOPE}"));
+        model.tell(Level::Info, format!("the envelope is {NO_ENVELOPE}"));
     }
 }
 
@@ -81,20 +80,19 @@ pub(super) fn pin(model: &mut Model) {
     let Some(curve) = model.curve.clone() else { return };
     match model.pins.add(&curve) {
         Ok(number) => {
-            tell(
-                model,
+            model.tell(
                 Level::Info,
                 format!("pinned as {number}: change a value to compare; {} lists the pins", Id::Pins.named()),
             );
         }
-        Err(reason) => tell(model, Level::Error, reason),
+        Err(reason) => model.tell(Level::Error, reason),
     }
 }
 
 /// Takes away one pinned curve or all.
 pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
     if !model.pins.remove(number) {
-        tell(model, Level::Error, "no curve is pinned under that number");
+        model.tell(Level::Error, "no curve is pinned under that number");
     }
 }
 
@@ -130,7 +128,7 @@ pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
     if model.profile_wanted.as_ref().is_some_and(|last| last.is_like(&ask)) {
         return None;
     }
-    ask.id = number(model);
+    ask.id = model.number();
     model.profile_wanted = Some(ask.clone());
     Some(Effect::Profile(ask))
 }

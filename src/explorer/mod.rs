@@ -6,66 +6,81 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`command`] | the one table of commands |
+//! | [`command`] | the commands and their table |
+//! | [`availability`] | which commands can be done now |
 //! | [`model`] | the state of a session |
 //! | [`update`](mod@update) | the only code that changes the model; it never solves and never reads a file |
-//! | [`view`] | the views, their windows, the overlays: what is shown of curve and walker |
-//! | [`look`] | the commands that change it |
+//! | [`effect`] | the work that the model asks for, and the replies |
+//! | [`requests`] | the effects that several commands ask for |
+//! | [`status_line`] | what the status line says |
+//! | [`view`] | panels, views, windows, overlays |
+//! | [`look`] | the commands that change them |
 //! | [`pins`] | curves kept to compare the next ones with |
-//! | [`theory`] | the theory drawn over a curve, computed with it |
+//! | [`theory`] | closed forms drawn over a curve |
 //! | [`nudge`] | a parameter changed by a little |
-//! | [`history`] | the walk as an append-only tree |
-//! | [`beside`] | what is under way beside the curve and the walk |
-//! | [`branches`] | its branches: what each ended with |
-//! | `thin` | which states of a long walk may be forgotten |
-//! | [`curve`] | the background curve: the sweep of the problem, and what belongs to the control |
-//! | [`progress`] | how far a curve that is computed has come |
-//! | [`data`] | the profiles of a folder, to choose from |
+//! | [`setting`], [`node`], [`history`] | the walk: the problem of a state, a state, and the tree of all states |
+//! | [`branches`] | the branches of the walk, and what each ended with |
+//! | `prune` | which states of a long walk may be forgotten |
+//! | [`curve`] | the equilibrium curve of a problem, and what belongs to its control |
+//! | [`progress`] | how far the computation of a curve has come |
+//! | [`background_jobs`] | pinned curves, admissibility checks, the profile of the current state |
 //! | [`device`] | the line of the loading device through the walker |
-//! | [`profile`] | the inside of one state: pressure, gap, potential |
+//! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
-//! | [`files`] | opening, saving and exporting |
-//! | [`session`] | a session as a document, to be resumed |
-//! | [`archive`] | the sessions kept on disk |
+//! | [`export`], [`job`], [`files`], [`walk_table`] | opening, saving and exporting |
+//! | [`data`] | the profiles of a folder, to choose from |
 //! | `saves` | saves that follow each other faster than they are answered |
+//! | [`session`] | a session as a document, to be resumed |
+//! | [`archive`] | the sessions on disk |
 //! | [`journal`] | what was done, as the lines of a script |
-//! | [`script`] | commands as text, and scripts driven through a model |
-//! | [`driver`] | effects run inline (tests, scripts) or on worker threads (the screen) |
+//! | [`script`] | commands as text, and scripts run on a model |
+//! | [`driver`] | runs effects inline (tests, scripts) or on worker threads (the screen) |
 //!
 //! Nothing here knows terminals, keys or colours.
 
 pub mod archive;
-pub mod beside;
+pub mod availability;
+pub mod background_jobs;
 pub mod branches;
 pub mod command;
 pub mod curve;
 pub mod data;
 pub mod device;
 pub mod driver;
+pub mod effect;
+pub mod export;
 pub mod files;
 pub mod history;
+pub mod job;
 pub mod journal;
 pub mod look;
 pub mod model;
+pub mod node;
 pub mod nudge;
 pub mod pins;
 pub mod profile;
 pub mod progress;
+mod prune;
+pub mod requests;
 mod saves;
 pub mod script;
 pub mod session;
+pub mod setting;
+pub mod status_line;
 pub mod theory;
-mod thin;
 pub mod update;
 pub mod view;
 pub mod walk;
+pub mod walk_table;
 
 pub use command::{Command, Id};
-pub use curve::{CurveData, Inadmissible, Sweep};
-pub use driver::{Check, Effect, Inline, Reply, Wish, Workers};
-pub use history::{History, Node, NodeKind};
+pub use curve::{CurveData, Inadmissible, ProblemCurve};
+pub use driver::{Inline, Workers};
+pub use effect::{Check, Effect, Reply, Wish};
+pub use history::History;
 pub use journal::Journal;
-pub use model::{Axes, EventSource, Level, Model, Panel};
+pub use model::{Level, Model};
+pub use node::{Node, NodeKind};
 pub use progress::Progress;
 pub use update::{answer, open, update};
-pub use view::{Overlay, Overlays, View, Window};
+pub use view::{Axes, EventSource, Overlay, Overlays, Panel, View, Window};

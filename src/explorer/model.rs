@@ -1,21 +1,22 @@
 //! The state of a session, without terminals, keys or colours.
 
-use super::command::Command;
+use super::command::{Command, FIRST_LENGTH};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::history::{History, Mark, Node, NodeKind};
+use super::history::{History, Mark};
 use super::journal::Journal;
+use super::node::{Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
-use super::view::{Overlays, View, Window};
+use super::setting::same_curve;
+use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::unload::EventReport;
-use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -37,45 +38,6 @@ impl CurveError {
     }
 }
 
-/// The panels that can be selected.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Panel {
-    /// The parameters of the preset.
-    Problem,
-    /// The state of the walker.
-    Walker,
-    /// The charts.
-    Charts,
-    /// The list of instabilities.
-    Events,
-}
-
-impl Panel {
-    /// All, in the order of the Tab key.
-    pub const ALL: [Self; 4] = [Self::Problem, Self::Walker, Self::Charts, Self::Events];
-}
-
-/// What the axes show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Axes {
-    /// `P/P_c`, δ, s/λ.
-    Reduced,
-    /// The preset's own units.
-    Raw,
-}
-
-/// Where the events come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum EventSource {
-    /// The quasi-static path along the whole curve.
-    Curve,
-    /// The jumps made by hand.
-    Walked,
-}
-
 /// A question that a job on files left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Question {
@@ -84,9 +46,9 @@ pub enum Question {
     /// Replace the preset of this name; whether with the data of its profile.
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
-    ReplaceFile(super::files::Document, String),
+    ReplaceFile(super::export::ExportKind, String),
     /// Replace the file by this page; its path.
-    ReplacePage(super::files::Page, String),
+    ReplacePage(super::export::Page, String),
 }
 
 /// A walk request that is running.
@@ -230,17 +192,6 @@ pub struct Untried {
     pub journal: Journal,
 }
 
-/// The first step length: a fiftieth of the range of every quantity.
-pub const FIRST_LENGTH: f64 = 0.02;
-/// The step lengths a person can choose.
-pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
-
-/// Whether two presets have the same curve: everything but the title and the control is equal.
-pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
-    (a.material, &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
-        == (b.material, &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
-}
-
 /// Whether a state solves the problem of `curve`.
 pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
     same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
@@ -303,6 +254,32 @@ impl Model {
         self.next_request = before.next_request + 1;
         (self.curve_wanted, self.curve_shown) = (before.next_request, before.next_request);
         self.views = before.views;
+    }
+
+    /// Sets the message of the status line.
+    pub(super) fn tell(&mut self, level: Level, text: impl Into<String>) {
+        self.message = Some((level, text.into()));
+    }
+
+    /// A new request number.
+    pub(super) fn number(&mut self) -> u64 {
+        let number = self.next_request;
+        self.next_request += 1;
+        number
+    }
+
+    /// The lines of a script that leads to where the session is now.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn script(&self) -> Result<Vec<String>, String> {
+        // Values whose curve was given up have no state: nothing was done with them.
+        let preset = match &self.curve {
+            Some(curve) if matches!(self.curve_error, Some(CurveError::GivenUp(_))) => &curve.setting.preset,
+            _ => &self.preset,
+        };
+        let failed = matches!(self.curve_error, Some(CurveError::Failed(_)));
+        self.journal.so_far(preset, (self.inward, self.length), failed)
     }
 
     /// Whether the preset differs from its file.
@@ -443,11 +420,5 @@ impl Model {
                 .and_then(|curve| curve.report.as_ref())
                 .map_or_else(Vec::new, |report| report.events.clone()),
         }
-    }
-
-    /// The status line: the message, or what the state is and which command is next, which whoever shows it
-    /// [spells](super::command::spelled).
-    pub fn status(&self) -> (Level, String) {
-        self.message.clone().unwrap_or_else(|| (Level::Info, super::update::hint(self)))
     }
 }

@@ -3,7 +3,8 @@
 //! A save asks that the file be as the session knows it, and the session learns from the answer how the save has left
 //! it. When the next save is asked for before that, the file is as our own last save left it: nobody else changed it.
 
-use super::files::{self, Done, Job};
+use super::files;
+use super::job::{Done, Job};
 use crate::store::{Fingerprint, Overwrite, Source, Store};
 
 /// The last saves to one file.

@@ -2,40 +2,36 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | `update.rs` | commands and replies to those who deal with them; selecting |
+//! | `update.rs` | hands commands and replies to the code for each; selecting |
+//! | `curve` | what follows from a new curve |
 //! | `walk` | steps, runs, jumps and undo |
-//! | `values` | parameters changed, and the curve that follows |
+//! | `values` | parameters changed |
 //! | `files` | opening, saving and exporting |
-//! | `words` | the status line |
 
+mod curve;
 mod files;
 mod values;
 mod walk;
-mod words;
 
-pub use words::hint;
-
-use super::beside;
-use super::command::{Command, Id, row_of};
-use super::driver::{Effect, Reply};
-use super::files::Job;
-use super::look;
-use super::model::{Axes, EventSource, LENGTHS, Level, Model, Panel};
+use super::availability::{is_available, why_unavailable};
+use super::command::{Command, Id, LENGTHS};
+use super::effect::{Effect, Reply};
+use super::job::Job;
+use super::model::{Level, Model};
 use super::nudge::Amount;
-use super::view::View;
+use super::requests::{browse, file, stop, take_back, want_check, want_curve};
+use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
+use super::{background_jobs, look};
 use crate::store::{Loaded, Overwrite};
-use files::{browse, export, export_page, file, file_done, save, save_back};
+use curve::{checked, curve_came, give_up};
+use files::{export, export_page, file_done, save, save_back};
 use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{greek, show_name};
 use pulloff_engine::units::Quantity;
-pub(in crate::explorer) use values::want_curve;
-use values::{
-    assign, change_control, checked, curve_came, give_up, set, take_back, try_out, turn, untry, want_check,
-};
-use walk::{go_to, go_to_state, restart, scale_length, stop, travel, travel_to, walk, walked};
-use words::unavailable;
+use values::{assign, change_control, set, try_out, turn, untry};
+use walk::{go_to, go_to_state, restart, scale_length, travel, travel_to, walk, walked};
 
 /// Commands waiting for a walk or a curve; more key presses than these are a held key.
 const QUEUE: usize = 1000;
@@ -91,12 +87,22 @@ fn waits(model: &Model, command: &Command) -> bool {
 
 /// Does what is allowed now; what is not is refused with the reason, and what waits behind it with it.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
-    if (row_of(command.id()).enabled)(model) {
+    if is_available(model, command.id()) {
         return obey(model, command);
     }
     model.queue.clear();
-    tell(model, Level::Error, unavailable(model, command.id()));
+    model.tell(Level::Error, why_unavailable(model, command.id()));
     Vec::new()
+}
+
+/// Does the commands that waited, in order, until one of them makes the others wait again.
+fn go_on(model: &mut Model) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    while effects.is_empty() && !model.is_busy() {
+        let Some(command) = model.queue.pop_front() else { break };
+        effects = allowed(model, command);
+    }
+    effects
 }
 
 fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
@@ -149,14 +155,16 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
 /// What a reply does to the model, and what follows from it.
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
-        Reply::Curve { id, result } => curve_came(model, id, result),
+        Reply::Curve { id, result } => curve_came(model, id, result).unwrap_or_else(|| go_on(model)),
         Reply::Progress { id, progress } => {
             if id == model.curve_wanted && model.is_computing() {
                 model.progress = Some(progress);
             }
             return Vec::new();
         }
-        Reply::Walked { id, made, outcome } => walked(model, id, made, outcome),
+        Reply::Walked { id, made, outcome } => {
+            walked(model, id, made, outcome).unwrap_or_else(|| go_on(model))
+        }
         Reply::Checked { id, curve } => {
             checked(model, id, curve);
             Vec::new()
@@ -166,7 +174,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             Vec::new()
         }
         Reply::Notice(text) => {
-            tell(model, Level::Error, text);
+            model.tell(Level::Error, text);
             Vec::new()
         }
         Reply::Pinned(number, curve) => {
@@ -230,7 +238,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),
         Id::Cancel if model.cross.is_some() => model.cross = None,
-        Id::Cancel => return beside::give_up(model),
+        Id::Cancel => return background_jobs::give_up(model),
         Id::Quit => model.quit = true,
         // These need an argument, which the terminal asks for; or concern only what it shows.
         Id::SaveAs
@@ -247,16 +255,6 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::MoveTo => {}
     }
     Vec::new()
-}
-
-pub(super) fn tell(model: &mut Model, level: Level, text: impl Into<String>) {
-    model.message = Some((level, text.into()));
-}
-
-pub(super) fn number(model: &mut Model) -> u64 {
-    let number = model.next_request;
-    model.next_request += 1;
-    number
 }
 
 fn next_panel(model: &mut Model, by: usize) {
@@ -277,7 +275,7 @@ fn move_selection(model: &mut Model, down: bool) {
             if let Some(text) = selected
                 .and_then(|(row, value)| group_effect(&row).or_else(|| long_text(&row, value.as_ref())))
             {
-                tell(model, Level::Info, text);
+                model.tell(Level::Info, text);
             }
         }
         Panel::Events => {
@@ -294,7 +292,7 @@ fn group_effect(row: &Row) -> Option<String> {
     Some(greek(&format!("turning it changes {changed}, {held} held")))
 }
 
-/// A text that is longer than its place beside the label may be, whole.
+/// A text that is longer than its place background_jobs the label may be, whole.
 fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
     /// Characters that fit on every screen.
     const FITTING: usize = 11;
@@ -329,9 +327,7 @@ fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
         let largest = ROOM * curve.case.start * curve.case.units().length;
         let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| short(s, 6));
         let (asked, largest) = (length(radius), length(largest));
-        tell(
-            model,
-            Level::Error,
+        model.tell(Level::Error,
             format!(
                 "contact radius {asked} is out of range: it must be at most {largest}, three times that of the start"
             ),
@@ -345,7 +341,7 @@ fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
 fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
     let count = model.shown_events().len();
     if !(1..=count).contains(&number) {
-        tell(model, Level::Error, format!("there is no event {number}: the list has {count}"));
+        model.tell(Level::Error, format!("there is no event {number}: the list has {count}"));
         return Vec::new();
     }
     model.event = number - 1;
@@ -374,7 +370,7 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
     }
     let Some(event) = unloading.events.get(model.event) else {
         if !model.shown_inadmissible().is_empty() {
-            tell(model, Level::Info, "no state to go to: the next crest would touch before");
+            model.tell(Level::Info, "no state to go to: the next crest would touch before");
         }
         return Vec::new();
     };

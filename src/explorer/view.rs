@@ -5,6 +5,45 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The panels that can be selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Panel {
+    /// The parameters of the preset.
+    Problem,
+    /// The state of the walker.
+    Walker,
+    /// The charts.
+    Charts,
+    /// The list of instabilities.
+    Events,
+}
+
+impl Panel {
+    /// All, in the order of the Tab key.
+    pub const ALL: [Self; 4] = [Self::Problem, Self::Walker, Self::Charts, Self::Events];
+}
+
+/// What the axes show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axes {
+    /// `P/P_c`, δ, s/λ.
+    Reduced,
+    /// The preset's own units.
+    Raw,
+}
+
+/// Where the events come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EventSource {
+    /// The quasi-static path along the whole curve.
+    Curve,
+    /// The jumps made by hand.
+    Walked,
+}
+
 /// The views of a problem and its walker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -4,7 +4,8 @@
 //! ones. A step that would pass a limit point of the control stops exactly there.
 
 use super::curve::CurveData;
-use super::history::{Ahead, NodeKind, Setting};
+use super::node::{Ahead, NodeKind};
+use super::setting::Setting;
 use pulloff_engine::case::Case;
 use pulloff_engine::continuation::{Stepper, step_size};
 use pulloff_engine::disc::Place;
@@ -12,9 +13,9 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::curve::settings;
 use pulloff_engine::quasistatic::jump::{self, Run};
 use pulloff_engine::quasistatic::{
-    Admissibility, Curve, Equilibrium, Event, Limit, Losses, Monotone, Point, State, Stiffness, Turn,
+    Admissibility, Curve, Equilibrium, Event, Limit, Losses, Monotone, Point, State, Stiffness, Turn, energy,
+    landscape,
 };
-use pulloff_engine::quasistatic::{energy, landscape};
 use pulloff_engine::ritz::{self, NewtonSettings};
 use pulloff_engine::theory::Exact;
 use std::sync::Arc;

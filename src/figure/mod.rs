@@ -32,11 +32,10 @@ pub use reading::{Nearest, nearest};
 pub use scale::Scale;
 
 use crate::explorer::branches::{Branch, branches};
-use crate::explorer::device;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
-use crate::explorer::{Axes, CurveData, Model, Node, Overlays};
+use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
 use pulloff_engine::preset::Preset;
 
 /// What figures are built from.

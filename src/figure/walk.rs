@@ -4,7 +4,7 @@ use super::Subject;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use crate::explorer::View;
-use crate::explorer::history::{Node, NodeKind};
+use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::{Event, EventKind, State};
 

@@ -2,6 +2,7 @@
 
 use super::Width;
 use super::svg::{cropped, entry, finish, frame, hatched, hatches, outline, plain};
+use crate::mend::Mend;
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
 use kuva::plot::ContourPlot;
@@ -44,6 +45,15 @@ pub enum MapError {
     /// They are neither a grid over two axes of numbers nor rows over one.
     #[error("{0}")]
     Grid(String),
+}
+
+impl Mend for MapError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Results(error) => error.can_be_mended(),
+            Self::Grid(_) => true,
+        }
+    }
 }
 
 impl MapError {

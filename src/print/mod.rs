@@ -15,6 +15,7 @@ mod png;
 #[cfg(feature = "png")]
 mod tree;
 
+use crate::mend::Mend;
 use pulloff_engine::text::show_path;
 use std::path::Path;
 
@@ -45,6 +46,12 @@ pub enum FormatError {
     },
 }
 
+impl Mend for FormatError {
+    fn can_be_mended(&self) -> bool {
+        true
+    }
+}
+
 /// Why a figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
@@ -62,6 +69,12 @@ pub enum DrawError {
         /// What it says.
         cause: String,
     },
+}
+
+impl Mend for DrawError {
+    fn can_be_mended(&self) -> bool {
+        false
+    }
 }
 
 impl Format {

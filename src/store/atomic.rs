@@ -7,6 +7,7 @@
 
 use super::file::{Fingerprint, kind_of, read_bytes};
 use super::temporary;
+use crate::mend::Mend;
 use pulloff_engine::text::show_path;
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
@@ -85,6 +86,20 @@ pub enum WriteError {
         /// What the system says.
         cause: io::Error,
     },
+}
+
+impl Mend for WriteError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Io { cause, .. } => cause.can_be_mended(),
+            Self::NotReadBack { .. } => false,
+            Self::Exists { .. }
+            | Self::Changed { .. }
+            | Self::ReadOnly { .. }
+            | Self::NotRegular { .. }
+            | Self::Locked { .. } => true,
+        }
+    }
 }
 
 /// What the system says of a write, where its own words are too few.

@@ -3,6 +3,7 @@
 use super::atomic::{Overwrite, WriteError, write_atomically};
 use super::data::load;
 use super::file::{FileError, read_bytes};
+use crate::mend::Mend;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::gap::shapes::Measured;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
@@ -25,6 +26,16 @@ pub enum DataError {
     /// They are gone or others than those in the preset, in words.
     #[error("{0}")]
     Other(String),
+}
+
+impl Mend for DataError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::File(error) => error.can_be_mended(),
+            Self::Write(error) => error.can_be_mended(),
+            Self::Other(_) => true,
+        }
+    }
 }
 
 impl From<String> for DataError {

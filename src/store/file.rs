@@ -1,5 +1,6 @@
 //! Reading regular files of bounded size, and recognising them again.
 
+use crate::mend::Mend;
 use pulloff_engine::text::show_path;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata, OpenOptions};
@@ -87,6 +88,17 @@ pub enum FileError {
         /// The first bad byte, from 0.
         at: usize,
     },
+}
+
+impl Mend for FileError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Io { cause, .. } => cause.can_be_mended(),
+            Self::NotRegular { .. } | Self::TooLarge { .. } | Self::Endless { .. } | Self::NotText { .. } => {
+                true
+            }
+        }
+    }
 }
 
 /// What a file that is not regular is.

@@ -4,6 +4,7 @@ use super::output::{Existing, OutputError};
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
+use crate::mend::Mend;
 use crate::store::atomic::{Overwrite, WriteError, explained, write_atomically, write_filled};
 use crate::store::stream;
 use pulloff_engine::text::show_path;
@@ -95,6 +96,23 @@ pub enum MergeError {
         /// What the system says.
         cause: io::Error,
     },
+}
+
+impl Mend for MergeError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Output(error) => error.can_be_mended(),
+            Self::Io { cause, .. } => cause.can_be_mended(),
+            Self::NotOurs { cause, .. } => cause.can_be_mended(),
+            Self::Exists { .. }
+            | Self::OtherSweep { .. }
+            | Self::OtherDivision { .. }
+            | Self::Doubled { .. }
+            | Self::Missing(_)
+            | Self::Incomplete { .. }
+            | Self::Changed { .. } => true,
+        }
+    }
 }
 
 impl From<WriteError> for MergeError {

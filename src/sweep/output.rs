@@ -8,6 +8,7 @@ use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::side::{self, Side, SideError};
 use super::spec::Spec;
+use crate::mend::Mend;
 use crate::store::atomic::{Overwrite, WriteError, check_growing, explained, write_atomically};
 use crate::store::lock::lock_file;
 use crate::store::stream;
@@ -89,6 +90,20 @@ pub enum OutputError {
     /// No threads.
     #[error("cannot start the threads: {0}")]
     Threads(String),
+}
+
+impl Mend for OutputError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Write(error) => error.can_be_mended(),
+            Self::Io { cause, .. } => cause.can_be_mended(),
+            Self::NotOurs { cause, .. } => cause.can_be_mended(),
+            Self::Threads(_) => false,
+            Self::Busy { .. } | Self::OtherSweep { .. } | Self::OtherShard { .. } | Self::Changed { .. } => {
+                true
+            }
+        }
+    }
 }
 
 /// Faults by their reason.

@@ -1,6 +1,7 @@
 //! The results of a sweep read again: columns by their names.
 
 use super::side::{ColumnInfo, Side, SideError};
+use crate::mend::Mend;
 use pulloff_engine::text::closest;
 use pulloff_engine::text::{quote, sanitize, show_path};
 use std::fs::File;
@@ -32,6 +33,15 @@ pub enum ResultsError {
         /// What is wrong.
         what: String,
     },
+}
+
+impl Mend for ResultsError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Side(error) => error.can_be_mended(),
+            Self::NoColumn { .. } | Self::Table { .. } => true,
+        }
+    }
 }
 
 /// The results of a sweep, or of a part of it; they may still be growing.

@@ -7,6 +7,7 @@ use super::document::Document;
 use super::record::{self, Layout};
 use super::shard::Shard;
 use super::spec::{Spec, of_canonical};
+use crate::mend::Mend;
 use crate::store::file::{self, FileError, read_text};
 use pulloff_engine::text::{greek, sanitize, show_path};
 use pulloff_engine::units::{Quantity, UnitSystem};
@@ -34,6 +35,15 @@ pub enum SideError {
         /// What is wrong, safe to show.
         what: String,
     },
+}
+
+impl Mend for SideError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::File(error) => error.can_be_mended(),
+            Self::Unknown { .. } => true,
+        }
+    }
 }
 
 /// A column of the results.

@@ -6,6 +6,7 @@ use super::document::{Document, Entry, Section, SpecError};
 use super::fault::Fault;
 use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
+use crate::mend::Mend;
 use crate::store::file::{self, FileError};
 use crate::store::{Store, atomic, stream};
 use pulloff_engine::gap::Shape;
@@ -60,6 +61,15 @@ pub enum LoadError {
     /// It is not valid.
     #[error(transparent)]
     Spec(#[from] SpecError),
+}
+
+impl Mend for LoadError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::File(error) => error.can_be_mended(),
+            Self::Spec(_) => true,
+        }
+    }
 }
 
 /// What `set` is.

@@ -21,9 +21,9 @@ mod session;
 use super::keymap::Keymap;
 use super::overlay::{Action, Choose, Confirm, Help, Item, Overlay as Over, Prompt, Purpose};
 use super::theme::Theme;
-use crate::explorer::beside::Beside;
+use crate::explorer::background_jobs::BackgroundJob;
 use crate::explorer::branches::are_several;
-use crate::explorer::files::Done;
+use crate::explorer::job::Done;
 use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
@@ -73,7 +73,7 @@ pub struct App {
     /// The screen as last drawn.
     pub screen: Rect,
     /// What takes so long beside the curve and the walk that it is told of.
-    pub late: Option<Beside>,
+    pub late: Option<BackgroundJob>,
 }
 
 impl App {

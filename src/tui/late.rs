@@ -1,7 +1,7 @@
 //! What takes so long that it is told of: telling of everything would make two frames more of every step.
 
 use super::app::App;
-use crate::explorer::beside::Beside;
+use crate::explorer::background_jobs::BackgroundJob;
 use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ const SHORT: Duration = Duration::from_millis(100);
 /// Work beside the curve and the walk, with the time when it was first seen.
 #[derive(Debug, Default)]
 pub(super) struct Late {
-    since: Option<(Beside, Instant)>,
+    since: Option<(BackgroundJob, Instant)>,
     is_told: bool,
 }
 
@@ -19,11 +19,11 @@ impl Late {
     /// Looks at what is under way, and says whether `app` has something else to show of it.
     pub(super) fn look(&mut self, app: &mut App) -> bool {
         let now = Instant::now();
-        let begun = |beside: Beside| {
+        let begun = |beside: BackgroundJob| {
             let same = self.since.filter(|(last, _)| discriminant(last) == discriminant(&beside));
             (beside, same.map_or(now, |(_, begun)| begun))
         };
-        self.since = Beside::of(&app.model).map(begun);
+        self.since = BackgroundJob::of(&app.model).map(begun);
         let late = self.since.filter(|(_, begun)| now.duration_since(*begun) >= SHORT);
         let late = late.map(|(beside, _)| beside);
         self.is_told = late.is_some();
@@ -55,11 +55,11 @@ mod tests {
             assert!(app.late.is_none() && late.due().is_some());
             std::thread::sleep(Duration::from_millis(5));
         }
-        assert_eq!((app.late, late.due()), (Some(Beside::Pins(2)), None));
+        assert_eq!((app.late, late.due()), (Some(BackgroundJob::Pins(2)), None));
         // The next of the same kind is late as well.
         app.model.pins.came(1, None);
         assert!(late.look(&mut app));
-        assert_eq!(app.late, Some(Beside::Pins(1)));
+        assert_eq!(app.late, Some(BackgroundJob::Pins(1)));
         app.model.pins.came(2, None);
         assert!(late.look(&mut app) && app.late.is_none());
     }

@@ -35,7 +35,7 @@ mod budget;
 
 pub use terminal::refuse_reason;
 
-use crate::explorer::archive::{Archive, Held, Keeper, ago};
+use crate::explorer::archive::{Archive, Autosave, Held, ago};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::session::{Ended, Snapshot};
 use crate::explorer::{Effect, Reply, Workers};
@@ -89,7 +89,7 @@ fn told(held: &Held) -> String {
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(start: Start, theme: Theme, keeper: &Keeper) -> (App, Vec<Effect>, Option<Box<Held>>) {
+fn begin(start: Start, theme: Theme, keeper: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
     match start {
         Start::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
@@ -126,7 +126,7 @@ pub fn run(
     look: Look,
     settings: Settings,
 ) -> io::Result<ExitCode> {
-    let keeper = Keeper::new(archive);
+    let keeper = Autosave::new(archive);
     let last = keeper.clone();
     // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
     terminal::set_last_words(Box::new(move || drop(last.finish(Ended::Dropped, PATIENCE[1]))));

@@ -1,7 +1,7 @@
 //! What lies over the screen: prompts, choices, questions and the help, as data.
 
 use crate::explorer::Command;
-use crate::explorer::files::{Document, Page};
+use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use crate::tui::copy::Content;
@@ -65,7 +65,7 @@ pub enum Purpose {
         with_data: bool,
     },
     /// The file to export to.
-    File(Document),
+    File(ExportKind),
     /// The file for this page.
     Page(Page),
     /// The path of a preset to open.

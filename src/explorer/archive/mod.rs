@@ -8,22 +8,22 @@
 //! |---|---|
 //! | `mod.rs` | the folder: list, load, delete, and room for new ones |
 //! | [`claim`] | the right to write one session |
-//! | [`keeper`] | writes the newest state of a session every few seconds and at its end |
+//! | [`autosave`] | writes the newest state of a session every few seconds and at its end |
 
+pub mod autosave;
 pub mod claim;
-pub mod keeper;
 
+pub use autosave::Autosave;
 pub use claim::Claim;
-pub use keeper::Keeper;
 
 use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
+use crate::mend::Mend;
 use crate::store::WriteError;
 use crate::store::file::{FileError, read_bytes};
 use crate::store::lock::FileLock;
 use crate::store::name::is_well_formed;
 use etcetera::BaseStrategy;
-use pulloff_engine::text::closest;
-use pulloff_engine::text::{quote, show_path};
+use pulloff_engine::text::{closest, quote, show_path};
 use std::cmp::Reverse;
 use std::fs;
 use std::io;
@@ -94,6 +94,22 @@ pub enum ArchiveError {
         /// What the system says.
         cause: io::Error,
     },
+}
+
+impl Mend for ArchiveError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::File(error) => error.can_be_mended(),
+            Self::Write(error) => error.can_be_mended(),
+            Self::Io { cause, .. } => cause.can_be_mended(),
+            Self::Document(_) => false,
+            Self::NoFolder
+            | Self::NotFound { .. }
+            | Self::Empty
+            | Self::Running { .. }
+            | Self::Unreadable { .. } => true,
+        }
+    }
 }
 
 impl ArchiveError {

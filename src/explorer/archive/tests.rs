@@ -54,10 +54,10 @@ const PATIENCE: Duration = Duration::from_secs(20);
 #[test]
 fn nothing_is_written_before_there_is_something_to_lose() {
     let mut bench = Bench::new();
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(Snapshot::of(&bench.model));
-    keeper.offer(bench.does(Id::NextView));
-    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(Snapshot::of(&bench.model));
+    autosave.offer(bench.does(Id::NextView));
+    autosave.finish(Ended::Quit, PATIENCE).unwrap();
     assert!(!bench.archive().folder().unwrap().exists());
 }
 
@@ -65,9 +65,9 @@ fn nothing_is_written_before_there_is_something_to_lose() {
 fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
     let mut bench = Bench::new();
     for name in ["fig-3-jkr-1", "fig-3-jkr-2"] {
-        let keeper = Keeper::new(bench.archive());
-        keeper.offer(bench.does(Id::Step));
-        keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+        let autosave = Autosave::new(bench.archive());
+        autosave.offer(bench.does(Id::Step));
+        autosave.finish(Ended::Dropped, PATIENCE).unwrap();
         assert_eq!(bench.names()[0], name);
     }
     assert_eq!(bench.files(), ["fig-3-jkr-1.json", "fig-3-jkr-2.json"], "no lock and no other file is left");
@@ -80,10 +80,10 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
     assert_eq!(bench.archive().newest().unwrap().as_deref(), Some("fig-3-jkr-1"));
     // Left at once: that it was left well is all that is written.
     let (model, _) = held.snapshot.resume(None);
-    let keeper = Keeper::new(bench.archive());
-    keeper.adopt(&Snapshot::of(&model), held.claim, held.summary.ended);
-    keeper.offer(Snapshot::of(&model));
-    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.adopt(&Snapshot::of(&model), held.claim, held.summary.ended);
+    autosave.offer(Snapshot::of(&model));
+    autosave.finish(Ended::Quit, PATIENCE).unwrap();
     assert_eq!(bench.archive().summary("fig-3-jkr-2").unwrap().ended, Ended::Quit);
     assert_eq!(bench.names().len(), 2);
     // The newest was left well: nothing is offered.
@@ -98,9 +98,9 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
 #[test]
 fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
     let mut bench = Bench::new();
-    let keeper = Keeper::new(bench.archive());
-    keeper.start(|text| panic!("{text}")).unwrap();
-    keeper.offer(bench.does(Id::Step));
+    let autosave = Autosave::new(bench.archive());
+    autosave.start(|text| panic!("{text}")).unwrap();
+    autosave.offer(bench.does(Id::Step));
     let begun = Instant::now();
     while bench.names().is_empty() {
         assert!(begun.elapsed() < PATIENCE, "nothing was written");
@@ -111,18 +111,18 @@ fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
     let folder = bench.archive().folder().unwrap().to_owned();
     fs::copy(folder.join("fig-3-jkr-1.json"), folder.join("fig-3-jkr-7.json")).unwrap();
     assert_eq!(bench.archive().summary("fig-3-jkr-7").unwrap().ended, Ended::Dropped);
-    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+    autosave.finish(Ended::Dropped, PATIENCE).unwrap();
 }
 
 #[test]
 fn another_preset_is_another_session_and_the_one_before_is_whole() {
     let mut bench = Bench::new();
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(bench.does(Id::Step));
-    keeper.offer(bench.does(Id::Step));
-    keeper.offer(bench.does(Command::Open("fig-1-hertz".to_owned())));
-    keeper.offer(bench.does(Id::Step));
-    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(bench.does(Id::Step));
+    autosave.offer(bench.does(Id::Step));
+    autosave.offer(bench.does(Command::Open("fig-1-hertz".to_owned())));
+    autosave.offer(bench.does(Id::Step));
+    autosave.finish(Ended::Dropped, PATIENCE).unwrap();
     let told = |name: &str| {
         let summary = bench.archive().summary(name).unwrap();
         (summary.steps, summary.ended)
@@ -135,24 +135,24 @@ fn a_folder_that_cannot_be_written_is_a_notice() {
     let mut bench = Bench::new();
     // Whoever may write everywhere needs something that is no folder.
     fs::write(bench.folder.path().join("state"), "").unwrap();
-    let keeper = Keeper::new(bench.archive());
+    let autosave = Autosave::new(bench.archive());
     let (sender, notices) = channel();
-    keeper.start(move |text| sender.send(text).unwrap()).unwrap();
-    keeper.offer(bench.does(Id::Step));
+    autosave.start(move |text| sender.send(text).unwrap()).unwrap();
+    autosave.offer(bench.does(Id::Step));
     let notice = notices.recv_timeout(PATIENCE).unwrap();
     assert!(
         notice.starts_with("the session is not being saved: ") && notice.contains("cannot make the folder"),
         "{notice}"
     );
-    assert!(keeper.finish(Ended::Quit, PATIENCE).is_err());
+    assert!(autosave.finish(Ended::Quit, PATIENCE).is_err());
 }
 
 #[test]
 fn a_write_that_fails_leaves_the_one_before() {
     let mut bench = Bench::new();
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(bench.does(Id::Step));
-    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(bench.does(Id::Step));
+    autosave.finish(Ended::Quit, PATIENCE).unwrap();
     let folder = bench.archive().folder().unwrap().to_owned();
     let before = fs::read(folder.join("fig-3-jkr-1.json")).unwrap();
     let held = bench.archive().load("fig-3-jkr-1").unwrap();
@@ -169,9 +169,9 @@ fn a_write_that_fails_leaves_the_one_before() {
 #[test]
 fn a_damaged_session_is_kept_aside_and_said_once() {
     let mut bench = Bench::new();
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(bench.does(Id::Step));
-    keeper.finish(Ended::Dropped, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(bench.does(Id::Step));
+    autosave.finish(Ended::Dropped, PATIENCE).unwrap();
     let folder = bench.archive().folder().unwrap().to_owned();
     let whole = fs::read(folder.join("fig-3-jkr-1.json")).unwrap();
     let half = &whole[..whole.len() / 2];
@@ -184,9 +184,9 @@ fn a_damaged_session_is_kept_aside_and_said_once() {
         "{notice}"
     );
     assert!(bench.archive().cut_off().unwrap().is_none());
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(bench.does(Id::Step));
-    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(bench.does(Id::Step));
+    autosave.finish(Ended::Quit, PATIENCE).unwrap();
     assert_eq!(bench.files(), ["fig-3-jkr-1.damaged", "fig-3-jkr-2.json"]);
     assert_eq!(fs::read(folder.join("fig-3-jkr-1.damaged")).unwrap(), half);
     // One of a later program is left where it is.
@@ -219,9 +219,9 @@ fn old_sessions_make_room() {
     }
     // One that runs stays, however old.
     let running = bench.archive().load("a-1").unwrap();
-    let keeper = Keeper::new(bench.archive());
-    keeper.offer(snapshot);
-    keeper.finish(Ended::Quit, PATIENCE).unwrap();
+    let autosave = Autosave::new(bench.archive());
+    autosave.offer(snapshot);
+    autosave.finish(Ended::Quit, PATIENCE).unwrap();
     drop(running);
     let names = bench.names();
     assert_eq!(names.len(), MOST + 1);

@@ -1,53 +1,6 @@
-//! The rows: what each command is called, where it stands in the help, what it does and when.
+//! The table of commands: name, section of the help, what each does and what it needs.
 
-use super::{Id, Row};
-use crate::explorer::model::{Model, Panel};
-use crate::explorer::view::Window;
-
-fn always(_: &Model) -> bool {
-    true
-}
-
-fn walking(model: &Model) -> bool {
-    model.history.current().is_some()
-}
-
-/// Without a curve, which was given up or failed, it is computed again.
-fn can_restart(model: &Model) -> bool {
-    walking(model) || !model.is_computing()
-}
-
-fn knob(model: &Model) -> bool {
-    model.panel == Panel::Problem
-}
-
-fn can_undo(model: &Model) -> bool {
-    model.history.parent().is_some() || model.is_ahead()
-}
-
-fn can_redo(model: &Model) -> bool {
-    model.history.redo_target().is_some()
-}
-
-fn has_branches(model: &Model) -> bool {
-    crate::explorer::branches::are_several(&model.history)
-}
-
-fn has_curve(model: &Model) -> bool {
-    model.curve.is_some()
-}
-
-fn has_pins(model: &Model) -> bool {
-    !model.pins.is_empty()
-}
-
-fn is_moved(model: &Model) -> bool {
-    model.window(model.view) != Window::WHOLE
-}
-
-fn can_jump(model: &Model) -> bool {
-    model.can_jump()
-}
+use super::{Id, Needs, Row};
 
 const fn row(
     id: Id,
@@ -55,9 +8,9 @@ const fn row(
     section: &'static str,
     short: &'static str,
     help: &'static str,
-    enabled: fn(&Model) -> bool,
+    needs: Needs,
 ) -> Row {
-    Row { id, name, section, help, short, argument: None, enabled }
+    Row { id, name, section, help, short, argument: None, needs }
 }
 
 const fn taking(argument: &'static str, mut row: Row) -> Row {
@@ -81,7 +34,7 @@ pub static ROWS: &[Row] = &[
             WALK,
             "step",
             "one step along the curve; type a number first for that many",
-            walking,
+            Needs::Walker,
         ),
     ),
     row(
@@ -90,7 +43,7 @@ pub static ROWS: &[Row] = &[
         WALK,
         "next limit",
         "run to the next limit point of the control",
-        walking,
+        Needs::Walker,
     ),
     row(
         Id::PreviousLimit,
@@ -98,7 +51,7 @@ pub static ROWS: &[Row] = &[
         WALK,
         "previous",
         "turn round and run to the previous limit point",
-        walking,
+        Needs::Walker,
     ),
     row(
         Id::Jump,
@@ -106,9 +59,9 @@ pub static ROWS: &[Row] = &[
         WALK,
         "jump",
         "let the edge run at constant control to the next stable state",
-        can_jump,
+        Needs::Jump,
     ),
-    taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", walking)),
+    taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", Needs::Walker)),
     taking(
         "contact radius",
         row(
@@ -117,12 +70,12 @@ pub static ROWS: &[Row] = &[
             WALK,
             "move to",
             "the walker to the state of a contact radius on the curve",
-            has_curve,
+            Needs::Curve,
         ),
     ),
-    row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", walking),
-    row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", always),
-    row(Id::Double, "double-step", WALK, "double step", "double the step length", always),
+    row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", Needs::Walker),
+    row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", Needs::Nothing),
+    row(Id::Double, "double-step", WALK, "double step", "double the step length", Needs::Nothing),
     taking(
         "length",
         row(
@@ -131,19 +84,19 @@ pub static ROWS: &[Row] = &[
             WALK,
             "step length",
             "the longest step, as a share of every quantity's range",
-            always,
+            Needs::Nothing,
         ),
     ),
-    row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", can_undo),
+    row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", Needs::Undo),
     row(
         Id::UndoCommand,
         "undo-command",
         WALK,
         "undo all",
         "back to where the last command began: a run, a count of steps",
-        can_undo,
+        Needs::Undo,
     ),
-    row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", can_redo),
+    row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", Needs::Redo),
     taking(
         "branch",
         row(
@@ -152,10 +105,10 @@ pub static ROWS: &[Row] = &[
             WALK,
             "branches",
             "the branches of the walk: what each ended with, and back to it",
-            has_branches,
+            Needs::Branches,
         ),
     ),
-    row(Id::Restart, "restart", WALK, "restart", "back to the start state", can_restart),
+    row(Id::Restart, "restart", WALK, "restart", "back to the start state", Needs::WalkerOrNoCurve),
     taking(
         "control",
         row(
@@ -164,7 +117,7 @@ pub static ROWS: &[Row] = &[
             WALK,
             "control",
             "control the displacement, the force, or a spring's far end",
-            always,
+            Needs::Nothing,
         ),
     ),
     taking(
@@ -175,13 +128,13 @@ pub static ROWS: &[Row] = &[
             WALK,
             "event",
             "the walker to the event of this number in the list",
-            walking,
+            Needs::Walker,
         ),
     ),
-    row(Id::Less, "less", VALUES, "less", "the selected value, a little less", knob),
-    row(Id::More, "more", VALUES, "more", "the selected value, a little more", knob),
-    row(Id::MuchLess, "much-less", VALUES, "much less", "the selected value, much less", knob),
-    row(Id::MuchMore, "much-more", VALUES, "much more", "the selected value, much more", knob),
+    row(Id::Less, "less", VALUES, "less", "the selected value, a little less", Needs::Parameter),
+    row(Id::More, "more", VALUES, "more", "the selected value, a little more", Needs::Parameter),
+    row(Id::MuchLess, "much-less", VALUES, "much less", "the selected value, much less", Needs::Parameter),
+    row(Id::MuchMore, "much-more", VALUES, "much more", "the selected value, much more", Needs::Parameter),
     taking(
         "value",
         row(
@@ -190,21 +143,21 @@ pub static ROWS: &[Row] = &[
             VALUES,
             "type value",
             "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there",
-            always,
+            Needs::Nothing,
         ),
     ),
     taking(
         "KEY=VALUE ...",
-        row(Id::Assign, "set", VALUES, "set", "other values for some keys, as one change", always),
+        row(Id::Assign, "set", VALUES, "set", "other values for some keys, as one change", Needs::Nothing),
     ),
-    row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", always),
-    row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", always),
-    row(Id::Left, "left", VIEW, "left", "the panel before; in Charts: move left", always),
-    row(Id::Right, "right", VIEW, "right", "the next panel; in Charts: move right", always),
-    row(Id::NextPanel, "next-panel", VIEW, "panel", "next panel", always),
-    row(Id::PreviousPanel, "previous-panel", VIEW, "panel back", "previous panel", always),
-    row(Id::NextView, "next-view", VIEW, "view", "the next view of the chart", always),
-    row(Id::PreviousView, "previous-view", VIEW, "view back", "the view before", always),
+    row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", Needs::Nothing),
+    row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", Needs::Nothing),
+    row(Id::Left, "left", VIEW, "left", "the panel before; in Charts: move left", Needs::Nothing),
+    row(Id::Right, "right", VIEW, "right", "the next panel; in Charts: move right", Needs::Nothing),
+    row(Id::NextPanel, "next-panel", VIEW, "panel", "next panel", Needs::Nothing),
+    row(Id::PreviousPanel, "previous-panel", VIEW, "panel back", "previous panel", Needs::Nothing),
+    row(Id::NextView, "next-view", VIEW, "view", "the next view of the chart", Needs::Nothing),
+    row(Id::PreviousView, "previous-view", VIEW, "view back", "the view before", Needs::Nothing),
     taking(
         "place",
         row(
@@ -213,28 +166,28 @@ pub static ROWS: &[Row] = &[
             VIEW,
             "closer",
             "the chart closer, about the cross-hair or the walker",
-            has_curve,
+            Needs::Curve,
         ),
     ),
-    taking("place", row(Id::ZoomOut, "zoom-out", VIEW, "wider", "further away", has_curve)),
-    row(Id::Fit, "fit", VIEW, "fit", "the whole chart again", is_moved),
+    taking("place", row(Id::ZoomOut, "zoom-out", VIEW, "wider", "further away", Needs::Curve)),
+    row(Id::Fit, "fit", VIEW, "fit", "the whole chart again", Needs::Zoom),
     row(
         Id::CrossHair,
         "cross-hair",
         VIEW,
         "cross-hair",
         "a cross-hair that reads the chart; arrows move it",
-        has_curve,
+        Needs::Curve,
     ),
-    row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", always),
-    row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", always),
+    row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", Needs::Nothing),
+    row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", Needs::Nothing),
     row(
         Id::Device,
         "device-line",
         VIEW,
         "device",
         "show or hide the line of the loading device through the walker",
-        always,
+        Needs::Nothing,
     ),
     taking(
         "theory",
@@ -244,19 +197,26 @@ pub static ROWS: &[Row] = &[
             VIEW,
             "theory",
             "theory over the curve: smooth sphere, exact solution, envelope",
-            has_curve,
+            Needs::Curve,
         ),
     ),
-    row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", has_curve),
-    taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", has_pins)),
+    row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", Needs::Curve),
+    taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", Needs::Pins)),
     taking(
         "preset",
-        row(Id::Open, "open", FILES, "open", "open a preset; D in the list deletes one of your own", always),
+        row(
+            Id::Open,
+            "open",
+            FILES,
+            "open",
+            "open a preset; D in the list deletes one of your own",
+            Needs::Nothing,
+        ),
     ),
-    row(Id::Save, "save", FILES, "save", "save the preset", always),
+    row(Id::Save, "save", FILES, "save", "save the preset", Needs::Nothing),
     taking(
         "name",
-        row(Id::SaveAs, "save-as", FILES, "save as", "save the preset under another name", always),
+        row(Id::SaveAs, "save-as", FILES, "save as", "save the preset under another name", Needs::Nothing),
     ),
     taking(
         "file",
@@ -266,7 +226,7 @@ pub static ROWS: &[Row] = &[
             FILES,
             "export",
             "write curve, walk or events as CSV or JSON, the session as a script, the screen as text",
-            always,
+            Needs::Nothing,
         ),
     ),
     row(
@@ -275,7 +235,7 @@ pub static ROWS: &[Row] = &[
         FILES,
         "copy",
         "the state, the events, the chart or the screen into the terminal's clipboard",
-        always,
+        Needs::Nothing,
     ),
     row(
         Id::CommandLine,
@@ -283,7 +243,7 @@ pub static ROWS: &[Row] = &[
         PROGRAM,
         "command",
         "type a command by its name; Tab completes, up and down bring lines back",
-        always,
+        Needs::Nothing,
     ),
     row(
         Id::Mouse,
@@ -291,11 +251,25 @@ pub static ROWS: &[Row] = &[
         PROGRAM,
         "mouse",
         "take the mouse (click, wheel), or leave it to the terminal to select text",
-        always,
+        Needs::Nothing,
     ),
-    row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", always),
-    row(Id::Cancel, "cancel", PROGRAM, "back", "take typed text back, close, stop a run or a curve", always),
-    row(Id::Quit, "quit", PROGRAM, "quit", "quit; asks only if the preset has unsaved changes", always),
+    row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", Needs::Nothing),
+    row(
+        Id::Cancel,
+        "cancel",
+        PROGRAM,
+        "back",
+        "take typed text back, close, stop a run or a curve",
+        Needs::Nothing,
+    ),
+    row(
+        Id::Quit,
+        "quit",
+        PROGRAM,
+        "quit",
+        "quit; asks only if the preset has unsaved changes",
+        Needs::Nothing,
+    ),
 ];
 
 /// The row of a command.

@@ -1,10 +1,10 @@
 //! What a line begun could go on with.
 
+use super::lexer::quoted;
 use super::parse::RUN_TO;
 use super::print::overlay_name;
-use super::words::quoted;
 use crate::explorer::command::ROWS;
-use crate::explorer::files::Document;
+use crate::explorer::export::ExportKind;
 use crate::explorer::view::Overlay;
 use crate::store::shipped::SHIPPED;
 use pulloff_engine::preset::Preset;
@@ -57,7 +57,7 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["control"] => owned(["displacement", "force", "stiffness="]),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
         ["pins"] => owned(["all"]),
-        ["export"] => owned(Document::ALL.map(Document::name)),
+        ["export"] => owned(ExportKind::ALL.map(ExportKind::name)),
         ["export", _, _] | ["save"] => owned(["replace"]),
         ["save-as", _, ..] => owned(["with-data", "replace"]),
         [name] if *name == RUN_TO.0 => owned(RUN_TO.1),

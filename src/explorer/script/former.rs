@@ -1,6 +1,6 @@
 //! The lines of a session of before, as they read now.
 
-use super::words::{quoted, split};
+use super::lexer::{quoted, split};
 use crate::explorer::command::{Id, row_of};
 use pulloff_engine::preset::former::assignment;
 use std::borrow::Cow;

@@ -1,18 +1,15 @@
 //! Words → a command.
 
-use super::Fault;
+use super::fault::Fault;
+use super::lexer::{Word, split};
 use super::print::overlay_name;
-use super::words::{Word, split};
-use crate::explorer::command::{Assignment, Command, Id, MOST_STEPS, ROWS, row_of};
-use crate::explorer::files::{Document, ends_in};
-use crate::explorer::model::LENGTHS;
+use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
+use crate::explorer::export::{ExportKind, ends_in};
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
-use pulloff_engine::preset::former;
 use pulloff_engine::preset::groups::{self, GROUPS};
-use pulloff_engine::preset::{PARAMETERS, parameter};
-use pulloff_engine::text::quote;
-use pulloff_engine::text::{closest, closest_key};
+use pulloff_engine::preset::{PARAMETERS, former, parameter};
+use pulloff_engine::text::{closest, closest_key, quote};
 
 /// The word before a command that may fail.
 const TRY: &str = "try";
@@ -200,8 +197,8 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         }
         Id::Export if !bare => {
             let word = rest.need("a document")?;
-            let names = Document::ALL.map(Document::name);
-            let what = Document::ALL.into_iter().find(|what| what.name() == word.text);
+            let names = ExportKind::ALL.map(ExportKind::name);
+            let what = ExportKind::ALL.into_iter().find(|what| what.name() == word.text);
             let what = what.ok_or_else(|| unknown(word, "document", &names))?;
             let file = rest.need("a file")?;
             if !ends_in(&file.text, what.endings()) {

@@ -1,22 +1,15 @@
 //! A script driven through a model, without a terminal: each line is over before the next begins.
 
-use super::borders::allowed;
-use super::{Line, line};
+use super::line;
+use super::permissions::{Permission, allowed};
+use super::read::Line;
 use crate::explorer::command::{Command, by_name};
-use crate::explorer::driver::{Effect, Inline};
+use crate::explorer::driver::Inline;
+use crate::explorer::effect::Effect;
 use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
 use crate::mend::Reason;
 use thiserror::Error;
-
-/// What a script may do to files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Permission {
-    /// Replace files.
-    pub overwrite: bool,
-    /// Write outside the current folder.
-    pub anywhere: bool,
-}
 
 /// The line that failed, and why.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

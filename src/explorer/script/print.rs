@@ -1,6 +1,6 @@
 //! A command → its line.
 
-use super::words::quoted;
+use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command, row_of};
 use crate::explorer::view::Overlay;
 

@@ -1,6 +1,6 @@
 use super::*;
-use crate::explorer::command::{Id, MOST_STEPS, ROWS, row_of};
-use crate::explorer::files::Document;
+use crate::explorer::command::{Command, Id, MOST_STEPS, ROWS, row_of};
+use crate::explorer::export::ExportKind;
 use crate::explorer::view::Overlay;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -24,7 +24,7 @@ fn safe(text: &str) -> String {
 
 fn any_command() -> impl Strategy<Value = Command> {
     let text = || "\\PC{0,12}".prop_map(|text| safe(&text));
-    let what = proptest::sample::select(Document::ALL.to_vec());
+    let what = proptest::sample::select(ExportKind::ALL.to_vec());
     let overlay = proptest::sample::select(Overlay::ALL.to_vec());
     let flag = any::<bool>;
     prop_oneof![
@@ -93,7 +93,7 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
         (4, Id::NextLimit.into()),
         (5, set(&[("path.control", "force")])),
         (6, set(&[("gap.wavelength", "3 um"), ("title", "a \"b\" # c")])),
-        (7, Command::Export { what: Document::Curve, path: "out file.csv".to_owned(), replace: false }),
+        (7, Command::Export { what: ExportKind::Curve, path: "out file.csv".to_owned(), replace: false }),
         (8, Command::SaveAs { name: "x".to_owned(), replace: true, with_data: false }),
     ];
     assert_eq!(commands, expected);
@@ -127,7 +127,7 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         let said = fault(text);
         assert!(said.starts_with(expected), "{text}: {said}");
     }
-    assert_eq!(fault(&"x\n".repeat(100)).lines().count(), FAULTS);
+    assert_eq!(fault(&"x\n".repeat(100)).lines().count(), read::FAULTS);
     assert!(fault(&format!("{}x", "\n".repeat(MOST_LINES))).contains("a script has at most 20000 lines"));
     assert!(fault(&"x".repeat(LONGEST + 1)).contains("at most 16384 characters"));
 }

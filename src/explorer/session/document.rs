@@ -6,16 +6,13 @@ use super::number::{Real, floats, reals};
 use super::problems::{Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
+use super::unreadable::{FORMAT, Unreadable};
 use crate::explorer::journal::{Kept, Replay, Start};
 use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
 use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use thiserror::Error;
-
-/// The version of the format. A larger one is refused; what is added without a new version has a default.
-pub const FORMAT: u32 = 1;
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,25 +35,6 @@ impl Ended {
             Self::Dropped => "dropped",
         }
     }
-}
-
-/// Why a document is no session of this program.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Unreadable {
-    /// Not what was written.
-    #[error("the session is damaged: {0}")]
-    Damaged(String),
-    /// Of a later version of the program.
-    #[error(
-        "the session has format {format}, of a later pulloff (it was written by {program}); this one reads format \
-         {FORMAT}"
-    )]
-    Future {
-        /// Its format.
-        format: u32,
-        /// The version of the program that wrote it.
-        program: String,
-    },
 }
 
 /// What a list shows of a session.

@@ -17,6 +17,7 @@
 //! | `problems` | the presets and settings of a document, each once |
 //! | `tree` | the nodes of the walk |
 //! | `number` | numbers bit for bit |
+//! | `unreadable` | why a session cannot be read |
 //!
 //! Nothing here touches a file; [`archive`](super::archive) does.
 
@@ -25,6 +26,8 @@ mod number;
 mod problems;
 pub mod snapshot;
 mod tree;
+mod unreadable;
 
-pub use document::{Document, Ended, Summary, Unreadable, summary};
+pub use document::{Document, Ended, Summary, summary};
 pub use snapshot::Snapshot;
+pub use unreadable::Unreadable;

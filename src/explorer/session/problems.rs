@@ -1,8 +1,8 @@
 //! The presets and settings of a document, each once, however many nodes share them.
 
-use super::document::Unreadable;
 use super::number::{Real, floats, reals};
-use crate::explorer::history::Setting;
+use super::unreadable::Unreadable;
+use crate::explorer::setting::Setting;
 use crate::store::FILES;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::gap::shapes::Rows;

@@ -1,12 +1,13 @@
 //! What is kept of a model, and the model of it.
 
-use crate::explorer::driver::Effect;
+use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
+use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
-use crate::explorer::model::{Axes, EventSource, FIRST_LENGTH, LENGTHS, Level, Model, Panel};
+use crate::explorer::model::{Level, Model};
 use crate::explorer::pins::Pins;
-use crate::explorer::update::want_curve;
-use crate::explorer::view::{Overlays, View, Window};
+use crate::explorer::requests::want_curve;
+use crate::explorer::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::store::{Fingerprint, Loaded, Source};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;

@@ -4,7 +4,9 @@
 //! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
 
 use super::number::{Real, floats, reals};
-use crate::explorer::history::{Ahead, History, Node, NodeKind, Setting};
+use crate::explorer::history::History;
+use crate::explorer::node::{Ahead, Node, NodeKind};
+use crate::explorer::setting::Setting;
 use pulloff_engine::continuation::tangent::Frame;
 use pulloff_engine::quasistatic::admissible::Crest;
 use pulloff_engine::quasistatic::equilibrium::Unknowns;

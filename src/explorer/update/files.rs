@@ -1,18 +1,18 @@
 //! Opening, saving and exporting: what is asked, and what becomes of the answers.
 
-use super::values::{change, rows_came, want_curve};
-use super::{open, tell};
+use super::values::rows_came;
 use crate::explorer::command::Id;
-use crate::explorer::driver::Effect;
-use crate::explorer::files::{Content, Document, Done, Job, Page, ends_in};
-use crate::explorer::journal::Journal;
+use crate::explorer::effect::Effect;
+use crate::explorer::export::{ExportKind, Page, ends_in};
+use crate::explorer::job::{Content, Done, Job};
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
+use crate::explorer::requests::{change, file, want_curve};
 use crate::print::Format;
 use crate::store::{Overwrite, Source};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     let why = match model.source {
@@ -22,7 +22,7 @@ pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     };
     if let Some(why) = why {
         let text = format!("{why}: {} saves under a name of your own", Id::SaveAs.named());
-        tell(model, Level::Error, text);
+        model.tell(Level::Error, text);
         return Vec::new();
     }
     let overwrite = model.fingerprint.map_or(Overwrite::Never, Overwrite::IfUnchanged);
@@ -34,25 +34,25 @@ pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
     vec![file(Job::Save { source, preset, overwrite })]
 }
 
-pub(super) fn export(model: &mut Model, what: Document, path: String, replace: bool) -> Vec<Effect> {
+pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace: bool) -> Vec<Effect> {
     let (Some(curve), Some(start)) = (model.curve.clone(), model.journal.start().cloned()) else {
-        tell(model, Level::Error, "there is no curve to export yet");
+        model.tell(Level::Error, "there is no curve to export yet");
         return Vec::new();
     };
     if !ends_in(&path, what.endings()) {
-        tell(model, Level::Error, format!("the file must end in .{}", what.endings().join(" or .")));
+        model.tell(Level::Error, format!("the file must end in .{}", what.endings().join(" or .")));
         return Vec::new();
     }
     let content = match what {
-        Document::Curve => Content::Curve(curve),
-        Document::Walk => {
+        ExportKind::Curve => Content::Curve(curve),
+        ExportKind::Walk => {
             Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
         }
-        Document::Events => Content::Events(curve, model.shown_events()),
-        Document::Script => match Journal::so_far(model) {
+        ExportKind::Events => Content::Events(curve, model.shown_events()),
+        ExportKind::Script => match model.script() {
             Ok(lines) => Content::Script(Box::new(start), lines),
             Err(reason) => {
-                tell(model, Level::Error, format!("not exported: {reason}"));
+                model.tell(Level::Error, format!("not exported: {reason}"));
                 return Vec::new();
             }
         },
@@ -66,7 +66,7 @@ pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: 
         Page::Figure(_) => Format::of(Path::new(&path)).err().map(|error| error.to_string()),
     };
     if let Some(reason) = refused {
-        tell(model, Level::Error, reason);
+        model.tell(Level::Error, reason);
         return Vec::new();
     }
     vec![file(Job::Write { page, path, replace })]
@@ -77,7 +77,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Listed(listing) => model.listing = Some(*listing),
         Done::Named(names) => model.preset_names = names,
         Done::Deleted(path, listing) => {
-            tell(model, Level::Info, format!("deleted {path}; what is on the screen stays"));
+            model.tell(Level::Info, format!("deleted {path}; what is on the screen stays"));
             model.listing = Some(*listing);
         }
         Done::Browsed(folder) => model.folder = Some(*folder),
@@ -87,38 +87,36 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         }
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
-            let (mut opened, effects) = open(*loaded);
+            let mut opened = Model::new(*loaded);
             opened.follow(model);
             look::carry_on(model, &mut opened);
             *model = opened;
-            drop(effects);
-            let effect = want_curve(model);
-            return vec![effect];
+            return vec![want_curve(model)];
         }
         Done::Saved { source, fingerprint, preset } => {
-            tell(model, Level::Info, format!("saved as {}", source.shown()));
+            model.tell(Level::Info, format!("saved as {}", source.shown()));
             let copied = with_copied_data(&model.preset, &preset);
             (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
             return copied.map_or_else(Vec::new, |preset| change(model, preset));
         }
         Done::Conflict => {
             model.question = Some(Question::SaveAnyway);
-            tell(model, Level::Error, "the file was changed by somebody else since it was read: not saved");
+            model.tell(Level::Error, "the file was changed by somebody else since it was read: not saved");
         }
         Done::NameTaken(name, with_data) => {
-            tell(model, Level::Error, format!("a preset called {name} exists: not saved"));
+            model.tell(Level::Error, format!("a preset called {name} exists: not saved"));
             model.question = Some(Question::ReplacePreset(name, with_data));
         }
-        Done::Exported(path) => tell(model, Level::Info, format!("exported to {path}")),
+        Done::Exported(path) => model.tell(Level::Info, format!("exported to {path}")),
         Done::FileExists(what, path) => {
-            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.tell(Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
         }
         Done::PageExists(page, path) => {
-            tell(model, Level::Error, format!("{path} exists: not exported"));
+            model.tell(Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplacePage(page, path));
         }
-        Done::Failed(reason) => tell(model, Level::of(&reason), reason.text),
+        Done::Failed(reason) => model.tell(Level::of(&reason), reason.text),
     }
     Vec::new()
 }
@@ -128,24 +126,4 @@ fn with_copied_data(preset: &Preset, saved: &Preset) -> Option<Preset> {
     let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap) else { return None };
     let same = (&now.rows().radii, &now.rows().gaps) == (&then.rows().radii, &then.rows().gaps);
     (same && now.smoothing() == then.smoothing()).then(|| Preset { gap: saved.gap.clone(), ..preset.clone() })
-}
-
-/// The folder that the name of the preset's own profile is relative to.
-fn own_folder(model: &Model) -> Option<PathBuf> {
-    match &model.preset.gap {
-        Shape::Profile(measured) => measured.rows().folder.clone(),
-        _ => None,
-    }
-}
-
-pub(super) fn browse(model: &Model, folder: Option<PathBuf>) -> Effect {
-    file(Job::Browse { folder, own: own_folder(model) })
-}
-
-pub(super) fn read(model: &Model, name: String) -> Effect {
-    file(Job::Read { folder: own_folder(model), name })
-}
-
-pub(super) fn file(job: Job) -> Effect {
-    Effect::File(Box::new(job))
 }

@@ -1,188 +1,24 @@
 //! Values changed, and the curve that follows from them.
 
-use super::files::{file, read};
-use super::walk::{begin_walk, go_on, stop, walk};
-use super::words::of_before;
-use super::{number, tell};
-use crate::explorer::command::{Assignment, Id};
-use crate::explorer::curve::CurveData;
-use crate::explorer::driver::{Check, Effect, Wish};
-use crate::explorer::files::Job;
-use crate::explorer::history::NodeKind;
-use crate::explorer::model::{Checking, CurveError, Level, Model, Untried};
+use crate::explorer::command::Assignment;
+use crate::explorer::effect::Effect;
+use crate::explorer::job::Job;
+use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
-use crate::explorer::walk::Action;
-use crate::mend::Reason;
+use crate::explorer::requests::{change, file, read, stop};
 use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::family::is_parameter;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::schema::{Kind, RADIUS_OVER_CURVATURE, START_KEYS};
 use pulloff_engine::preset::{Preset, Row, Value, groups};
-use pulloff_engine::problem::{Control, Start};
+use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
-use pulloff_engine::text::closest;
-use pulloff_engine::text::{greek, show_name, show_path};
+use pulloff_engine::text::{closest, greek, show_name, show_path};
 use pulloff_engine::units::Quantity;
 use std::path::Path;
 use std::sync::Arc;
-
-pub(in crate::explorer) fn want_curve(model: &mut Model) -> Effect {
-    let id = number(model);
-    model.curve_wanted = id;
-    (model.progress, model.curve_error) = (None, None);
-    // The curve does not know what is controlled: under another control it need not be swept again.
-    let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
-    let sweep = known.map(Arc::clone);
-    Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), sweep }))
-}
-
-/// The curve on the screen stays; the one being computed is no longer wanted.
-pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
-    model.queue.clear();
-    model.curve_shown = model.curve_wanted;
-    let control = model.curve.as_ref().filter(|curve| curve.sweep.is_of(&model.preset)).map(|curve| {
-        // Only the control was changed, which undo does not take back.
-        curve.setting.preset.path.control
-    });
-    let text = match (&model.curve, control) {
-        (Some(_), Some(control)) => {
-            model.preset.path.control = control;
-            "cancelled: the control is as before".to_owned()
-        }
-        (Some(_), None) => format!("cancelled: {}", of_before()),
-        (None, _) => {
-            format!(
-                "cancelled: there is no curve; {} computes it again, or change a value",
-                Id::Restart.named()
-            )
-        }
-    };
-    if control.is_none() {
-        model.curve_error = Some(CurveError::GivenUp(text.clone()));
-    }
-    tell(model, Level::Info, text);
-    vec![Effect::StopCurve(model.curve_wanted)]
-}
-
-pub(super) fn curve_came(model: &mut Model, id: u64, result: Result<Arc<CurveData>, Reason>) -> Vec<Effect> {
-    if id <= model.curve_shown {
-        return Vec::new();
-    }
-    model.curve_shown = id;
-    match result {
-        Err(reason) => {
-            model.queue.clear();
-            let text = format!("no curve for these values: {reason}");
-            tell(model, Level::of(&reason), text.clone());
-            model.curve_error = Some(CurveError::Failed(text));
-            Vec::new()
-        }
-        Ok(curve) => {
-            model.curve_error = None;
-            let first = model.history.current().is_none();
-            model.curve = Some(Arc::clone(&curve));
-            let lines = model.shown_events().len() + model.shown_inadmissible().len();
-            model.event = model.event.min(lines.saturating_sub(1));
-            if first {
-                begin_walk(model, &curve);
-                return go_on(model);
-            }
-            let is_tried = std::mem::take(&mut model.is_tried);
-            if model.walking.is_some() {
-                // Solved again once that is over.
-                return Vec::new();
-            }
-            let Some(node) = model.history.current() else { return Vec::new() };
-            let is_stale = matches!(node.kind, NodeKind::Stale(_));
-            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() {
-                return go_on(model);
-            }
-            let state = node.state.in_units(node.setting.units());
-            walk(model, Action::Solve { state })
-        }
-    }
-}
-
-/// Asks which states of the curve on the screen are admissible, once no newer curve is on its way.
-///
-/// A newer one drops the question with the curve; where it fails or is given up, it is asked again.
-pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
-    let curve = model.curve.as_ref().filter(|curve| !model.is_computing() && !curve.is_checked()).cloned();
-    let Some(curve) = curve else {
-        model.checking = None;
-        return None;
-    };
-    if model.checking.is_some() {
-        return None;
-    }
-    let id = number(model);
-    model.checking = Some(Checking::Asked(id));
-    Some(Effect::Check(Check { id, curve }))
-}
-
-pub(super) fn checked(model: &mut Model, id: u64, curve: Arc<CurveData>) {
-    if model.checking == Some(Checking::Asked(id)) {
-        model.curve = Some(curve);
-    }
-}
-
-/// The parameters of the walker's state, where the curve on the screen has others.
-pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
-    let Some(node) = model.history.current() else { return Vec::new() };
-    if model.is_on_curve(node) || matches!(node.kind, NodeKind::Stale(_)) {
-        return Vec::new();
-    }
-    take_back(model)
-}
-
-/// The parameters of the walker's state instead of those typed since.
-pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
-    let Some(node) = model.history.current() else { return Vec::new() };
-    let mut preset = node.setting.preset.clone();
-    preset.title.clone_from(&model.preset.title);
-    preset.path.control = model.preset.path.control;
-    change(model, preset)
-}
-
-/// Takes a changed preset and asks for its curve.
-pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
-    if preset == model.preset {
-        return Vec::new();
-    }
-    let same_problem = {
-        let mut old = model.preset.clone();
-        old.title.clone_from(&preset.title);
-        old == preset
-    };
-    // The last stiffness is remembered, to come back to it.
-    for control in [model.preset.path.control, preset.path.control] {
-        if let Control::Stiffness(k) = control {
-            model.stiffness = Some(k);
-        }
-    }
-    model.preset = preset;
-    if same_problem {
-        return Vec::new();
-    }
-    model.is_tried = false;
-    let knobs = model.knobs().len();
-    model.parameter = model.parameter.min(knobs.saturating_sub(1));
-    if !model.queue.is_empty() {
-        tell(model, Level::Info, "what was asked of the walk and not begun is left: the values changed");
-    }
-    let mut effects = stop(model);
-    if model.shows_its_curve() {
-        // Back at the values of the curve on the screen: the one being computed is no longer wanted.
-        model.curve_shown = model.curve_wanted;
-        model.curve_error = None;
-        effects.push(Effect::StopCurve(model.curve_wanted));
-    } else {
-        effects.push(want_curve(model));
-    }
-    effects
-}
 
 /// The stiffness of the contact at the start in the user's units; before there is a curve, the unit of stiffness.
 fn contact_stiffness(model: &Model) -> f64 {
@@ -202,7 +38,7 @@ pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
             change(model, preset)
         }
         Err(reason) => {
-            tell(model, Level::Error, reason);
+            model.tell(Level::Error, reason);
             Vec::new()
         }
     }
@@ -215,7 +51,7 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     let values: Vec<String> =
         moved.filter_map(|row| Some(labelled(&row, &changed.get(&row.key)?, &changed.units))).collect();
     if !values.is_empty() {
-        tell(model, Level::Info, greek(&format!("changed: {}; {held} held", values.join(", "))));
+        model.tell(Level::Info, greek(&format!("changed: {}; {held} held", values.join(", "))));
     }
 }
 
@@ -240,7 +76,7 @@ fn tell_new_parameters(model: &mut Model, before: &Preset, changed: &Preset) {
         })
         .collect();
     if !told.is_empty() {
-        tell(model, Level::Info, told.join("; "));
+        model.tell(Level::Info, told.join("; "));
     }
 }
 
@@ -262,12 +98,12 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             model.untried = None;
             tell_effect(model, &row.key, &preset);
             if let Some(moved) = moved {
-                tell(model, Level::Info, moved);
+                model.tell(Level::Info, moved);
             }
             change(model, preset)
         }
         Err(invalid) => {
-            tell(model, Level::Error, invalid.to_string());
+            model.tell(Level::Error, invalid.to_string());
             Vec::new()
         }
     }
@@ -361,7 +197,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
             change(model, preset)
         }
         Err(invalid) => {
-            tell(model, Level::Error, invalid.to_string());
+            model.tell(Level::Error, invalid.to_string());
             Vec::new()
         }
     }
@@ -383,11 +219,11 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
     match set_in_range(&mut preset, "gap.file", Value::Profile(rows)) {
         Ok(moved) => {
             let said = moved.map_or(said.clone(), |moved| format!("{said}; {moved}"));
-            tell(model, Level::Info, said);
+            model.tell(Level::Info, said);
             change(model, preset)
         }
         Err(invalid) => {
-            tell(model, Level::Error, invalid.to_string());
+            model.tell(Level::Error, invalid.to_string());
             Vec::new()
         }
     }

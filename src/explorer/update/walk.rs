@@ -1,30 +1,30 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
-use super::values::{adopt_parameters, want_curve};
-use super::words::{back_or_anew, of_before};
-use super::{allowed, number, tell};
-use crate::explorer::command::{Command, Id};
+use crate::explorer::command::{Command, Id, LENGTHS};
 use crate::explorer::curve::CurveData;
-use crate::explorer::driver::Effect;
-use crate::explorer::history::{Node, NodeKind};
-use crate::explorer::model::{LENGTHS, Level, Model, Walking};
+use crate::explorer::effect::Effect;
+use crate::explorer::model::{Level, Model, Walking};
+use crate::explorer::node::{Node, NodeKind};
+use crate::explorer::requests::{adopt_parameters, stop, want_curve};
+use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::quasistatic::State;
 use std::sync::Arc;
 
+/// Asks for a walk on the curve on the screen, or says why there is none.
 pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     if model.is_computing() {
-        tell(model, Level::Info, "the curve is being computed");
+        model.tell(Level::Info, "the curve is being computed");
         return Vec::new();
     }
     let Some(curve) = model.curve.clone() else {
         // Given up before: asked for again.
-        tell(model, Level::Info, "the curve is being computed");
+        model.tell(Level::Info, "the curve is being computed");
         return vec![want_curve(model)];
     };
     if !model.shows_its_curve() {
         let reason = model.curve_error.as_ref().map(|error| error.text().to_owned());
-        tell(model, Level::Error, reason.unwrap_or_else(of_before));
+        model.tell(Level::Error, reason.unwrap_or_else(of_before));
         return Vec::new();
     }
     let control = curve.case.control;
@@ -32,20 +32,20 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {
-            tell(model, Level::Error, format!("the bodies are apart: {}", back_or_anew()));
+            model.tell(Level::Error, format!("the bodies are apart: {}", back_or_anew()));
             return Vec::new();
         }
         let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
         if node.is_some_and(is_stale) {
             let text = format!("this state is not solved for the values as they are: {}", back_or_anew());
-            tell(model, Level::Error, text);
+            model.tell(Level::Error, text);
             return Vec::new();
         }
     }
     let on_limit = node.is_some_and(|node| node.is_limit(control));
     let from = node.map(|node| node.point.clone());
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
-    let id = number(model);
+    let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
     model.walking = Some(Walking { id, made: 0, wanted });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
@@ -55,8 +55,16 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     vec![Effect::Walk(Box::new(Request { id, action, curve, from, on_limit, control, inward, length }))]
 }
 
-pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Option<Outcome>) -> Vec<Effect> {
-    let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else { return Vec::new() };
+/// Takes the states that a walk made, and its end. `None`: the commands that wait may go on.
+pub(super) fn walked(
+    model: &mut Model,
+    id: u64,
+    made: Vec<Made>,
+    outcome: Option<Outcome>,
+) -> Option<Vec<Effect>> {
+    let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else {
+        return Some(Vec::new());
+    };
     walking.made += made.len();
     let stepped = walking.wanted.is_some();
     model.journal.made(made.len());
@@ -65,9 +73,9 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         append(model, id, state);
     }
     if numbering == 0 && model.history.numbering() > 0 {
-        tell(model, Level::Info, "a long walk: of plain steps far back only every second one is kept");
+        model.tell(Level::Info, "a long walk: of plain steps far back only every second one is kept");
     }
-    let Some(outcome) = outcome else { return Vec::new() };
+    let Some(outcome) = outcome else { return Some(Vec::new()) };
     model.walking = None;
     let is_unsolved = matches!(outcome, Outcome::Stopped(_))
         && model.history.current().is_some_and(|node| !model.is_on_curve(node));
@@ -85,20 +93,20 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
             // Otherwise another value ended it, whose curve is to be told of.
             if !model.is_computing() {
                 let [step, run] = [Id::Step, Id::Run].map(Id::named);
-                tell(model, Level::Info, format!("paused; {step} steps, {run} runs on"));
+                model.tell(Level::Info, format!("paused; {step} steps, {run} runs on"));
             }
         }
         Outcome::Ended(reason) => {
             model.queue.clear();
-            tell(model, Level::Info, reason);
+            model.tell(Level::Info, reason);
         }
         Outcome::Stopped(reason) => {
             model.queue.clear();
             if is_unsolved {
                 mark_stale(model, id, &reason);
-                tell(model, Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
+                model.tell(Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
             } else {
-                tell(model, Level::Failure, reason);
+                model.tell(Level::Failure, reason);
             }
         }
     }
@@ -111,19 +119,9 @@ pub(super) fn walked(model: &mut Model, id: u64, made: Vec<Made>, outcome: Optio
         })
         .map(|node| node.state.in_units(node.setting.units()));
     if let (Some(state), false) = (outdated, model.is_computing()) {
-        return walk(model, Action::Solve { state });
+        return Some(walk(model, Action::Solve { state }));
     }
-    go_on(model)
-}
-
-/// What waits for the walk and for the curve, in order, as far as neither has to be waited for.
-pub(super) fn go_on(model: &mut Model) -> Vec<Effect> {
-    let mut effects = Vec::new();
-    while effects.is_empty() && !model.is_busy() {
-        let Some(command) = model.queue.pop_front() else { break };
-        effects = allowed(model, command);
-    }
-    effects
+    None
 }
 
 fn append(model: &mut Model, request: u64, state: Made) {
@@ -163,11 +161,7 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
-pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
-    model.queue.clear();
-    model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
-}
-
+/// Back to the start state; without a curve, that is asked for again.
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
     if !model.is_computing() && !model.shows_its_curve() {
@@ -218,7 +212,7 @@ pub(super) fn travel_to(model: &mut Model, node: usize) -> Vec<Effect> {
 /// To the end of a branch, its parameters with it.
 pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
     if model.history.numbering() != numbering || model.history.node(node).is_none() {
-        tell(model, Level::Error, "the walk has changed meanwhile: ask for its branches again");
+        model.tell(Level::Error, "the walk has changed meanwhile: ask for its branches again");
         return Vec::new();
     }
     let mut effects = abandon(model);
@@ -242,7 +236,7 @@ pub(super) fn go_to_state(model: &mut Model, state: [f64; 3]) -> Vec<Effect> {
     };
     let found = (0..model.history.len()).rev().find(|at| model.history.node(*at).is_some_and(is_it));
     let Some(found) = found else {
-        tell(model, Level::Error, "no state of the walk has these values");
+        model.tell(Level::Error, "no state of the walk has these values");
         return Vec::new();
     };
     go_to(model, found, model.history.numbering())
@@ -256,6 +250,7 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
+/// The first state of the walk: the start of the curve.
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
     let drawn = &curve.sweep.curve;
     let Some(point) = drawn.equilibrium.explicit(drawn.outermost()) else { return };

@@ -1,7 +1,7 @@
 //! Names and paths asked for: saving, exporting, copying.
 
 use super::App;
-use crate::explorer::files::{Document, Page};
+use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::model::Level;
 use crate::explorer::{Effect, Id};
 use crate::figure::Subject;
@@ -45,16 +45,16 @@ impl App {
                 path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
             }
         };
-        let items = Document::ALL.map(|what| {
+        let items = ExportKind::ALL.map(|what| {
             let file = format!("{}-{}.{}", sanitize(&base, 60), what.name(), what.endings()[0]);
             let title = format!("Export the {} to", what.name());
             let note = format!("a file ending in .{}", what.endings().join(" or ."));
             let prompt = Prompt::new(title, &note, file, Purpose::File(what));
             let text = match what {
-                Document::Curve => "curve   every point of the equilibrium curve",
-                Document::Walk => "walk    the states walked by hand",
-                Document::Events => "events  the instabilities listed",
-                Document::Script => "script  what was done, for pulloff run",
+                ExportKind::Curve => "curve   every point of the equilibrium curve",
+                ExportKind::Walk => "walk    the states walked by hand",
+                ExportKind::Events => "events  the instabilities listed",
+                ExportKind::Script => "script  what was done, for pulloff run",
             };
             Item::new(text, Action::Prompt(Box::new(prompt)))
         });

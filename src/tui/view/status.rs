@@ -3,6 +3,7 @@
 use super::fitted;
 use super::legend::reading;
 use crate::explorer::Id;
+use crate::explorer::availability::is_available;
 use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
 use crate::tui::app::App;
@@ -68,7 +69,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     };
     for id in ids {
         let row = row_of(id);
-        if app.overlay.is_none() && !(row.enabled)(&app.model) {
+        if app.overlay.is_none() && !is_available(&app.model, row.id) {
             continue;
         }
         let key = app.keymap.first(id);

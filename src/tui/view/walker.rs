@@ -1,14 +1,13 @@
 //! The state of the walker.
 
 use super::{is_selected, pair, side_panel};
-use crate::explorer::history::{Node, NodeKind};
+use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use pulloff_engine::case::critical_force;
-use pulloff_engine::gap::Gap;
-use pulloff_engine::gap::wave_index;
+use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{difference, fixed, short, significant, with_unit};
 use pulloff_engine::units::Quantity;

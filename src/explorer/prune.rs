@@ -4,7 +4,7 @@
 //! problems, the states next to them, the places where branches part and their ends, and the newest states. Of the
 //! plain steps between, every second one goes, the oldest first: so the further back, the sparser.
 
-use super::history::{Node, NodeKind};
+use super::node::{Node, NodeKind};
 
 /// The most states kept without a reason.
 pub const MOST: usize = 5_000;

@@ -1,41 +1,12 @@
-//! What the status line says.
+//! The status line: what was last told, or else what the state is and which command comes next.
 
-use crate::explorer::command::Id;
-use crate::explorer::history::{Node, NodeKind};
-use crate::explorer::model::{Model, Walking};
+use super::command::Id;
+use super::model::{Level, Model, Walking};
+use super::node::{Node, NodeKind};
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, significant, with_unit};
 use pulloff_engine::report::unload::{StateReport, control_name};
 use pulloff_engine::units::Quantity;
-
-/// Why a command cannot be done now.
-pub(super) fn unavailable(model: &Model, id: Id) -> String {
-    let apart = model.history.current().is_some_and(Node::is_apart);
-    match id {
-        Id::Undo | Id::UndoCommand => "this is the start: there is nothing to undo".to_owned(),
-        Id::Redo => "there is nothing to redo".to_owned(),
-        Id::Branches => {
-            format!(
-                "the walk has one branch: {} goes back, and another step begins a second",
-                Id::Undo.named()
-            )
-        }
-        Id::Jump if apart => format!("the bodies are apart: {}", back_or_anew()),
-        Id::Jump => {
-            format!(
-                "the state is stable: the edge stays; {} runs to the next limit point",
-                Id::NextLimit.named()
-            )
-        }
-        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
-            format!("select a parameter first: {} goes to the Problem panel", Id::NextPanel.named())
-        }
-        Id::Fit => "the whole chart is shown".to_owned(),
-        Id::Pins => format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named()),
-        _ if model.is_computing() => "the curve is being computed".to_owned(),
-        _ => format!("there is no curve: change a value, or {} computes it again", Id::Restart.named()),
-    }
-}
 
 /// The ways out of a state from which no walk goes on.
 pub(super) fn back_or_anew() -> String {
@@ -57,7 +28,14 @@ fn progress(model: &Model) -> String {
     format!(": {}; {} gives up", progress.text(), Id::Cancel.named())
 }
 
-/// What the state is and which key is next, behind why the state cannot be.
+impl Model {
+    /// The message, or a hint. It may name commands; whoever shows it [spells](super::command::spelled) them.
+    pub fn status(&self) -> (Level, String) {
+        self.message.clone().unwrap_or_else(|| (Level::Info, hint(self)))
+    }
+}
+
+/// The state and the next command; if the state is inadmissible, the reason first.
 pub fn hint(model: &Model) -> String {
     let fault =
         model.walker().filter(|_| model.curve_error.is_none() && model.walking.is_none()).and_then(fault);

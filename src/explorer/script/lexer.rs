@@ -1,6 +1,6 @@
 //! A line → words with their columns, and the quoting that makes a text one word again.
 
-use super::{Fault, LONGEST};
+use super::fault::{Fault, LONGEST};
 use pulloff_engine::text::is_unsafe;
 
 /// A word of a line.

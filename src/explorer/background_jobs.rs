@@ -1,13 +1,12 @@
-//! Work done beside the curve and the walk, of which the status line has no words.
+//! Background jobs: pinned curves, admissibility checks, the profile of the current state.
 
 use super::command::Id;
-use super::driver::Effect;
+use super::effect::Effect;
 use super::model::{Checking, Level, Model};
-use super::update::tell;
 
 /// Work beside the curve and the walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beside {
+pub enum BackgroundJob {
     /// The curves of so many pins of a resumed session are computed.
     Pins(usize),
     /// Which states of the curve are admissible is found out.
@@ -16,7 +15,7 @@ pub enum Beside {
     Inside,
 }
 
-impl Beside {
+impl BackgroundJob {
     /// What is under way, the longest first.
     pub fn of(model: &Model) -> Option<Self> {
         let pins = model.pins.awaited().len();
@@ -46,16 +45,16 @@ impl Beside {
 
 /// Gives up what is under way, if that can be.
 pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
-    match (Beside::of(model), model.checking) {
-        (Some(Beside::Pins(count)), _) => {
+    match (BackgroundJob::of(model), model.checking) {
+        (Some(BackgroundJob::Pins(count)), _) => {
             model.pins.give_up();
             let curves = if count == 1 { "the pinned curve" } else { "the pinned curves" };
-            tell(model, Level::Info, format!("cancelled: {curves} on the way will not be shown"));
+            model.tell(Level::Info, format!("cancelled: {curves} on the way will not be shown"));
             vec![Effect::StopPins]
         }
-        (Some(Beside::Check), Some(Checking::Asked(id))) => {
+        (Some(BackgroundJob::Check), Some(Checking::Asked(id))) => {
             model.checking = Some(Checking::GivenUp);
-            tell(model, Level::Info, "cancelled: which states of this curve are admissible stays unknown");
+            model.tell(Level::Info, "cancelled: which states of this curve are admissible stays unknown");
             vec![Effect::StopCurve(id)]
         }
         _ => Vec::new(),
@@ -64,7 +63,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::background_jobs::*;
     use crate::explorer::driver::Inline;
     use crate::explorer::pins::Pins;
     use crate::explorer::{Command, Reply, Workers, answer, open, update};
@@ -89,11 +88,11 @@ mod tests {
         let (mut model, driver, effects) = session();
         let asked = |effects: &[Effect]| effects.iter().any(|effect| matches!(effect, Effect::Check(_)));
         assert!(asked(&effects), "{effects:?}");
-        assert_eq!(Beside::of(&model), Some(Beside::Check));
+        assert_eq!(BackgroundJob::of(&model), Some(BackgroundJob::Check));
         let Some(Checking::Asked(number)) = model.checking else { panic!("{:?}", model.checking) };
         let effects = update(&mut model, Id::Cancel.into());
         assert!(matches!(effects.as_slice(), [Effect::StopCurve(id)] if *id == number));
-        assert_eq!(Beside::of(&model), None);
+        assert_eq!(BackgroundJob::of(&model), None);
         assert!(model.status().1.contains("which states of this curve are admissible"));
         // Nothing that happens on this curve asks again.
         for effect in update(&mut model, Id::Step.into()) {
@@ -116,11 +115,11 @@ mod tests {
     fn the_pins_of_a_resumed_session_are_given_up_together() {
         let (mut model, driver, effects) = session();
         driver.settle(&mut model, effects);
-        assert_eq!(Beside::of(&model), None);
+        assert_eq!(BackgroundJob::of(&model), None);
         model.pins = Pins::awaiting([(1, model.preset.clone()), (3, model.preset.clone())]);
-        assert_eq!(Beside::of(&model), Some(Beside::Pins(2)));
+        assert_eq!(BackgroundJob::of(&model), Some(BackgroundJob::Pins(2)));
         assert!(matches!(update(&mut model, Id::Cancel.into()).as_slice(), [Effect::StopPins]));
-        assert!(Beside::of(&model).is_none() && model.pins.is_empty());
+        assert!(BackgroundJob::of(&model).is_none() && model.pins.is_empty());
     }
 
     #[test]

@@ -16,7 +16,7 @@ const SHARE: u32 = 20;
 
 /// Keeps the session of a program on disk.
 #[derive(Debug, Clone)]
-pub struct Keeper(Arc<Shared>);
+pub struct Autosave(Arc<Shared>);
 
 #[derive(Debug)]
 struct Shared {
@@ -52,8 +52,8 @@ struct Writer {
     before: Option<Ended>,
 }
 
-impl Keeper {
-    /// A keeper that nobody works for: [`Keeper::start`] writes by itself.
+impl Autosave {
+    /// A keeper that nobody works for: [`Autosave::start`] writes by itself.
     pub fn new(archive: Archive) -> Self {
         let (desk, writer) = (Mutex::default(), Mutex::default());
         Self(Arc::new(Shared { archive, desk, filled: Condvar::new(), writer }))

@@ -1,6 +1,5 @@
 //! Where a script may write, and what it may replace.
 
-use super::play::Permission;
 use crate::explorer::command::{Command, Id};
 use crate::explorer::files::target;
 use crate::explorer::model::Model;
@@ -9,6 +8,15 @@ use crate::store::atomic::{folder_of, follow};
 use pulloff_engine::text::show_path;
 use std::fs;
 use std::path::Path;
+
+/// What a script may do to files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Permission {
+    /// Replace files.
+    pub overwrite: bool,
+    /// Write outside the current folder.
+    pub anywhere: bool,
+}
 
 /// The command as it may be done.
 ///

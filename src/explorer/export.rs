@@ -1,0 +1,54 @@
+//! What can be written to a file: the kinds of export and the endings of their files.
+
+use std::path::Path;
+
+/// What can be exported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportKind {
+    /// The points of the background curve.
+    Curve,
+    /// The states walked.
+    Walk,
+    /// The instabilities, of the source shown.
+    Events,
+    /// What was done, as a script.
+    Script,
+}
+
+impl ExportKind {
+    /// All, in the order they are offered.
+    pub const ALL: [Self; 4] = [Self::Curve, Self::Walk, Self::Events, Self::Script];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Curve => "curve",
+            Self::Walk => "walk",
+            Self::Events => "events",
+            Self::Script => "script",
+        }
+    }
+
+    /// The endings its file may have, the usual one first.
+    pub fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Curve | Self::Walk | Self::Events => &["csv", "json"],
+            Self::Script => &["pulloff", "txt"],
+        }
+    }
+}
+
+/// Whether the name of a file has one of these endings.
+pub fn ends_in(path: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(path).extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+}
+
+/// What is seen, for a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Page {
+    /// The screen as text.
+    Screen(String),
+    /// A figure as SVG, drawn as its file's ending says.
+    Figure(String),
+}

@@ -1,0 +1,97 @@
+//! One state of the walk.
+
+use super::setting::Setting;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::{Admissibility, Event, Point, Stability, State, Stiffness};
+use std::sync::Arc;
+
+/// How a node came about.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NodeKind {
+    /// The start state.
+    Start,
+    /// A step.
+    Step,
+    /// A limit point of the control, located exactly.
+    Limit,
+    /// The landing of a jump, or `None` inside for a pull-off, with what it cost.
+    Jump(Box<Event>),
+    /// Moved to by hand: an event selected, the start again.
+    Moved,
+    /// Solved again after a parameter or the control had changed.
+    Solved,
+    /// Not solved after a change: the state before, with the reason.
+    Stale(String),
+}
+
+/// Where the edge would land from a limit point, and what it would cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ahead {
+    /// The landing, reduced; `None` where the bodies come apart.
+    pub after: Option<State>,
+    /// Energy lost, reduced; `None` for a pull-off under a dead load.
+    pub dissipated: Option<f64>,
+}
+
+/// One state of the walk.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// The node before.
+    pub parent: Option<usize>,
+    /// How it came about.
+    pub kind: NodeKind,
+    /// The problem it solves.
+    pub setting: Arc<Setting>,
+    /// The control it was reached under (reduced).
+    pub control: Control,
+    /// The point of the curve, in the scales of its setting.
+    pub point: Point,
+    /// The state, reduced.
+    pub state: State,
+    /// Steps since the start.
+    pub step: usize,
+    /// How force and area answer to the approach here, reduced.
+    pub stiffness: Stiffness,
+    /// At a limit point of the control: where the jump leads, if that is known.
+    pub ahead: Option<Ahead>,
+    /// Whether the state is admissible, and the nearest crest.
+    pub admissibility: Admissibility,
+    /// Decimal digits the basis can be trusted for here.
+    pub digits: f64,
+    /// The relative difference of P from the exact solution at the same contact radius.
+    pub from_exact: f64,
+    /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
+    pub begins: bool,
+    /// The number of the walk request that made it: what one command made has one number.
+    pub request: u64,
+}
+
+impl Node {
+    /// The slopes that tell the stability.
+    pub fn stability(&self) -> Stability {
+        self.setting.scales.stability(&self.point)
+    }
+
+    /// The bodies are apart: the walk ends here.
+    pub fn is_apart(&self) -> bool {
+        matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
+    }
+
+    /// Of a state that cannot be, the reduced r at fault: of the crest that would touch, with its number where it has one,
+    /// or `None` with it where the disc would have to pull.
+    pub fn fault_radius(&self) -> Option<(f64, Option<Option<u64>>)> {
+        let found = self.admissibility;
+        if found.holds || self.is_apart() {
+            return None;
+        }
+        match found.overlapping() {
+            Some(crest) => Some((crest.radius, Some(crest.wave))),
+            None => found.least_pressure.map(|(radius, _)| (radius, None)),
+        }
+    }
+
+    /// A limit point under `control`.
+    pub fn is_limit(&self, control: Control) -> bool {
+        self.kind == NodeKind::Limit && self.control == control
+    }
+}

@@ -1,0 +1,123 @@
+//! What the model asks of the worker on behalf of several commands: a curve, a check, the end of a walk, work on files.
+
+use super::effect::{Check, Effect, Wish};
+use super::job::Job;
+use super::model::{Checking, Level, Model};
+use super::node::NodeKind;
+use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Asks for the curve of the preset as it is.
+pub(super) fn want_curve(model: &mut Model) -> Effect {
+    let id = model.number();
+    model.curve_wanted = id;
+    (model.progress, model.curve_error) = (None, None);
+    // The curve does not know what is controlled: under another control it need not be swept again.
+    let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
+    let sweep = known.map(Arc::clone);
+    Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), sweep }))
+}
+
+/// Asks which states of the curve on the screen are admissible, once no newer curve is on its way. A newer curve drops
+/// the question; if it fails or is given up, the question is asked again.
+pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
+    let curve = model.curve.as_ref().filter(|curve| !model.is_computing() && !curve.is_checked()).cloned();
+    let Some(curve) = curve else {
+        model.checking = None;
+        return None;
+    };
+    if model.checking.is_some() {
+        return None;
+    }
+    let id = model.number();
+    model.checking = Some(Checking::Asked(id));
+    Some(Effect::Check(Check { id, curve }))
+}
+
+/// Takes the parameters of the walker's state where the curve on the screen has others.
+pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
+    let Some(node) = model.history.current() else { return Vec::new() };
+    if model.is_on_curve(node) || matches!(node.kind, NodeKind::Stale(_)) {
+        return Vec::new();
+    }
+    take_back(model)
+}
+
+/// Takes the parameters of the walker's state instead of those typed since.
+pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
+    let Some(node) = model.history.current() else { return Vec::new() };
+    let mut preset = node.setting.preset.clone();
+    preset.title.clone_from(&model.preset.title);
+    preset.path.control = model.preset.path.control;
+    change(model, preset)
+}
+
+/// Takes a changed preset and asks for its curve.
+pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
+    if preset == model.preset {
+        return Vec::new();
+    }
+    let same_problem = {
+        let mut old = model.preset.clone();
+        old.title.clone_from(&preset.title);
+        old == preset
+    };
+    // The last stiffness is remembered, to come back to it.
+    for control in [model.preset.path.control, preset.path.control] {
+        if let Control::Stiffness(k) = control {
+            model.stiffness = Some(k);
+        }
+    }
+    model.preset = preset;
+    if same_problem {
+        return Vec::new();
+    }
+    model.is_tried = false;
+    let knobs = model.knobs().len();
+    model.parameter = model.parameter.min(knobs.saturating_sub(1));
+    if !model.queue.is_empty() {
+        model.tell(Level::Info, "what was asked of the walk and not begun is left: the values changed");
+    }
+    let mut effects = stop(model);
+    if model.shows_its_curve() {
+        // Back at the values of the curve on the screen: the one being computed is no longer wanted.
+        model.curve_shown = model.curve_wanted;
+        model.curve_error = None;
+        effects.push(Effect::StopCurve(model.curve_wanted));
+    } else {
+        effects.push(want_curve(model));
+    }
+    effects
+}
+
+/// Ends the walk that runs and forgets the commands that wait for it.
+pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
+    model.queue.clear();
+    model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
+}
+
+/// The folder that the name of the preset's own profile is relative to.
+fn own_folder(model: &Model) -> Option<PathBuf> {
+    match &model.preset.gap {
+        Shape::Profile(measured) => measured.rows().folder.clone(),
+        _ => None,
+    }
+}
+
+/// Asks for the profiles of a folder.
+pub(super) fn browse(model: &Model, folder: Option<PathBuf>) -> Effect {
+    file(Job::Browse { folder, own: own_folder(model) })
+}
+
+/// Asks for the rows of a profile.
+pub(super) fn read(model: &Model, name: String) -> Effect {
+    file(Job::Read { folder: own_folder(model), name })
+}
+
+/// A job on files as an effect.
+pub(super) fn file(job: Job) -> Effect {
+    Effect::File(Box::new(job))
+}

@@ -1,0 +1,71 @@
+//! Reads a whole script: every line is parsed before any is run.
+
+use super::fault::Fault;
+use super::parse;
+use crate::explorer::command::Command;
+use pulloff_engine::text::show_name;
+use std::fmt;
+use thiserror::Error;
+
+/// The largest script, in bytes.
+pub const LARGEST: u64 = 1 << 20;
+
+/// The most lines of a script.
+pub const MOST_LINES: usize = 20_000;
+
+/// So many faults are listed.
+pub(super) const FAULTS: usize = 20;
+
+/// One line of a script.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Whether the script goes on when it fails.
+    pub may_fail: bool,
+    /// What is to be done.
+    pub command: Command,
+}
+
+/// All that is wrong with a script, in the order of its lines.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub struct ScriptError {
+    /// The script's name, safe to show.
+    pub name: String,
+    /// The lines, from 1, and what is wrong with them; at least one.
+    pub faults: Vec<(usize, Fault)>,
+}
+
+impl fmt::Display for ScriptError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (line, fault)) in self.faults.iter().enumerate() {
+            let end = if i + 1 < self.faults.len() { "\n" } else { "" };
+            write!(f, "{}:{line}:{}: {fault}{end}", self.name, fault.column)?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads a script; `name` names it in messages. Nothing of it is done.
+///
+/// # Errors
+/// All lines that are no commands, or none for a script.
+pub fn read(name: &str, text: &str) -> Result<Vec<Line>, ScriptError> {
+    let (mut lines, mut faults) = (Vec::new(), Vec::new());
+    for (i, text) in text.lines().enumerate() {
+        let number = i + 1;
+        if number > MOST_LINES {
+            faults.push((number, Fault::new(1, format!("a script has at most {MOST_LINES} lines"))));
+            break;
+        }
+        match parse::script_line(text) {
+            Ok(Some((may_fail, command))) => lines.push(Line { number, may_fail, command }),
+            Ok(None) => {}
+            Err(fault) => faults.push((number, fault)),
+        }
+        if faults.len() >= FAULTS {
+            break;
+        }
+    }
+    if faults.is_empty() { Ok(lines) } else { Err(ScriptError { name: show_name(name), faults }) }
+}

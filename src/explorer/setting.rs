@@ -1,0 +1,46 @@
+//! The problem that a state of the walk solves.
+
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::{Control, Reduced, Units};
+use pulloff_engine::quasistatic::Scales;
+
+/// The problem a node was solved in: the parameters may change from node to node.
+///
+/// Its basis is not here. It belongs to the curve, which is computed anew when the walker comes back to the problem:
+/// so a long walk through many problems stays small, and a saved one is read without computing any of them.
+#[derive(Debug, Clone)]
+pub struct Setting {
+    /// The preset.
+    pub preset: Preset,
+    /// The problem in reduced units.
+    pub reduced: Reduced,
+    /// What is controlled, in reduced units.
+    pub control: Control,
+    /// The units of the unknowns: those of the curve on which the nodes lie.
+    pub scales: Scales,
+}
+
+impl Setting {
+    /// The problem of `preset` on a curve with these scales.
+    pub fn new(preset: Preset, scales: Scales) -> Self {
+        let reduced = preset.reduced();
+        let control = preset.path.control.in_units(reduced.units.stiffness);
+        Self { preset, reduced, control, scales }
+    }
+
+    /// The factors to the user's units.
+    pub fn units(&self) -> &Units {
+        &self.reduced.units
+    }
+
+    /// A control in the user's units.
+    pub fn shown_control(&self, control: Control) -> Control {
+        control.in_units(1.0 / self.units().stiffness)
+    }
+}
+
+/// Whether two presets have the same curve: everything but the title and the control is equal.
+pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
+    (a.material, &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
+        == (b.material, &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
+}

@@ -1,0 +1,91 @@
+//! A curve came, failed or was given up.
+
+use super::walk::{begin_walk, walk};
+use crate::explorer::command::Id;
+use crate::explorer::curve::CurveData;
+use crate::explorer::effect::Effect;
+use crate::explorer::model::{Checking, CurveError, Level, Model};
+use crate::explorer::node::NodeKind;
+use crate::explorer::status_line::of_before;
+use crate::explorer::walk::Action;
+use crate::mend::Reason;
+use std::sync::Arc;
+
+/// The curve on the screen stays; the one being computed is no longer wanted.
+pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
+    model.queue.clear();
+    model.curve_shown = model.curve_wanted;
+    let control = model.curve.as_ref().filter(|curve| curve.sweep.is_of(&model.preset)).map(|curve| {
+        // Only the control was changed, which undo does not take back.
+        curve.setting.preset.path.control
+    });
+    let text = match (&model.curve, control) {
+        (Some(_), Some(control)) => {
+            model.preset.path.control = control;
+            "cancelled: the control is as before".to_owned()
+        }
+        (Some(_), None) => format!("cancelled: {}", of_before()),
+        (None, _) => {
+            format!(
+                "cancelled: there is no curve; {} computes it again, or change a value",
+                Id::Restart.named()
+            )
+        }
+    };
+    if control.is_none() {
+        model.curve_error = Some(CurveError::GivenUp(text.clone()));
+    }
+    model.tell(Level::Info, text);
+    vec![Effect::StopCurve(model.curve_wanted)]
+}
+
+/// What follows from a curve, or from why there is none. `None`: the commands that wait may go on.
+pub(super) fn curve_came(
+    model: &mut Model,
+    id: u64,
+    result: Result<Arc<CurveData>, Reason>,
+) -> Option<Vec<Effect>> {
+    if id <= model.curve_shown {
+        return Some(Vec::new());
+    }
+    model.curve_shown = id;
+    match result {
+        Err(reason) => {
+            model.queue.clear();
+            let text = format!("no curve for these values: {reason}");
+            model.tell(Level::of(&reason), text.clone());
+            model.curve_error = Some(CurveError::Failed(text));
+            Some(Vec::new())
+        }
+        Ok(curve) => {
+            model.curve_error = None;
+            let first = model.history.current().is_none();
+            model.curve = Some(Arc::clone(&curve));
+            let lines = model.shown_events().len() + model.shown_inadmissible().len();
+            model.event = model.event.min(lines.saturating_sub(1));
+            if first {
+                begin_walk(model, &curve);
+                return None;
+            }
+            let is_tried = std::mem::take(&mut model.is_tried);
+            if model.walking.is_some() {
+                // Solved again once that is over.
+                return Some(Vec::new());
+            }
+            let Some(node) = model.history.current() else { return Some(Vec::new()) };
+            let is_stale = matches!(node.kind, NodeKind::Stale(_));
+            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() {
+                return None;
+            }
+            let state = node.state.in_units(node.setting.units());
+            Some(walk(model, Action::Solve { state }))
+        }
+    }
+}
+
+/// The admissibility of the curve on the screen is known.
+pub(super) fn checked(model: &mut Model, id: u64, curve: Arc<CurveData>) {
+    if model.checking == Some(Checking::Asked(id)) {
+        model.curve = Some(curve);
+    }
+}

@@ -1,0 +1,161 @@
+//! The walk as a table: one row per state, for CSV and JSON.
+
+use super::node::{Node, NodeKind};
+use pulloff_engine::preset::{Key, Preset, Row};
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::trace::StableReport;
+use pulloff_engine::report::unload::{EventReport, StateReport};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// One state of the walk as a row.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WalkRow {
+    /// Steps since the start.
+    pub step: usize,
+    /// How it came about.
+    pub kind: &'static str,
+    /// What was controlled.
+    pub control: String,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// U.
+    pub energy: f64,
+    /// The crest of the edge.
+    pub wave: Option<u64>,
+    /// Newton rounds spent.
+    pub newton_iterations: usize,
+    /// Stability under each control.
+    pub stable: StableReport,
+    /// The energy lost in the jump that led here.
+    pub dissipated: Option<f64>,
+    /// The same by the area.
+    pub dissipated_by_area: Option<f64>,
+    /// γ when it was solved: parameters may change during a walk.
+    pub work_of_adhesion: f64,
+    /// R when it was solved, where the gap has one.
+    pub radius_of_curvature: Option<f64>,
+    /// A when it was solved.
+    pub amplitude: Option<f64>,
+    /// λ when it was solved.
+    pub wavelength: Option<f64>,
+    /// Whether it is admissible; nothing once the bodies are apart.
+    pub admissible: Option<bool>,
+    /// The keys of the preset that changed during the walk, with their values when it was solved: null where the preset had
+    /// none.
+    #[serde(flatten)]
+    pub changed: BTreeMap<String, Value>,
+}
+
+/// The columns of the walk as CSV; behind them stand the keys that changed during it.
+pub const WALK_COLUMNS: &[&str] = &[
+    "step",
+    "kind",
+    "control",
+    "contact_radius",
+    "approach",
+    "force",
+    "energy",
+    "wave",
+    "newton_iterations",
+    "stable_displacement",
+    "stable_force",
+    "stable_chosen",
+    "dissipated",
+    "dissipated_by_area",
+    "work_of_adhesion",
+    "radius_of_curvature",
+    "amplitude",
+    "wavelength",
+    "admissible",
+];
+
+/// The keys whose value is not the same in all states of a walk, in the order in which they changed. How the preset is
+/// called and shown is of no state.
+pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
+    // States of one problem share it.
+    let mut presets: Vec<&Preset> = Vec::new();
+    for nodes in walk.chunk_by(|a, b| Arc::ptr_eq(&a.setting, &b.setting)) {
+        presets.push(&nodes[0].setting.preset);
+    }
+    let Some((first, rest)) = presets.split_first() else { return Vec::new() };
+    let mut keys: Vec<Key> = Vec::new();
+    for preset in rest {
+        // A key may be of one of the two alone.
+        let is_of_states =
+            |row: &Row| !(row.is_part() || row.key == "title" || row.key.starts_with("display."));
+        for row in first.rows().chain(preset.rows()).filter(is_of_states) {
+            if first.get(&row.key) != preset.get(&row.key) && !keys.contains(&row.key) {
+                keys.push(row.key.clone());
+            }
+        }
+    }
+    keys
+}
+
+impl WalkRow {
+    pub(super) fn new(node: &Node, changed: &[Key]) -> Self {
+        let setting = &node.setting;
+        let state = node.state.in_units(setting.units());
+        let stability = node.stability();
+        let event = match &node.kind {
+            NodeKind::Jump(event) => Some(EventReport::new(&setting.reduced, node.control, event)),
+            _ => None,
+        };
+        let wave = setting.preset.gap.wave();
+        let apart = node.is_apart();
+        Self {
+            step: node.step,
+            kind: kind_name(&node.kind),
+            control: setting.shown_control(node.control).to_string(),
+            contact_radius: if apart { 0.0 } else { state.contact_radius },
+            approach: state.approach,
+            force: if apart { 0.0 } else { state.force },
+            energy: if apart { 0.0 } else { state.energy },
+            wave: if apart { None } else { StateReport::new(&setting.reduced, &node.state).wave },
+            newton_iterations: node.point.rounds,
+            stable: StableReport {
+                displacement: stability.under(Control::Displacement),
+                force: stability.under(Control::Force),
+                chosen: stability.under(node.control),
+            },
+            dissipated: event.as_ref().and_then(|e| e.dissipated),
+            dissipated_by_area: event.as_ref().and_then(|e| e.dissipated_by_area),
+            work_of_adhesion: setting.preset.material.work_of_adhesion,
+            radius_of_curvature: setting.preset.gap.radius_of_curvature(),
+            amplitude: wave.map(|(a, _)| a),
+            wavelength: wave.map(|(_, l)| l),
+            admissible: Some(node.admissibility.holds).filter(|_| !apart),
+            changed: changed.iter().map(|key| (key.to_string(), value_of(&setting.preset, key))).collect(),
+        }
+    }
+}
+
+/// The value of a key as it stands in a cell: numbers in SI or reduced units, a control as it is typed.
+fn value_of(preset: &Preset, key: &str) -> Value {
+    match preset.get(key) {
+        None => Value::Null,
+        Some(pulloff_engine::preset::Value::Number(x)) => Value::from(x),
+        Some(pulloff_engine::preset::Value::Integer(n)) => Value::from(n),
+        Some(other) => Value::from(other.to_string()),
+    }
+}
+
+/// The word for how a node came about.
+pub fn kind_name(kind: &NodeKind) -> &'static str {
+    match kind {
+        NodeKind::Start => "start",
+        NodeKind::Step => "step",
+        NodeKind::Limit => "limit",
+        NodeKind::Jump(event) => pulloff_engine::report::unload::kind_name(event.kind),
+        NodeKind::Moved => "moved",
+        NodeKind::Solved => "solved",
+        NodeKind::Stale(_) => "unsolved",
+    }
+}
