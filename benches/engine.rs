@@ -10,8 +10,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
-use pulloff_engine::problem::Control;
-use pulloff_engine::problem::Problem;
+use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::ritz::{Grading, Rings};
 use std::sync::Arc;
 

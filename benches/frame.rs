@@ -6,7 +6,9 @@
 use divan::Bencher;
 use pulloff::explorer::{Inline, View};
 use pulloff::store::Store;
-use pulloff::tui::{app::App, theme::Theme, view};
+use pulloff::tui::app::App;
+use pulloff::tui::theme::Theme;
+use pulloff::tui::view;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 

@@ -3,14 +3,23 @@
 #[path = "support/session.rs"]
 mod session;
 
+use pulloff::explorer::data::Folder;
 use pulloff::explorer::export::ExportKind;
-use pulloff::explorer::model::Level;
+use pulloff::explorer::model::{Level, Question};
 use pulloff::explorer::{
     Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
 };
 use pulloff::store::{Overwrite, Source, save_file};
 use pulloff_engine::quasistatic::EventKind;
 use session::Session;
+
+/// The folder whose profiles are offered.
+fn listed_folder(session: &mut Session) -> Folder {
+    match session.model.question.take() {
+        Some(Question::Profile(folder)) => *folder,
+        other => panic!("{other:?}"),
+    }
+}
 
 #[test]
 fn the_walk_meets_the_events_of_the_curve() {
@@ -548,7 +557,7 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     std::fs::write(path("mixed.txt"), rows(&radii)).unwrap();
     std::fs::write(path("bad.csv"), rows(&radii) + "400.0, much\n").unwrap();
     session.does(Command::Browse(Some(folder.clone())));
-    let listed = session.model.folder.take().unwrap();
+    let listed = listed_folder(&mut session);
     assert_eq!(listed.files, ["bad.csv", "good.csv", "mixed.txt"]);
     let (before, curve) = (session.model.preset.clone(), session.model.curve.clone().unwrap());
     session.set("gap.file", &listed.name_of("bad.csv"));
@@ -570,7 +579,7 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     assert!(!session.model.is_unsaved() && folder.join("presets/good.csv").is_file());
     assert_eq!(session.model.preset.get("gap.file").unwrap().to_string(), "good.csv");
     session.does(Command::Browse(None));
-    assert_eq!(session.model.folder.take().unwrap().path, folder.join("presets"));
+    assert_eq!(listed_folder(&mut session).path, folder.join("presets"));
     session.does(Command::Browse(Some(folder.join("gone"))));
     assert!(session.status().contains("cannot be listed"), "{}", session.status());
 }

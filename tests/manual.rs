@@ -90,7 +90,9 @@ fn shown(command: &str) -> String {
 /// The explorer at its second limit point, as text.
 fn screen() -> String {
     use pulloff::explorer::{Id, Inline, update};
-    use pulloff::tui::{app::App, theme::Theme, view};
+    use pulloff::tui::app::App;
+    use pulloff::tui::theme::Theme;
+    use pulloff::tui::view;
     use ratatui::{Terminal, backend::TestBackend};
 
     let folder = tempfile::tempdir().unwrap();

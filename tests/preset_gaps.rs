@@ -7,8 +7,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::problem::Control;
-use pulloff_engine::theory::Exact;
-use pulloff_engine::theory::unloading;
+use pulloff_engine::theory::{Exact, unloading};
 use std::sync::Arc;
 
 const NAMES: [&str; 7] =

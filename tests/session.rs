@@ -15,7 +15,8 @@ use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary}
 use pulloff::explorer::{
     Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, script, update,
 };
-use pulloff::figure::{Role, Subject};
+use pulloff::figure::Role;
+use pulloff::figure::Subject;
 use pulloff::store::Store;
 use pulloff_engine::preset::{BasisSpec, write};
 use rustix::process::Signal;

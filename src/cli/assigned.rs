@@ -1,7 +1,7 @@
 //! What assignments on the command line did that their text does not show, on standard error: the values that a group
 //! changed, and bare numbers of an SI preset that may have been meant in another unit.
 
-use super::warn;
+use super::console::warn;
 use crate::store::{Source, Store};
 use pulloff_engine::preset::{Preset, Value, groups};
 use pulloff_engine::units::number::short;
@@ -11,8 +11,8 @@ use std::io::Write;
 /// A bare number further than this factor from the preset's own value is worth a word.
 const FAR: f64 = 1e3;
 
-/// Tells what the assignments made of the preset from `source`, which is now `after`.
-pub(super) fn tell(store: &Store, source: &Source, assignments: &[String], after: &Preset) {
+/// Reports what the assignments made of the preset from `source`, which is now `after`.
+pub(super) fn report(store: &Store, source: &Source, assignments: &[String], after: &Preset) {
     let parted =
         || assignments.iter().filter_map(|text| text.split_once('=')).map(|(key, text)| (key.trim(), text));
     let is_group = |key: &str| groups::row(key).is_some();
@@ -42,13 +42,13 @@ pub(super) fn tell(store: &Store, source: &Source, assignments: &[String], after
 /// The values of `after` that `before` has otherwise.
 fn changed(before: &Preset, after: &Preset) -> String {
     let moved = after.rows().filter(|row| before.get(&row.key) != after.get(&row.key));
-    let told: Vec<String> =
-        moved.filter_map(|row| Some(format!("{} = {}", row.key, said(after, &row.key)?))).collect();
-    if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
+    let named: Vec<String> =
+        moved.filter_map(|row| Some(format!("{} = {}", row.key, describe(after, &row.key)?))).collect();
+    if named.is_empty() { "nothing".to_owned() } else { named.join(", ") }
 }
 
 /// A number as it is shown.
-fn said(preset: &Preset, key: &str) -> Option<String> {
+fn describe(preset: &Preset, key: &str) -> Option<String> {
     let row = preset.row(key)?;
     let Some(Value::Number(x)) = preset.get(key) else { return None };
     let shown = row.shown(&preset.units, x);
@@ -66,7 +66,7 @@ fn far(own: &Preset, after: &Preset, key: &str) -> Option<String> {
     let is_far =
         own.units == after.units && ratio.is_finite() && ratio > 0.0 && !(1.0 / FAR..=FAR).contains(&ratio);
     is_far.then(|| {
-        let (now, before) = (said(after, key), said(own, key));
+        let (now, before) = (describe(after, key), describe(own, key));
         format!(
             "{key} is {} now, {} in the preset: a bare number is {}",
             now.unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! `pulloff completions`: what a shell needs to complete the command line.
 
-use super::{Cli, Failure, output};
-use clap::{Args, CommandFactory};
+use super::{Failure, output};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use std::process::ExitCode;
 
@@ -12,9 +12,10 @@ pub struct Arguments {
     shell: Shell,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+/// Writes the completions of `command`.
+pub fn run(arguments: &Arguments, mut command: Command) -> Result<ExitCode, Failure> {
     let mut text = Vec::new();
-    generate(arguments.shell, &mut Cli::command(), "pulloff", &mut text);
+    generate(arguments.shell, &mut command, "pulloff", &mut text);
     output::write(&String::from_utf8_lossy(&text), None)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! `pulloff`: the explorer.
 
-use super::{Failure, Problem};
+use super::Failure;
+use super::problem::Problem;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -49,7 +50,7 @@ pub fn run(
     let Flags { theme, charts, ascii, mouse } = *flags;
     let asked = LookFile { theme, charts, ascii, mouse };
     let look = Look::resolve(asked, Some(settings.look), &Environment::of_process());
-    crate::tui::run(super::store(), archive, start, look, settings)
+    crate::tui::run(super::problem::store(), archive, start, look, settings)
         .map_err(|error| Failure::Terminal(error.to_string()))
 }
 

@@ -2,7 +2,8 @@
 
 use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, Reason};
-use crate::print::{DrawError, FormatError};
+use crate::print::DrawError;
+use crate::print::FormatError;
 use crate::store::file::FileError;
 use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;

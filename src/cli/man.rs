@@ -1,21 +1,22 @@
 //! `pulloff man`: the manual page, made from the command line and the command table.
 
-use super::{Cli, Failure, output};
+use super::{Failure, output};
 use crate::explorer::command::ROWS;
-use clap::CommandFactory;
+use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
 use std::io;
 use std::process::ExitCode;
 
-pub fn run() -> Result<ExitCode, Failure> {
-    let page = page().map_err(|cause| Failure::System { what: "the manual page".to_owned(), cause })?;
+/// Writes the manual page of `command`.
+pub fn run(command: Command) -> Result<ExitCode, Failure> {
+    let page =
+        page(command).map_err(|cause| Failure::System { what: "the manual page".to_owned(), cause })?;
     output::write(&String::from_utf8_lossy(&page), None)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn page() -> io::Result<Vec<u8>> {
-    let mut command = Cli::command();
+fn page(mut command: Command) -> io::Result<Vec<u8>> {
     command.build();
     let mut page = Vec::new();
     Man::new(command.clone()).render(&mut page)?;
@@ -27,7 +28,7 @@ fn page() -> io::Result<Vec<u8>> {
 }
 
 /// The sections of a subcommand, one level lower than those of the page.
-fn write_subcommand(subcommand: &clap::Command, page: &mut Vec<u8>) -> io::Result<()> {
+fn write_subcommand(subcommand: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     let name = subcommand.get_bin_name().unwrap_or(subcommand.get_name()).to_uppercase();
     Roff::new().control("SH", [&*name]).to_writer(page)?;
     let man = Man::new(subcommand.clone());

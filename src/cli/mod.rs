@@ -13,6 +13,7 @@
 
 mod assigned;
 mod completions;
+mod console;
 mod explore;
 mod failure;
 mod figures;
@@ -20,6 +21,7 @@ mod man;
 mod output;
 mod plot;
 mod presets;
+mod problem;
 mod run;
 mod sessions;
 mod sweep;
@@ -29,16 +31,12 @@ mod verify;
 
 pub use failure::Failure;
 
-use crate::store::file::LARGEST;
-use crate::store::stream::{self, STANDARD};
-use crate::store::{Loaded, Source, Store, StoreError};
-use clap::{Args, CommandFactory, Parser, Subcommand};
-use pulloff_engine::report::OverlapReport;
+use clap::{CommandFactory, Parser, Subcommand};
+use problem::Problem;
 use signal_hook::consts::SIGXFSZ;
 use signal_hook::flag;
-use std::ffi::{OsStr, OsString};
-use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -89,58 +87,6 @@ enum Command {
     Man,
 }
 
-/// Which problem, as the explorer and every computing command take it.
-#[derive(Debug, Args)]
-struct Problem {
-    /// A preset's name, or a preset file (with a '/' or ending in .toml; - is standard input); the wavy sphere when left out
-    #[arg(value_name = "PRESET|FILE.toml")]
-    preset: Option<OsString>,
-    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
-    ///
-    /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
-    /// changes what it follows from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`, `groups.adhesion`.
-    /// An SI preset is shown in the units of its display keys: display.force=mN.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    assignments: Vec<String>,
-}
-
-impl Problem {
-    fn load(&self) -> Result<Loaded, Failure> {
-        load(self.preset.as_ref(), &self.assignments)
-    }
-}
-
-/// The store of presets; a preset cannot have the name of a subcommand.
-pub fn store() -> Store {
-    let command = Cli::command();
-    let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).chain(["help"]).collect();
-    Store::open(&names)
-}
-
-/// What the argument `preset` names: the text itself where it comes through a pipe, which can be read but once.
-fn source(store: &Store, preset: &OsStr) -> Result<Source, Failure> {
-    let path = Path::new(preset);
-    if preset != STANDARD {
-        match store.resolve(preset)? {
-            Source::File(path) if stream::is_stream(&path) => {}
-            source => return Ok(source),
-        }
-    }
-    let (name, text) = stream::read_text(path, LARGEST).map_err(StoreError::from)?;
-    Ok(Source::Piped { name, text: text.into() })
-}
-
-fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Failure> {
-    let store = store();
-    let source = match preset {
-        Some(argument) => source(&store, argument)?,
-        None => store.resolve(crate::store::shipped::DEFAULT)?,
-    };
-    let loaded = store.load(&source, assignments)?;
-    assigned::tell(&store, &source, assignments, &loaded.preset);
-    Ok(loaded)
-}
-
 /// Makes the limit on the size of files an error of the write that meets it, as a full disk is, and not a signal that kills.
 fn outlive_the_limit() {
     // A signal that is caught lets the write return. Should it not be caught, it kills as ever.
@@ -167,8 +113,8 @@ pub fn run() -> ExitCode {
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Run(arguments)) => run::run(arguments),
-        Some(Command::Completions(arguments)) => completions::run(arguments),
-        Some(Command::Man) => man::run(),
+        Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
+        Some(Command::Man) => man::run(Cli::command()),
         Some(Command::Presets(command)) => presets::run(command),
         Some(Command::Sessions(command)) => sessions::run(command),
     };
@@ -183,49 +129,16 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Asks on standard error; any answer but `y` or `yes` is no.
-fn ask(question: &str) -> Result<(), Failure> {
-    if !std::io::stdin().is_terminal() {
-        return Err(Failure::Usage("nobody can be asked: --yes deletes without a question".to_owned()));
-    }
-    let _ = write!(std::io::stderr(), "{question} [y/N] ");
-    let mut answer = String::new();
-    let read = std::io::stdin().read_line(&mut answer);
-    match answer.trim() {
-        "y" | "yes" if read.is_ok() => Ok(()),
-        _ => Err(Failure::Usage("not deleted".to_owned())),
-    }
-}
-
-/// With `--strict` a failure where the result, which has been written, has inadmissible states.
-fn admissible(strict: bool, overlaps: &[OverlapReport]) -> Result<ExitCode, Failure> {
-    if strict && !overlaps.is_empty() {
-        let text = "the result was written, but has inadmissible states, which --strict forbids";
-        return Err(Failure::Inadmissible(text.to_owned()));
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Writes warnings to standard error, one line each.
-fn warn(warnings: &[String]) {
-    for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "pulloff: warning: {warning}");
-    }
-}
-
-/// What is worth knowing, where the result has no place for it.
-fn note(text: Option<&str>) {
-    if let Some(text) = text {
-        let _ = writeln!(std::io::stderr(), "pulloff: note: {text}");
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
+        let mut command = Cli::command();
+        command.clone().debug_assert();
+        command.build();
+        let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        assert_eq!(names, problem::SUBCOMMANDS);
     }
 }

@@ -1,6 +1,8 @@
 //! `pulloff plot`: a view of the explorer as a figure for print.
 
-use super::{Failure, Problem, output, warn};
+use super::console::warn;
+use super::problem::Problem;
+use super::{Failure, output};
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View, Window};
 use crate::figure::Subject;

@@ -1,6 +1,8 @@
 //! `pulloff presets`: list, show, delete, and where they are kept.
 
-use super::{Failure, ask, output, store};
+use super::console::ask;
+use super::problem::store;
+use super::{Failure, output};
 use crate::store::Source;
 use clap::Subcommand;
 use pulloff_engine::text::{sanitize, show_path};
@@ -56,7 +58,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             output::write(&text, None)?;
         }
         Command::Show { name } => {
-            let source = super::source(&store, name)?;
+            let source = super::problem::source(&store, name)?;
             // Loaded first: a file that is no preset is an error, not text to print.
             let loaded = store.load(&source, &[] as &[&str])?;
             output::write(&loaded.text, None)?;

@@ -1,6 +1,7 @@
 //! `pulloff run`: a script of the explorer's commands, without a terminal.
 
-use super::{Failure, Problem, store};
+use super::Failure;
+use super::problem::{Problem, store};
 use crate::explorer::command::by_name;
 use crate::explorer::script::{self, Line, Permission, play};
 use crate::explorer::{Inline, Model, open};

@@ -1,6 +1,7 @@
 //! `pulloff sessions`: list, show and delete what the explorer keeps of a session.
 
-use super::{Failure, ask, output};
+use super::console::ask;
+use super::{Failure, output};
 use crate::explorer::archive::{Archive, ArchiveError, ago};
 use crate::explorer::session::{Document, Summary};
 use clap::Subcommand;

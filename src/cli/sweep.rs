@@ -146,7 +146,7 @@ impl Stop {
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
         output::csv_only(&self.output)?;
-        let spec = Spec::load(&super::store(), &self.spec)?;
+        let spec = Spec::load(&super::problem::store(), &self.spec)?;
         let results = self.open(&spec)?;
         let cannot_catch = |cause| Failure::System { what: "cannot catch signals".to_owned(), cause };
         let stop = Stop::catch().map_err(cannot_catch)?;

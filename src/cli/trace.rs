@@ -1,6 +1,8 @@
 //! `pulloff trace`: the equilibrium curve by arc-length continuation.
 
-use super::{Failure, Problem, admissible, note, output, warn};
+use super::console::{admissible, note, warn};
+use super::problem::Problem;
+use super::{Failure, output};
 use clap::{Args, ValueEnum};
 use pulloff_engine::quasistatic::CurveStop;
 use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS};

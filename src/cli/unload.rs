@@ -1,6 +1,8 @@
 //! `pulloff unload`: the quasi-static unloading, instability by instability.
 
-use super::{Failure, Problem, admissible, note, output, warn};
+use super::console::{admissible, note, warn};
+use super::problem::Problem;
+use super::{Failure, output};
 use clap::{Args, ValueEnum};
 use pulloff_engine::quasistatic::PathStop;
 use pulloff_engine::report::unload::COLUMNS;

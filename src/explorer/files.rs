@@ -2,12 +2,11 @@
 
 use super::command::{Assignment, Command};
 use super::curve::CurveData;
-use super::data;
 use super::export::Page;
 use super::job::{Content, Done, Job};
 use super::journal::Start;
-use super::script;
 use super::walk_table::{WALK_COLUMNS, WalkRow, changed_keys};
+use super::{data, script};
 use crate::mend::Reason;
 use crate::print::Format;
 use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};

@@ -38,9 +38,13 @@ impl CurveError {
     }
 }
 
-/// A question that a job on files left.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// What a job on files leaves for the person to choose or to answer.
+#[derive(Debug, Clone)]
 pub enum Question {
+    /// Which of these presets to open.
+    Preset(Box<Listing>),
+    /// Which profile of this folder to read.
+    Profile(Box<Folder>),
     /// Save although somebody else changed the file.
     SaveAnyway,
     /// Replace the preset of this name; whether with the data of its profile.
@@ -167,13 +171,9 @@ pub struct Model {
     pub profile_wanted: Option<Box<Ask>>,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
-    /// The list of presets, once asked for.
-    pub listing: Option<Listing>,
     /// The names of the presets, once asked for.
     pub preset_names: Vec<String>,
-    /// The profiles of a folder, once asked for.
-    pub folder: Option<Folder>,
-    /// What a job on files wants to be asked before it goes on.
+    /// What the person is to be asked.
     pub question: Option<Question>,
     /// Numbers for requests.
     pub next_request: u64,
@@ -236,9 +236,7 @@ impl Model {
             profile: None,
             profile_wanted: None,
             message: None,
-            listing: None,
             preset_names: Vec::new(),
-            folder: None,
             question: None,
             next_request: 1,
             quit: false,

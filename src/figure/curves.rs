@@ -1,9 +1,9 @@
 //! The equilibrium curve in three views, with the walk, the theory and the pinned curves.
 
-use super::Subject;
 use super::bounds::Bounds;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
+use super::subject::Subject;
 use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;

@@ -1,10 +1,10 @@
 //! What a point of a figure means: its coordinates, and on a view of the curve the state near to it and what that is.
 
-use super::Subject;
 use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
 use super::parts::Axis;
 use super::scale::Scale;
+use super::subject::Subject;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{significant, with_unit};

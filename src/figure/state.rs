@@ -1,9 +1,9 @@
 //! The inside of the walker's state: the contact pressure, the gap outside the disc, the potential over the radius.
 
-use super::Subject;
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
+use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::profile::Inside;
 use pulloff_engine::problem::Control;

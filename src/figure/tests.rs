@@ -2,6 +2,7 @@
 
 use super::reading::What;
 use super::*;
+use crate::explorer::{Axes, Model};
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
 use crate::store::Store;
 use pulloff_engine::case::Case;

@@ -4,11 +4,11 @@
 //! The area of a jump is closed by the curve that the edge runs past and by the line of the device; that of a pull-off
 //! goes on along the curve to s = 0 and back along P = 0. Under a dead load the last has no bound and is not drawn.
 
-use super::Subject;
 use super::bounds::Bounds;
 use super::curves::{inadmissible, place};
 use super::parts::{Area, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
+use super::subject::Subject;
 use super::walk::{apart, events_before, quantities};
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::{CurveData, View};

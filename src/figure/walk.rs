@@ -1,8 +1,8 @@
 //! The states walked, the jumps as straight lines, and the walker.
 
-use super::Subject;
 use super::parts::{Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
+use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;

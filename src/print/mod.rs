@@ -8,6 +8,7 @@
 //!
 //! What a build lacks is refused by name: a figure is always there as SVG.
 
+mod error;
 #[cfg(feature = "pdf")]
 mod pdf;
 #[cfg(feature = "png")]
@@ -15,7 +16,8 @@ mod png;
 #[cfg(feature = "png")]
 mod tree;
 
-use crate::mend::Mend;
+pub use error::{DrawError, FormatError};
+
 use pulloff_engine::text::show_path;
 use std::path::Path;
 
@@ -28,53 +30,6 @@ pub enum Format {
     Png,
     /// A page, its letters in a font of its own.
     Pdf,
-}
-
-/// Why a figure has no file of this name.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum FormatError {
-    /// The ending says nothing.
-    #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
-    Ending(String),
-    /// This build was made without it.
-    #[error("this build writes no {name} (feature `{feature}` is off); use .svg")]
-    Missing {
-        /// The format.
-        name: &'static str,
-        /// What it is part of.
-        feature: &'static str,
-    },
-}
-
-impl Mend for FormatError {
-    fn can_be_mended(&self) -> bool {
-        true
-    }
-}
-
-/// Why a figure cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum DrawError {
-    /// The document could not be read back.
-    #[error("the figure cannot be read back: {0}")]
-    Document(String),
-    /// It has no area, or too large a one.
-    #[error("a figure of {0} x {1} cannot be drawn")]
-    Size(f32, f32),
-    /// The file format refused it.
-    #[error("the figure cannot be written as {format}: {cause}")]
-    Refused {
-        /// The format.
-        format: &'static str,
-        /// What it says.
-        cause: String,
-    },
-}
-
-impl Mend for DrawError {
-    fn can_be_mended(&self) -> bool {
-        false
-    }
 }
 
 impl Format {

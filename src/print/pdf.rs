@@ -1,6 +1,6 @@
 //! A figure as a page of a PDF: its lines stay lines, its letters letters in an embedded font.
 
-use super::DrawError;
+use super::error::DrawError;
 use krilla::Document;
 use krilla::geom::Size;
 use krilla::metadata::Metadata;

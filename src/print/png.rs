@@ -1,6 +1,6 @@
 //! A figure as pixels.
 
-use super::DrawError;
+use super::error::DrawError;
 use resvg::{tiny_skia, usvg};
 
 /// Pixels of a unit of 1/96 inch: 384 dots an inch, above the 300 that journals ask of figures with letters.

@@ -1,6 +1,6 @@
 //! The document read back, its letters in the bundled font.
 
-use super::DrawError;
+use super::error::DrawError;
 use resvg::usvg;
 use std::sync::Arc;
 

@@ -55,8 +55,7 @@ mod tests {
     use pulloff_engine::preset::model::{BasisSpec, Preset, is_of_units};
     use pulloff_engine::preset::schema::Row;
     use pulloff_engine::preset::shape::is_range;
-    use pulloff_engine::problem::Start;
-    use pulloff_engine::problem::{Control, Groups};
+    use pulloff_engine::problem::{Control, Groups, Start};
     use pulloff_engine::ritz::Grading;
     use std::collections::BTreeSet;
 

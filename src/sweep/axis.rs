@@ -3,10 +3,9 @@
 use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
-use pulloff_engine::preset::groups;
 use pulloff_engine::preset::rows::parameter;
 use pulloff_engine::preset::schema::START_KEYS;
-use pulloff_engine::preset::{Invalid, Preset, Value, model};
+use pulloff_engine::preset::{Invalid, Preset, Value, groups, model};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::exact;
 use pulloff_engine::text::quote;

@@ -1,8 +1,7 @@
 //! A TOML text read entry by entry, each mistake with its line.
 
 use pulloff_engine::preset::read::{Origin, line};
-use pulloff_engine::text::closest;
-use pulloff_engine::text::{quote, sanitize, show_name};
+use pulloff_engine::text::{closest, quote, sanitize, show_name};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 use toml::de::{DeArray, DeTable, DeValue};

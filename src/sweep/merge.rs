@@ -3,7 +3,7 @@
 use super::output::{Existing, OutputError};
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
-use super::side::{self, Side, SideError};
+use super::sidecar::{self, Sidecar, SidecarError};
 use crate::mend::Mend;
 use crate::store::atomic::{Overwrite, WriteError, explained, write_atomically, write_filled};
 use crate::store::stream;
@@ -31,7 +31,7 @@ pub enum MergeError {
         /// The part.
         path: String,
         /// Why not.
-        cause: SideError,
+        cause: SidecarError,
     },
     /// A part of another sweep.
     #[error("{path}: is of another sweep than {first}")]
@@ -169,18 +169,18 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
         let path = show_path(path);
         move |cause| MergeError::NotOurs { path, cause }
     };
-    let (side, text) = Side::read(first).map_err(not_ours(first))?;
-    let layout = side.layout(first, &text).map_err(not_ours(first))?;
-    let of = side.shard().of;
-    let whole = side::of_whole(&text, side.shard());
+    let (sidecar, text) = Sidecar::read(first).map_err(not_ours(first))?;
+    let layout = sidecar.layout(first, &text).map_err(not_ours(first))?;
+    let of = sidecar.shard().of;
+    let whole = sidecar::of_whole(&text, sidecar.shard());
     let mut found: Vec<Option<&PathBuf>> = vec![None; usize::try_from(of).unwrap_or_default()];
     for path in parts {
-        let (other, text) = Side::read(path).map_err(not_ours(path))?;
+        let (other, text) = Sidecar::read(path).map_err(not_ours(path))?;
         let (shard, shown) = (other.shard(), show_path(path));
-        if shard.of != of && other.identity == side.identity {
+        if shard.of != of && other.identity == sidecar.identity {
             return Err(MergeError::OtherDivision { path: shown, found: shard, first: show_path(first), of });
         }
-        if side::of_whole(&text, shard) != whole {
+        if sidecar::of_whole(&text, shard) != whole {
             return Err(MergeError::OtherSweep { path: shown, first: show_path(first) });
         }
         // From 1 to `of`, as a shard is.
@@ -203,16 +203,16 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
     };
     if stream::is_stream(results) {
         // What is written there cannot be taken back: everything is read once before.
-        fill(&mut io::sink(), results, &mut open()?, &layout, side.rows)?;
+        fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
         let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
-        fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, side.rows)?;
-        return Ok(side.rows);
+        fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, sidecar.rows)?;
+        return Ok(sidecar.rows);
     }
     let mut open = open()?;
     let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
-    write_filled(results, overwrite, |file| fill(file, results, &mut open, &layout, side.rows))?;
-    write_atomically(&side::path(results), whole.as_bytes(), Overwrite::Always)?;
-    Ok(side.rows)
+    write_filled(results, overwrite, |file| fill(file, results, &mut open, &layout, sidecar.rows))?;
+    write_atomically(&sidecar::path(results), whole.as_bytes(), Overwrite::Always)?;
+    Ok(sidecar.rows)
 }
 
 /// A few of many.

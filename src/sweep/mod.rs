@@ -10,11 +10,12 @@
 //! | [`axis`] | one axis: its values, or what they are drawn from |
 //! | `document` | TOML entry by entry, each mistake with its line |
 //! | [`quantity`] | the table of quantities |
+//! | `stage` | what quantities are computed from |
 //! | [`measure`](mod@measure) | the wanted quantities of one preset |
 //! | [`fault`] | why a row has no result |
 //! | [`record`] | a row as a line of CSV |
 //! | [`run`](mod@run) | rows on every core, written in order |
-//! | [`side`] | the file beside the results that says what they are of |
+//! | [`sidecar`] | the file beside the results that says what they are of |
 //! | [`output`] | the file of the results: begun, gone on with, appended to |
 //! | [`shard`] | a part of the rows |
 //! | [`merge`](mod@merge) | parts joined |
@@ -31,8 +32,9 @@ pub mod record;
 pub mod results;
 pub mod run;
 pub mod shard;
-pub mod side;
+pub mod sidecar;
 pub mod spec;
+mod stage;
 
 pub use document::SpecError;
 pub use fault::Fault;

@@ -6,7 +6,7 @@
 
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
-use super::side::{self, Side, SideError};
+use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::Spec;
 use crate::mend::Mend;
 use crate::store::atomic::{Overwrite, WriteError, check_growing, explained, write_atomically};
@@ -57,7 +57,7 @@ pub enum OutputError {
         /// The file.
         path: String,
         /// Why not.
-        cause: SideError,
+        cause: SidecarError,
     },
     /// Results of another sweep.
     #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
@@ -155,7 +155,7 @@ impl Output {
         if file.metadata().map_err(failed("look at"))?.len() > 0 {
             check(path, spec, shard)?;
         } else {
-            write_atomically(&side::path(path), side::text(spec, shard).as_bytes(), Overwrite::Always)?;
+            write_atomically(&sidecar::path(path), sidecar::text(spec, shard).as_bytes(), Overwrite::Always)?;
         }
         let mut output = Self::new(file, shown);
         output.scan(spec, shard)?;
@@ -250,12 +250,13 @@ impl Output {
 /// Refuses results that are not of this part of this sweep.
 fn check(path: &Path, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
     let shown = || show_path(path);
-    let (side, text) = Side::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
-    if side.identity != spec.identity() {
-        return Err(OutputError::OtherSweep { path: shown(), what: side::differences(&text, spec) });
+    let (sidecar, text) =
+        Sidecar::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
+    if sidecar.identity != spec.identity() {
+        return Err(OutputError::OtherSweep { path: shown(), what: sidecar::differences(&text, spec) });
     }
-    if side.shard() != shard {
-        return Err(OutputError::OtherShard { path: shown(), found: side.shard(), wanted: shard });
+    if sidecar.shard() != shard {
+        return Err(OutputError::OtherShard { path: shown(), found: sidecar.shard(), wanted: shard });
     }
     Ok(())
 }

@@ -1,10 +1,9 @@
 //! What a sweep can compute of a problem: the table of quantities, one row each.
 
 use super::fault::Fault;
-use super::measure::{Cell, Ground, Line, Path};
+use super::stage::{Cell, CurveMinima, PresetValues, UnloadingPath};
 use pulloff_engine::problem::Control;
-use pulloff_engine::text::closest;
-use pulloff_engine::text::quote;
+use pulloff_engine::text::{closest, quote};
 use pulloff_engine::units::Quantity as Unit;
 
 /// One quantity.
@@ -17,27 +16,27 @@ pub struct Quantity {
     /// What it is, in one line.
     pub meaning: &'static str,
     /// From what it is computed.
-    pub(super) of: Of,
+    pub(super) of: Stage,
 }
 
 /// From what a quantity is computed: each needs all before it but the paths, which need the curve alone.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Of {
+pub(super) enum Stage {
     /// The values of the preset.
-    Ground(fn(&Ground) -> Option<Cell>),
+    Preset(fn(&PresetValues) -> Option<Cell>),
     /// The state at the start: a basis and a search.
-    Start(fn(&super::measure::Start) -> Option<Cell>),
+    Start(fn(&super::stage::StartState) -> Option<Cell>),
     /// The equilibrium curve.
-    Line(fn(&Line) -> Result<Option<Cell>, Fault>),
+    Curve(fn(&CurveMinima) -> Result<Option<Cell>, Fault>),
     /// The limit points of a control on the curve.
     Limits,
     /// The unloading under a control.
-    Path(fn(&Path) -> Option<Cell>),
+    Unloading(fn(&UnloadingPath) -> Option<Cell>),
     /// The states it passes that are not admissible: to find them takes longer than all the rest.
     Passed,
 }
 
-const fn row(name: &'static str, unit: Unit, meaning: &'static str, of: Of) -> Quantity {
+const fn row(name: &'static str, unit: Unit, meaning: &'static str, of: Stage) -> Quantity {
     Quantity { name, unit, meaning, of }
 }
 
@@ -47,91 +46,111 @@ pub static QUANTITIES: &[Quantity] = &[
         "pull_off_force",
         Unit::Force,
         "force at the pull-off, negative: a pull",
-        Of::Path(|path| path.pull_off(|state| state.force)),
+        Stage::Unloading(|path| path.pull_off(|state| state.force)),
     ),
     row(
         "pull_off_approach",
         Unit::Length,
         "approach at the pull-off",
-        Of::Path(|path| path.pull_off(|state| state.approach)),
+        Stage::Unloading(|path| path.pull_off(|state| state.approach)),
     ),
     row(
         "pull_off_radius",
         Unit::Length,
         "contact radius at the pull-off",
-        Of::Path(|path| path.pull_off(|state| state.contact_radius)),
+        Stage::Unloading(|path| path.pull_off(|state| state.contact_radius)),
     ),
-    row("snaps", Unit::Number, "jumps before the pull-off", Of::Path(|path| Some(path.snaps()))),
-    row("snap_loss", Unit::Energy, "energy lost in all of them", Of::Path(|path| Some(path.snap_loss()))),
+    row("snaps", Unit::Number, "jumps before the pull-off", Stage::Unloading(|path| Some(path.snaps()))),
+    row(
+        "snap_loss",
+        Unit::Energy,
+        "energy lost in all of them",
+        Stage::Unloading(|path| Some(path.snap_loss())),
+    ),
     row(
         "pull_off_loss",
         Unit::Energy,
         "energy lost at the pull-off; none under a dead load",
-        Of::Path(Path::pull_off_loss),
+        Stage::Unloading(UnloadingPath::pull_off_loss),
     ),
     row(
         "inadmissible_share",
         Unit::Number,
         "share of the path, by contact radius, on which the next crest would already touch",
-        Of::Passed,
+        Stage::Passed,
     ),
-    row("limit_points", Unit::Number, "limit points of the control on the curve", Of::Limits),
+    row("limit_points", Unit::Number, "limit points of the control on the curve", Stage::Limits),
     row(
         "start_contact_radius",
         Unit::Length,
         "contact radius at the start, the largest of the curve",
-        Of::Start(|start| Some(start.contact_radius())),
+        Stage::Start(|start| Some(start.contact_radius())),
     ),
-    row("least_force", Unit::Force, "smallest force of the curve", Of::Line(|line| line.least(|s| s.force))),
+    row(
+        "least_force",
+        Unit::Force,
+        "smallest force of the curve",
+        Stage::Curve(|line| line.least(|s| s.force)),
+    ),
     row(
         "least_force_radius",
         Unit::Length,
         "contact radius at the smallest force",
-        Of::Line(|line| line.least(|s| s.contact_radius)),
+        Stage::Curve(|line| line.least(|s| s.contact_radius)),
     ),
-    row("least_approach", Unit::Length, "smallest approach of the curve", Of::Line(Line::least_approach)),
+    row(
+        "least_approach",
+        Unit::Length,
+        "smallest approach of the curve",
+        Stage::Curve(CurveMinima::least_approach),
+    ),
     row(
         "enhancement",
         Unit::Number,
         "smallest force over that of the smooth sphere, P_min/P_c in size",
-        Of::Line(Line::enhancement),
+        Stage::Curve(CurveMinima::enhancement),
     ),
-    row("waves", Unit::Number, "waves in the disc at the smallest force, s/lambda", Of::Line(Line::waves)),
+    row(
+        "waves",
+        Unit::Number,
+        "waves in the disc at the smallest force, s/lambda",
+        Stage::Curve(CurveMinima::waves),
+    ),
     row(
         "critical_force",
         Unit::Force,
         "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere",
-        Of::Ground(Ground::critical_force),
+        Stage::Preset(PresetValues::critical_force),
     ),
     row(
         "kesari_lew",
         Unit::Number,
         "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves",
-        Of::Ground(Ground::kesari_lew),
+        Stage::Preset(PresetValues::kesari_lew),
     ),
     row(
         "johnson",
         Unit::Number,
         "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))",
-        Of::Ground(|ground| ground.groups.johnson.map(Cell::Number)),
+        Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number)),
     ),
     row(
         "adhesion",
         Unit::Number,
         "gamma' = 2 pi gamma/(E* R)",
-        Of::Ground(|ground| ground.groups.adhesion.map(Cell::Number)),
+        Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number)),
     ),
     row(
         "connectivity",
         Unit::Number,
         "lambda^2/(A R); above 8.58 the gap rises monotonically",
-        Of::Ground(|ground| ground.groups.connectivity.map(Cell::Number)),
+        Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number)),
     ),
     row(
         "tabor",
         Unit::Number,
         "Tabor's mu, where the range of action is known",
-        Of::Ground(|ground| ground.groups.tabor.map(Cell::Number)),
+        Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number)),
     ),
 ];
 
@@ -186,7 +205,7 @@ impl Quantity {
     /// under these.
     #[must_use]
     pub fn is_of_control(&self) -> bool {
-        matches!(self.of, Of::Limits | Of::Path(_) | Of::Passed)
+        matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed)
     }
 
     /// The columns it can be.

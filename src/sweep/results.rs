@@ -1,9 +1,8 @@
 //! The results of a sweep read again: columns by their names.
 
-use super::side::{ColumnInfo, Side, SideError};
+use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
 use crate::mend::Mend;
-use pulloff_engine::text::closest;
-use pulloff_engine::text::{quote, sanitize, show_path};
+use pulloff_engine::text::{closest, quote, sanitize, show_path};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -14,7 +13,7 @@ use thiserror::Error;
 pub enum ResultsError {
     /// Nothing says what the columns are.
     #[error(transparent)]
-    Side(#[from] SideError),
+    Sidecar(#[from] SidecarError),
     /// There is no such column.
     #[error("{path}: has no column \"{name}\"{hint}")]
     NoColumn {
@@ -38,7 +37,7 @@ pub enum ResultsError {
 impl Mend for ResultsError {
     fn can_be_mended(&self) -> bool {
         match self {
-            Self::Side(error) => error.can_be_mended(),
+            Self::Sidecar(error) => error.can_be_mended(),
             Self::NoColumn { .. } | Self::Table { .. } => true,
         }
     }
@@ -62,9 +61,9 @@ impl Results {
     /// # Errors
     /// The file beside them is missing or none of ours.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
-        let (side, _) = Side::read(path)?;
-        let axes = side.axes();
-        Ok(Self { path: path.to_owned(), columns: side.columns, axes, rows: side.rows })
+        let (sidecar, _) = Sidecar::read(path)?;
+        let axes = sidecar.axes();
+        Ok(Self { path: path.to_owned(), columns: sidecar.columns, axes, rows: sidecar.rows })
     }
 
     /// What stands beside an axis of this column.

@@ -4,6 +4,7 @@
 //! passes nothing. So the same text can be exported to a file.
 
 use super::app::App;
+use super::overlay::Content;
 use super::view;
 use crate::explorer::{Model, Node};
 use pulloff_engine::case::critical_force;
@@ -26,44 +27,6 @@ const LINE: usize = 4096;
 
 /// Digits of a copied value.
 const DIGITS: usize = 10;
-
-/// What can be copied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Content {
-    /// The state of the walker, a quantity a line.
-    State,
-    /// The events shown, with tabs.
-    Events,
-    /// The first chart.
-    Chart,
-    /// The whole screen.
-    Screen,
-}
-
-impl Content {
-    /// All, in the order they are offered.
-    pub const ALL: [Self; 4] = [Self::State, Self::Events, Self::Chart, Self::Screen];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::State => "state",
-            Self::Events => "events",
-            Self::Chart => "chart",
-            Self::Screen => "screen",
-        }
-    }
-
-    /// What it is.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::State => "the walker's state: δ, P, s and what belongs to them",
-            Self::Events => "the events listed, with tabs, as a spreadsheet takes them",
-            Self::Chart => "the first chart as text",
-            Self::Screen => "the whole screen as text",
-        }
-    }
-}
 
 /// Content as text in which nothing steers a terminal.
 pub fn text(app: &App, content: Content) -> String {

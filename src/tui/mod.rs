@@ -5,7 +5,7 @@
 //! | [`terminal`] | taking and giving back the terminal, signals, hang-ups, pacing |
 //! | [`keymap`] | command id → keys |
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
-//! | `late` | what takes so long that it is told of |
+//! | `slow_notice` | notices for slow jobs |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
@@ -21,10 +21,10 @@ pub mod chart;
 pub mod copy;
 pub mod hatch;
 pub mod keymap;
-mod late;
 pub mod layout;
 pub mod look;
 pub mod overlay;
+mod slow_notice;
 pub mod stroke;
 pub mod terminal;
 pub mod theme;
@@ -43,9 +43,9 @@ use crate::fault;
 use crate::store::{Loaded, Store, temporary};
 use app::App;
 use keymap::Keymap;
-use late::Late;
 use look::Look;
 use pulloff_engine::text::sanitize;
+use slow_notice::SlowNotice;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -81,15 +81,15 @@ const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(8
 /// How long quitting waits for a file that is being written: the shell waits too.
 const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 
-/// What is said of a session: its preset, and how much was walked.
-fn told(held: &Held) -> String {
+/// A session in words: its preset, and how much was walked.
+fn describe(held: &Held) -> String {
     let steps = held.summary.steps;
     let steps = if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") };
     format!("{}, {steps}", sanitize(&held.summary.preset_name, 24))
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(start: Start, theme: Theme, keeper: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
+fn begin(start: Start, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
     match start {
         Start::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
@@ -99,17 +99,17 @@ fn begin(start: Start, theme: Theme, keeper: &Autosave) -> (App, Vec<Effect>, Op
         Start::Offer(loaded, held) => {
             let (mut app, effects) = App::new(*loaded, theme);
             let when = ago(held.summary.saved_at);
-            app.offer(&format!("A session was cut off {when} ({}).", told(&held)), held.snapshot.clone());
+            app.offer(&format!("A session was cut off {when} ({}).", describe(&held)), held.snapshot.clone());
             (app, effects, Some(held))
         }
         Start::Resume(held) => {
-            let mut text = format!("resumed {} ({})", held.claim.name(), told(&held));
+            let mut text = format!("resumed {} ({})", held.claim.name(), describe(&held));
             let (mut app, effects) = App::resumed(held.snapshot, theme);
             if let Some((_, note)) = app.model.message.take() {
                 text = format!("{text}; {note}");
             }
             app.model.message = Some((Level::Info, text));
-            keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
+            autosave.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             (app, effects, None)
         }
     }
@@ -126,13 +126,13 @@ pub fn run(
     look: Look,
     settings: Settings,
 ) -> io::Result<ExitCode> {
-    let keeper = Autosave::new(archive);
-    let last = keeper.clone();
+    let autosave = Autosave::new(archive);
+    let last = autosave.clone();
     // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
     terminal::set_last_words(Box::new(move || drop(last.finish(Ended::Dropped, PATIENCE[1]))));
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let teller = inbox.sender();
-    keeper.start(move |text| {
+    autosave.start(move |text| {
         // Refused only when the screen is gone.
         let _ = teller.send(Reply::Notice(text));
     })?;
@@ -141,7 +141,7 @@ pub fn run(
         // Refused only when the screen is gone, and the process with it.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects, mut offered) = begin(start, look.theme(), &keeper);
+    let (mut app, effects, mut offered) = begin(start, look.theme(), &autosave);
     app.mouse = look.mouse;
     app.keymap = settings.keymap;
     if let Some(notice) = settings.notice {
@@ -152,13 +152,13 @@ pub fn run(
         if let Some(held) = offered.take_if(|_| !app.is_offering()) {
             // Answered; a session that nobody wants may be had by another program.
             if app.model.session > 0 {
-                keeper.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
+                autosave.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             }
         }
-        keeper.offer(Snapshot::of(&app.model));
+        autosave.offer(Snapshot::of(&app.model));
     });
     drop(guard);
-    if let Err(reason) = keeper.finish(Ended::Quit, PATIENCE[0]) {
+    if let Err(reason) = autosave.finish(Ended::Quit, PATIENCE[0]) {
         // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
         let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
     }
@@ -188,7 +188,7 @@ fn converse<S: Sink>(
     submit: &dyn Fn(Vec<Effect>),
     keep: &mut dyn FnMut(&App),
 ) {
-    let (mut pictures, mut late) = (Pictures::default(), Late::default());
+    let (mut pictures, mut notice) = (Pictures::default(), SlowNotice::default());
     let mut dirty = true;
     // Whether the first curve is still to come. Its frame does not wait until a slow line has carried the empty one
     // before it: a person has waited for nothing else.
@@ -198,7 +198,7 @@ fn converse<S: Sink>(
     while !app.model.quit {
         // Unchanged: wait until something is late. Changed: only until the next frame is due.
         let due = [Some(display.due()), grace].into_iter().flatten().max();
-        let first = inbox.next(if dirty { due } else { late.due() });
+        let first = inbox.next(if dirty { due } else { notice.due() });
         for incoming in first.into_iter().chain(inbox.pending()) {
             let effects = match incoming {
                 Incoming::Key(key) if keymap::is_suspend(key) => {
@@ -224,7 +224,7 @@ fn converse<S: Sink>(
             dirty = true;
         }
         grace = grace.filter(|_| app.model.walking.is_some_and(|walking| walking.made == 0));
-        dirty |= late.look(app);
+        dirty |= notice.look(app);
         keep(app);
         display.take_mouse(app.mouse);
         if let Some(text) = app.clipboard.take() {

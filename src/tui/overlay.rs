@@ -4,8 +4,7 @@ use crate::explorer::Command;
 use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
-use crate::tui::copy::Content;
-use pulloff_engine::gap::formula::FormulaError;
+use pulloff_engine::gap::formula::{Formula, FormulaError};
 use pulloff_engine::preset::Key;
 use tui_input::Input;
 
@@ -30,6 +29,9 @@ impl Overlay {
         matches!(self, Self::Prompt(prompt) if prompt.waits)
     }
 }
+
+/// Longest line typed or pasted, in characters.
+pub const LONGEST_LINE: usize = 4096;
 
 /// A line to type.
 #[derive(Debug, Clone)]
@@ -102,6 +104,14 @@ impl Prompt {
             error: None,
             waits: false,
             fault: None,
+        }
+    }
+
+    /// What is wrong with the text, if it is a formula.
+    pub fn formula_error(&self) -> Option<FormulaError> {
+        match self.purpose {
+            Purpose::Formula(_) => Formula::parse(self.input.value()).err(),
+            _ => None,
         }
     }
 
@@ -200,4 +210,42 @@ pub struct Confirm {
     pub question: String,
     /// What yes does.
     pub yes: Command,
+}
+
+/// What can be copied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// The state of the walker, a quantity a line.
+    State,
+    /// The events shown, with tabs.
+    Events,
+    /// The first chart.
+    Chart,
+    /// The whole screen.
+    Screen,
+}
+
+impl Content {
+    /// All, in the order they are offered.
+    pub const ALL: [Self; 4] = [Self::State, Self::Events, Self::Chart, Self::Screen];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::State => "state",
+            Self::Events => "events",
+            Self::Chart => "chart",
+            Self::Screen => "screen",
+        }
+    }
+
+    /// What it is.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::State => "the walker's state: δ, P, s and what belongs to them",
+            Self::Events => "the events listed, with tabs, as a spreadsheet takes them",
+            Self::Chart => "the first chart as text",
+            Self::Screen => "the whole screen as text",
+        }
+    }
 }

@@ -74,13 +74,13 @@ pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: 
 
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     match done {
-        Done::Listed(listing) => model.listing = Some(*listing),
+        Done::Listed(listing) => model.question = Some(Question::Preset(listing)),
         Done::Named(names) => model.preset_names = names,
         Done::Deleted(path, listing) => {
             model.tell(Level::Info, format!("deleted {path}; what is on the screen stays"));
-            model.listing = Some(*listing);
+            model.question = Some(Question::Preset(listing));
         }
-        Done::Browsed(folder) => model.folder = Some(*folder),
+        Done::Browsed(folder) => model.question = Some(Question::Profile(folder)),
         Done::Assigned(preset) => {
             model.untried = None;
             return change(model, *preset);

@@ -1,8 +1,8 @@
 //! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
 
-use super::{App, Over};
+use super::state::App;
 use crate::explorer::{Command, Effect, Id, Panel};
-use crate::tui::overlay::{Action, Choose};
+use crate::tui::overlay::{Action, Choose, Overlay};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// So many lines a page.
@@ -44,7 +44,7 @@ impl App {
         match key.code {
             KeyCode::Char('D') | KeyCode::Delete => {
                 if let Some(confirm) = choose.current().and_then(|(_, item)| item.delete.clone()) {
-                    self.overlay = Some(Over::Confirm(*confirm));
+                    self.overlay = Some(Overlay::Confirm(*confirm));
                     return Vec::new();
                 }
             }
@@ -68,7 +68,7 @@ impl App {
             },
         }
         choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-        self.overlay = Some(Over::Choose(choose));
+        self.overlay = Some(Overlay::Choose(choose));
         Vec::new()
     }
 
@@ -84,7 +84,7 @@ impl App {
             }
             Action::Command(command) => self.open_or_ask(command),
             Action::Prompt(prompt) => {
-                self.overlay = Some(Over::Prompt(*prompt));
+                self.overlay = Some(Overlay::Prompt(*prompt));
                 Vec::new()
             }
             Action::Copy(content) => {

@@ -1,6 +1,6 @@
 //! Names and paths asked for: saving, exporting, copying.
 
-use super::App;
+use super::state::App;
 use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::model::Level;
 use crate::explorer::{Effect, Id};
@@ -8,8 +8,8 @@ use crate::figure::Subject;
 use crate::plot::{Chart, Width, svg};
 use crate::print::Format;
 use crate::store::Source;
-use crate::tui::copy::{self, Content};
-use crate::tui::overlay::{Action, Item, Overlay as Over, Prompt, Purpose};
+use crate::tui::copy;
+use crate::tui::overlay::{Action, Content, Item, Overlay as Over, Prompt, Purpose};
 use pulloff_engine::text::sanitize;
 
 impl App {

@@ -1,6 +1,6 @@
 //! What is asked about the gap: its shape by pictures, its formula tried while it is typed, the file of its profile.
 
-use super::App;
+use super::state::App;
 use crate::explorer::data::Folder;
 use crate::explorer::{Command, Effect, update};
 use crate::figure::Figure;
@@ -8,7 +8,6 @@ use crate::figure::shape::undeformed;
 use crate::store::shipped::DATA;
 use crate::tui::overlay::{Action, Item, Prompt, Purpose};
 use pulloff_engine::gap::Shape;
-use pulloff_engine::gap::{formula::Formula, formula::FormulaError};
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::{Key, Value};
 use pulloff_engine::text::show_path;
@@ -25,14 +24,6 @@ const SHAPES: [(&str, &str); 9] = [
     ("formula", "an expression you write"),
     ("profile", "measured rows of a file"),
 ];
-
-/// What is wrong with the text of a formula.
-pub(super) fn fault(prompt: &Prompt) -> Option<FormulaError> {
-    match prompt.purpose {
-        Purpose::Formula(_) => Formula::parse(prompt.input.value()).err(),
-        _ => None,
-    }
-}
 
 fn set(key: &Key, text: impl Into<String>) -> Action {
     Action::Command(Command::Set { key: key.clone(), text: text.into() })
@@ -99,7 +90,7 @@ impl App {
         prompt.error = None;
         prompt.fault = None;
         let Purpose::Formula(key) = &prompt.purpose else { return Vec::new() };
-        if let Some(fault) = fault(prompt) {
+        if let Some(fault) = prompt.formula_error() {
             prompt.refuse(&fault);
             return Vec::new();
         }

@@ -1,6 +1,6 @@
 //! The help: scrolled, and searched with `/`, `n` and `N`.
 
-use super::App;
+use super::state::App;
 use crate::explorer::Id;
 use crate::tui::overlay::{Help, Overlay};
 use crate::tui::view::help::plain;

@@ -1,53 +1,17 @@
 //! The command line: the grammar of scripts, typed on the screen.
 
-use super::{App, LINE};
+use super::state::App;
 use crate::explorer::command::ROWS;
 use crate::explorer::script::{Completion, complete, parse};
 use crate::explorer::{Command, Effect, Id};
-use crate::tui::overlay::{Overlay, Prompt, Purpose};
+use crate::tui::overlay::{LONGEST_LINE, Overlay, Prompt, Purpose};
 use crossterm::event::{Event, KeyCode, KeyEvent};
 use pulloff_engine::text::sanitize;
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// Most lines remembered.
-const MOST: usize = 100;
 /// What stands below an empty line.
 const NOTE: &str = "a command and what it takes; Tab completes, Up and Down bring lines back";
-
-/// The lines typed so far.
-#[derive(Debug, Clone, Default)]
-pub struct Typed {
-    /// The oldest first.
-    lines: Vec<String>,
-    /// The line shown; their number where it is a new one.
-    at: usize,
-    /// The new one, while an old one is shown.
-    draft: String,
-}
-
-impl Typed {
-    fn remember(&mut self, line: &str) {
-        self.lines.retain(|old| old != line);
-        self.lines.push(line.to_owned());
-        if self.lines.len() > MOST {
-            self.lines.remove(0);
-        }
-    }
-
-    /// The line before `now`, or the one after it.
-    fn recall(&mut self, older: bool, now: &str) -> Option<String> {
-        if self.at == self.lines.len() {
-            now.clone_into(&mut self.draft);
-        }
-        let at = if older { self.at.checked_sub(1)? } else { self.at + 1 };
-        if at > self.lines.len() {
-            return None;
-        }
-        self.at = at;
-        Some(self.lines.get(at).unwrap_or(&self.draft).clone())
-    }
-}
 
 impl App {
     pub(super) fn ask_line(&mut self) -> Vec<Effect> {
@@ -69,7 +33,8 @@ impl App {
                 }
             }
             _ if self.closes(key) => return Vec::new(),
-            _ if prompt.input.value().chars().count() >= LINE && matches!(key.code, KeyCode::Char(_)) => {}
+            _ if prompt.input.value().chars().count() >= LONGEST_LINE
+                && matches!(key.code, KeyCode::Char(_)) => {}
             _ => {
                 let mut input = prompt.input.clone();
                 if input.handle_event(&Event::Key(key)).is_some_and(|change| change.value) {

@@ -9,11 +9,12 @@
 //!
 //! A place outside of the screen, or of what is drawn, does nothing. A question is answered by keys alone.
 
-use super::{App, Over};
+use super::state::App;
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id, Panel, View};
 use crate::figure::{Subject, nearest};
 use crate::tui::layout::Regions;
+use crate::tui::overlay::Overlay;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
 use crate::tui::view::{charts, events, overlays, places, problem};
 use ratatui::layout::{Position, Rect};
@@ -53,10 +54,10 @@ impl App {
         match (&self.overlay, up) {
             (None, Some(up)) => self.wheel(at, up),
             (None, None) => self.click(at),
-            (Some(Over::Choose(_) | Over::Help(_)), Some(up)) => {
+            (Some(Overlay::Choose(_) | Overlay::Help(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
             }
-            (Some(Over::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
+            (Some(Overlay::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
                 Some(line) if line == choose.selected => self.key(KeyCode::Enter.into()),
                 Some(line) => {
                     self.select_item(line);
@@ -70,10 +71,10 @@ impl App {
 
     /// Another line of the list that lies over the screen.
     fn select_item(&mut self, line: usize) {
-        let Some(Over::Choose(mut choose)) = self.overlay.take() else { return };
+        let Some(Overlay::Choose(mut choose)) = self.overlay.take() else { return };
         choose.selected = line;
         choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-        self.overlay = Some(Over::Choose(choose));
+        self.overlay = Some(Overlay::Choose(choose));
     }
 
     fn pick(&mut self, panel: Panel, line: Option<usize>) -> Vec<Effect> {

@@ -1,6 +1,6 @@
 //! Sessions that go on, and the branches of the walk.
 
-use super::App;
+use super::state::App;
 use crate::explorer::branches::branches;
 use crate::explorer::session::Snapshot;
 use crate::explorer::{Command, Effect, pins};

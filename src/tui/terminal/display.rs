@@ -15,10 +15,9 @@ use ratatui::{
     backend::{Backend, ClearType},
 };
 
-use super::{
-    end::{HUNG_UP, end},
-    screen::{Screen, Sink, Written},
-};
+use super::end::{HUNG_UP, end};
+use super::screen::{Screen, Written};
+use super::sink::Sink;
 
 /// How frames follow each other. The first one after a pause never waits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,11 +67,11 @@ pub struct Display<S: Sink + 'static> {
 }
 
 impl<S: Sink> Display<S> {
-    pub(in crate::tui) fn new(line: &'static S) -> io::Result<Self> {
+    pub fn new(line: &'static S) -> io::Result<Self> {
         Self::paced(line, Pace::default())
     }
 
-    pub(in crate::tui) fn paced(line: &'static S, pace: Pace) -> io::Result<Self> {
+    pub fn paced(line: &'static S, pace: Pace) -> io::Result<Self> {
         Ok(Self { terminal: Terminal::new(Screen::new(line))?, line, pace, due: Instant::now() })
     }
 

@@ -16,7 +16,8 @@ use std::{
     time::Duration,
 };
 
-use super::{line::Line, report};
+use super::report;
+use super::tty::Tty;
 use crate::store::temporary;
 
 /// The status after a hang-up, the same as after SIGHUP.
@@ -92,8 +93,8 @@ pub(super) fn install_panic_hook() {
 
 /// Gives the terminal back, if it was ever taken.
 pub(super) fn restore() {
-    if let Some(line) = Line::get() {
-        line.give_back();
+    if let Some(tty) = Tty::get() {
+        tty.give_back();
     }
 }
 
@@ -149,8 +150,8 @@ fn describe(info: &PanicHookInfo<'_>) -> String {
 
 /// Standard error, without being held up by a terminal that nobody reads.
 fn say(text: &str) {
-    match Line::get() {
-        Some(line) if io::stderr().is_terminal() => drop(line.send(text.as_bytes(), MESSAGE_PATIENCE)),
+    match Tty::get() {
+        Some(tty) if io::stderr().is_terminal() => drop(tty.send(text.as_bytes(), MESSAGE_PATIENCE)),
         _ => drop(io::stderr().write_all(text.as_bytes())),
     }
 }

@@ -2,15 +2,12 @@
 
 use std::io;
 
-use super::{
-    display::Display,
-    end::{self, install_panic_hook},
-    hangup,
-    input::Inbox,
-    line::Line,
-    screen::Sink,
-    signals,
-};
+use super::display::Display;
+use super::end::{self, install_panic_hook};
+use super::input::Inbox;
+use super::sink::Sink;
+use super::tty::Tty;
+use super::{hangup, signals};
 
 /// Gives the terminal back when dropped.
 ///
@@ -35,17 +32,17 @@ impl Drop for Guard {
 /// If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
 /// cannot be started. The terminal is then as it was.
 pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl Sink>, Inbox<T>)> {
-    let line = Line::open()?;
+    let tty = Tty::open()?;
     // Before the first mode is set, so that no moment is without them.
     install_panic_hook();
     let signals = signals::catch()?;
     let guard = Guard(());
-    line.take()?;
+    tty.take()?;
     let inbox = Inbox::new();
-    signals::serve(signals, line, inbox.notifier())?;
-    hangup::watch(line)?;
-    inbox.read_terminal(line)?;
-    Ok((guard, Display::new(line)?, inbox))
+    signals::serve(signals, tty, inbox.notifier())?;
+    hangup::watch(tty)?;
+    inbox.read_terminal(tty)?;
+    Ok((guard, Display::new(tty)?, inbox))
 }
 
 /// Gives the terminal back now, from any thread, any number of times; takes less than 200 ms, whatever state the

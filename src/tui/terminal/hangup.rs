@@ -5,15 +5,13 @@
 
 use std::{io, thread};
 
-use super::{
-    end::{HUNG_UP, end},
-    line::Line,
-};
+use super::end::{HUNG_UP, end};
+use super::tty::Tty;
 
 /// Starts the watch; it sleeps until there is a hang-up.
-pub(super) fn watch(line: &'static Line) -> io::Result<()> {
+pub(super) fn watch(tty: &'static Tty) -> io::Result<()> {
     thread::Builder::new().name("hang-up".to_owned()).spawn(|| {
-        if line.wait_for_hang_up().is_ok() {
+        if tty.wait_for_hang_up().is_ok() {
             end(HUNG_UP);
         }
     })?;

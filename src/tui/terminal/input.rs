@@ -13,10 +13,8 @@ use std::{
 
 use crossterm::event::{self, Event, KeyEvent, KeyEventKind, MouseButton, MouseEvent, MouseEventKind};
 
-use super::{
-    end::{HUNG_UP, end},
-    line::Line,
-};
+use super::end::{HUNG_UP, end};
+use super::tty::Tty;
 use crate::fault;
 
 /// Messages that may wait. More keys than this wait in the terminal, more replies in the worker.
@@ -63,7 +61,7 @@ pub struct Inbox<T> {
 }
 
 impl<T: Send + 'static> Inbox<T> {
-    pub(in crate::tui) fn new() -> Self {
+    pub fn new() -> Self {
         let (sender, receiver) = sync_channel(CAPACITY);
         Self { receiver, sender, notices: Arc::default() }
     }
@@ -112,7 +110,7 @@ impl<T: Send + 'static> Inbox<T> {
 
     /// What stands for the thread that reads the terminal in a test.
     #[cfg(test)]
-    pub(in crate::tui) fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
+    pub fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
         let sender = self.sender.clone();
         move |incoming| sender.send(Post::Message(incoming)).unwrap()
     }
@@ -128,7 +126,7 @@ impl<T: Send + 'static> Inbox<T> {
     }
 
     /// Starts the thread that reads the terminal.
-    pub(super) fn read_terminal(&self, line: &'static Line) -> io::Result<()> {
+    pub(super) fn read_terminal(&self, line: &'static Tty) -> io::Result<()> {
         let sender = self.sender.clone();
         thread::Builder::new().name("input".to_owned()).spawn(move || {
             loop {

@@ -3,7 +3,8 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `refuse` | whether there is a terminal to draw on at all |
-//! | `line` | the terminal itself: the modes switched on, the string that undoes them, writing without being stuck |
+//! | `tty` | the terminal itself: its modes, the string that undoes them, writing without being stuck |
+//! | `sink` | where frames go |
 //! | `guard` | [`enter`]: takes the terminal, starts the threads, gives it back when dropped |
 //! | `end` | the one way out for signals, hang-ups and panics |
 //! | `report` | the file that a panic leaves behind |
@@ -11,7 +12,7 @@
 //! | `hangup` | notices that the terminal has gone away |
 //! | `input` | the [`Inbox`]: keys, pastes, sizes and the program's own messages in one queue |
 //! | `screen` | the ratatui backend: a frame is one write, nothing is asked of the terminal |
-//! | `pen` | cells as bytes, as few as a terminal needs |
+//! | `cell_encoder` | cells as bytes, as few as a terminal needs |
 //! | `display` | [`Display`]: frames at a pace the line can carry |
 //!
 //! # Threads
@@ -52,17 +53,18 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod cell_encoder;
 mod display;
 mod end;
 mod guard;
 mod hangup;
 mod input;
-mod line;
-mod pen;
 mod refuse;
 mod report;
 mod screen;
 mod signals;
+mod sink;
+mod tty;
 
 pub use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 pub use display::{Display, Pace};
@@ -70,5 +72,6 @@ pub use end::set_last_words;
 pub use guard::{Guard, enter, restore};
 pub use input::{Inbox, Incoming, Sender};
 pub use refuse::{refuse_reason, utf8_locale};
-pub use screen::{Screen, Sink};
+pub use screen::Screen;
 pub use signals::suspend;
+pub use sink::Sink;

@@ -20,31 +20,9 @@ use ratatui::{
     layout::{Position, Size},
 };
 
-use super::{
-    end::{HUNG_UP, end},
-    pen::Pen,
-};
-
-/// Where frames go.
-pub trait Sink {
-    /// Writes a whole frame, waiting for room as long as it takes.
-    ///
-    /// # Errors
-    /// The terminal has gone away.
-    fn write_frame(&self, frame: &[u8]) -> io::Result<()>;
-
-    /// Takes the mouse from the terminal or leaves it to it, now and whenever the terminal is taken again.
-    ///
-    /// # Errors
-    /// The terminal has gone away.
-    fn take_mouse(&self, wanted: bool) -> io::Result<()>;
-
-    /// Columns and rows.
-    ///
-    /// # Errors
-    /// The terminal has gone away.
-    fn size(&self) -> io::Result<(u16, u16)>;
-}
+use super::cell_encoder::CellEncoder;
+use super::end::{HUNG_UP, end};
+use super::sink::Sink;
 
 /// The terminal as ratatui sees it.
 pub struct Screen<S: Sink + 'static> {
@@ -102,11 +80,11 @@ impl<S: Sink> Backend for Screen<S> {
             return Ok(());
         }
         self.cursor_at = None;
-        let mut pen = Pen::new(&mut self.frame);
+        let mut encoder = CellEncoder::new(&mut self.frame);
         for (x, y, cell) in content {
-            pen.write(Position::new(x, y), cell);
+            encoder.write(Position::new(x, y), cell);
         }
-        pen.end();
+        encoder.end();
         Ok(())
     }
 

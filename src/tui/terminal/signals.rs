@@ -15,11 +15,9 @@ use signal_hook::{
     low_level::raise,
 };
 
-use super::{
-    end::{HUNG_UP, end, restore},
-    input::Notifier,
-    line::Line,
-};
+use super::end::{HUNG_UP, end, restore};
+use super::input::Notifier;
+use super::tty::Tty;
 use crate::fault;
 
 /// Those that end the program.
@@ -42,7 +40,7 @@ pub(super) fn catch() -> io::Result<Signals> {
 }
 
 /// Starts the thread that answers the signals.
-pub(super) fn serve(mut signals: Signals, line: &'static Line, notifier: Notifier) -> io::Result<()> {
+pub(super) fn serve(mut signals: Signals, tty: &'static Tty, notifier: Notifier) -> io::Result<()> {
     thread::Builder::new().name("signals".to_owned()).spawn(move || {
         loop {
             // Together, since what arrived while stopped arrives at once: an end before all, and a continue undoes a stop.
@@ -55,9 +53,9 @@ pub(super) fn serve(mut signals: Signals, line: &'static Line, notifier: Notifie
                 notifier.resized();
             }
             if batch.contains(&SIGCONT) {
-                go_on(line, &notifier);
+                go_on(tty, &notifier);
             } else if batch.contains(&SIGTSTP) {
-                stop(line);
+                stop(tty);
             }
         }
     })?;
@@ -65,8 +63,8 @@ pub(super) fn serve(mut signals: Signals, line: &'static Line, notifier: Notifie
 }
 
 /// Gives the terminal back and stops the whole job.
-fn stop(line: &Line) {
-    if line.is_taken() && has_shell() {
+fn stop(tty: &Tty) {
+    if tty.is_taken() && has_shell() {
         restore();
         // The group, since a program that started us (`cargo run`) is part of the job. Not SIGTSTP: we catch it.
         let _ = kill_current_process_group(Signal::STOP);
@@ -74,19 +72,19 @@ fn stop(line: &Line) {
 }
 
 /// Takes the terminal again and has everything drawn anew.
-fn go_on(line: &Line, notifier: &Notifier) {
+fn go_on(tty: &Tty, notifier: &Notifier) {
     let until = Instant::now() + FOREGROUND_PATIENCE;
-    while !line.in_foreground() {
+    while !tty.in_foreground() {
         if Instant::now() > until {
             // Continued in the background (`bg`): nothing can be shown there, wait for `fg`.
-            if !line.is_taken() {
+            if !tty.is_taken() {
                 let _ = kill_current_process_group(Signal::STOP);
             }
             return;
         }
         thread::sleep(Duration::from_millis(10));
     }
-    if line.take().is_err() {
+    if tty.take().is_err() {
         end(HUNG_UP);
     }
     notifier.resumed();

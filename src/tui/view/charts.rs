@@ -1,21 +1,16 @@
 //! The views: figures given their strokes, letters and colours.
 
-use super::is_selected;
 use super::legend::legend;
+use super::marks::{letter, look};
+use super::parts::is_selected;
 use crate::explorer::{Id, Panel, View, Window};
-use crate::figure::{Bounds, Figure, Mark as Placed, Role, Sign, Subject, nearest};
+use crate::figure::{Bounds, Figure, Mark as Placed, Sign, Subject, nearest};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Mark, Series};
-use crate::tui::stroke::Stroke;
 use crate::tui::theme::{Styles, Theme};
-use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
-
-/// The digits of the pinned curves, by number.
-const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
 
 /// Draws one view; the first one has the cross-hair and the keys.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
@@ -94,46 +89,6 @@ fn cross_hair(subject: &Subject<'_>, view: View, app: &App, chart: &mut Chart) {
     chart.cross = app.model.cross.map(|share| chart.bounds.at(share));
     if let Some(nearest) = chart.cross.and_then(|at| nearest(subject, view, &chart.bounds, at)) {
         chart.marks.push(Mark { at: nearest.at, letter: "*", style: app.theme.styles().nearest });
-    }
-}
-
-/// The stroke and the style of a line.
-pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
-    match role {
-        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
-        Role::Branch => (Stroke::Lettered("b"), styles.smooth),
-        Role::Envelope => (Stroke::LongDashed, styles.exact),
-        Role::Exact => (Stroke::Dashed, styles.exact),
-        Role::Pin(number) => {
-            let at = number.saturating_sub(1) % DIGITS.len();
-            (Stroke::Lettered(DIGITS[at]), styles.pins[at])
-        }
-        Role::Unstable => (Stroke::Dotted, styles.unstable),
-        Role::Stable | Role::Body => (Stroke::Solid, styles.stable),
-        Role::Inadmissible => (Stroke::Repeated("!"), styles.aid),
-        Role::Contact => (Stroke::Marked("c"), styles.walk),
-        Role::Walk => (Stroke::Marked("w"), styles.walk),
-        Role::Barrier => (Stroke::DashDotted, styles.aid),
-        Role::Device => (Stroke::ShortDashed, styles.aid),
-        Role::Jump => (Stroke::Marked("j"), styles.jump),
-    }
-}
-
-/// The letter of a sign.
-pub fn letter(sign: Sign) -> &'static str {
-    match sign {
-        Sign::OtherLimit(Control::Force) => "p",
-        Sign::OtherLimit(_) => "d",
-        Sign::Limit => "v",
-        Sign::PullOff => "X",
-        Sign::Landing => "L",
-        Sign::Crest => "^",
-        Sign::Edge => "|",
-        Sign::Minimum => "m",
-        Sign::Maximum => "M",
-        Sign::Barrier => "B",
-        Sign::Stray | Sign::Walker => "@",
-        Sign::Value => "o",
     }
 }
 

@@ -1,6 +1,6 @@
 //! The instabilities, one line each, and behind those of the curve its inadmissible parts.
 
-use super::{is_selected, panel};
+use super::parts::{is_selected, panel};
 use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;

@@ -1,6 +1,6 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
-use super::fitted;
+use super::parts::fitted;
 use crate::explorer::{Axes, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;

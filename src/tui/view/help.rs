@@ -1,6 +1,6 @@
 //! The help, read from the one table of commands.
 
-use super::panel;
+use super::parts::panel;
 use crate::explorer::Model;
 use crate::explorer::command::ROWS;
 use crate::tui::app::App;

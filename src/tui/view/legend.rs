@@ -1,6 +1,6 @@
 //! What the lines and letters of a figure mean, in as many words as there is room for; and the cross-hair in words.
 
-use super::charts::{letter, look};
+use super::marks::{letter, look};
 use crate::explorer::Model;
 use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
 use crate::tui::theme::{Palette, Theme};

@@ -5,23 +5,23 @@ pub mod events;
 pub mod header;
 pub mod help;
 pub mod legend;
+mod marks;
 pub mod overlays;
+mod parts;
 pub mod pictures;
 pub mod problem;
 pub mod status;
 pub mod walker;
 
 use super::app::App;
-use super::keymap::Keymap;
 use super::layout::{Regions, SMALLEST, regions};
 use super::overlay::Overlay;
-use super::theme::Theme;
-use crate::explorer::{Id, Panel};
+use crate::explorer::Panel;
 use ratatui::Frame;
 use ratatui::layout::Rect;
-use ratatui::text::{Line, Span};
-use ratatui::widgets::{Block, Borders};
+use ratatui::text::Line;
 
+use parts::is_selected;
 pub use pictures::Pictures;
 use pictures::What;
 
@@ -81,40 +81,6 @@ fn draw_kept(frame: &mut Frame<'_>, app: &App, regions: &Regions, pictures: &mut
 pub fn places(app: &App, area: Rect) -> Option<Regions> {
     let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
     regions(area, app.model.view, events)
-}
-
-/// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
-fn side_panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
-    panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
-}
-
-/// A panel's frame with its title.
-fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
-    Block::bordered()
-        .border_set(theme.border())
-        .border_style(theme.frame(selected))
-        .title(Span::styled(theme.text(title), theme.title(selected)))
-}
-
-/// Whether a panel is the selected one, and nothing lies over it.
-fn is_selected(app: &App, panel: Panel) -> bool {
-    app.model.panel == panel && app.overlay.is_none()
-}
-
-/// `text` as far as there is room for it; where it is cut, or more is to be told, the key of the help, which has all.
-fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> String {
-    if more.is_empty() && text.chars().count() <= room {
-        return text.to_owned();
-    }
-    let rest = if more.is_empty() { "...".to_owned() } else { format!("... {more}") };
-    let rest = format!("{rest} {}: all", keymap.label(Id::Help));
-    let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
-    format!("{}{rest}", kept.trim_end())
-}
-
-/// `key value` with the key dim.
-fn pair(theme: Theme, key: &str, value: &str) -> [Span<'static>; 2] {
-    [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(value))]
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Prompts, choices and questions.
 
-use super::{charts, panel};
+use super::charts;
+use super::parts::panel;
 use crate::explorer::Window;
 use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};

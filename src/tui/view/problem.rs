@@ -1,6 +1,6 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
-use super::{is_selected, pair, side_panel};
+use super::parts::{is_selected, pair, side_panel};
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;

@@ -1,7 +1,7 @@
 //! What the state is and which key is next; and the keys.
 
-use super::fitted;
 use super::legend::reading;
+use super::parts::fitted;
 use crate::explorer::Id;
 use crate::explorer::availability::is_available;
 use crate::explorer::command::row_of;

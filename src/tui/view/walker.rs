@@ -1,6 +1,6 @@
 //! The state of the walker.
 
-use super::{is_selected, pair, side_panel};
+use super::parts::{is_selected, pair, side_panel};
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;

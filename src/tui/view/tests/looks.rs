@@ -4,7 +4,7 @@ use super::Screen;
 use crate::explorer::View;
 use crate::figure::{Role, Subject};
 use crate::tui::theme::{Charts, Palette, Theme};
-use crate::tui::view::charts::{letter, look};
+use crate::tui::view::marks::{letter, look};
 use ratatui::style::Color;
 use std::collections::HashMap;
 

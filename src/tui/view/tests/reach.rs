@@ -3,7 +3,8 @@
 use super::{PLAIN, Screen};
 use crate::explorer::{Panel, View, Window};
 use crate::store::{Overwrite, Store};
-use crate::tui::copy::{Content, text};
+use crate::tui::copy::text;
+use crate::tui::overlay::Content;
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
 

@@ -27,7 +27,7 @@ use rustix::{
     },
 };
 
-use super::screen::Sink;
+use super::sink::Sink;
 
 /// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
@@ -52,10 +52,10 @@ const TAKE_PATIENCE: Duration = Duration::from_secs(1);
 /// A size of nothing means that nobody knows it (serial lines); then it is taken to be this, as elsewhere.
 const USUAL_SIZE: (u16, u16) = (80, 24);
 
-static LINE: OnceLock<Line> = OnceLock::new();
+static LINE: OnceLock<Tty> = OnceLock::new();
 
 /// The terminal of this process.
-pub(super) struct Line {
+pub(super) struct Tty {
     fd: OwnedFd,
     /// The modes before the terminal was taken.
     before: Mutex<Termios>,
@@ -67,7 +67,7 @@ pub(super) struct Line {
     turn: Mutex<()>,
 }
 
-impl Line {
+impl Tty {
     /// Opens the terminal once for the whole process; nothing is changed yet.
     pub(super) fn open() -> io::Result<&'static Self> {
         let fd = reopen()?;
@@ -213,7 +213,7 @@ impl Line {
     }
 }
 
-impl Sink for Line {
+impl Sink for Tty {
     // If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
         let hands = self.hands.load(Ordering::SeqCst);
@@ -250,7 +250,7 @@ impl Sink for Line {
     }
 }
 
-/// What a count of [`Line::hands`] means.
+/// What a count of [`Tty::hands`] means.
 fn is_ours(hands: u32) -> bool {
     !hands.is_multiple_of(2)
 }

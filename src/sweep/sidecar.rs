@@ -23,7 +23,7 @@ const ENDING: &str = ".spec.toml";
 
 /// Why the file beside some results says nothing.
 #[derive(Debug, Error)]
-pub enum SideError {
+pub enum SidecarError {
     /// It cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -37,7 +37,7 @@ pub enum SideError {
     },
 }
 
-impl Mend for SideError {
+impl Mend for SidecarError {
     fn can_be_mended(&self) -> bool {
         match self {
             Self::File(error) => error.can_be_mended(),
@@ -61,7 +61,7 @@ pub struct ColumnInfo {
 
 /// What the file says.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-pub struct Side {
+pub struct Sidecar {
     /// The hash of the sweep.
     pub identity: String,
     /// The part, as text.
@@ -226,30 +226,31 @@ impl ColumnInfo {
     }
 }
 
-impl Side {
+impl Sidecar {
     /// Reads the file beside `results`, with its text.
     ///
     /// # Errors
     /// It is not there, or none of ours.
-    pub fn read(results: &Path) -> Result<(Self, String), SideError> {
+    pub fn read(results: &Path) -> Result<(Self, String), SidecarError> {
         let path = path(results);
         // Every value of every axis stands in it.
         let (text, _) = read_text(&path, 4 * file::LARGEST)?;
-        let unknown = |what: &str| SideError::Unknown { path: show_path(&path), what: sanitize(what, 120) };
-        let side: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
-        side.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
-        Ok((side, text))
+        let unknown =
+            |what: &str| SidecarError::Unknown { path: show_path(&path), what: sanitize(what, 120) };
+        let sidecar: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
+        sidecar.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
+        Ok((sidecar, text))
     }
 
     /// The layout of the results beside `text`, that of this file.
     ///
     /// # Errors
     /// The sweep in it is none of ours.
-    pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SideError> {
+    pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SidecarError> {
         let path = path(results);
         let document = Document { name: &path.to_string_lossy(), text };
         let (axes, design) = of_canonical(document)
-            .map_err(|error| SideError::Unknown { path: error.origin.to_string(), what: error.what })?;
+            .map_err(|error| SidecarError::Unknown { path: error.origin.to_string(), what: error.what })?;
         let columns = self.columns.iter().map(|column| column.name.clone()).collect();
         Ok(Layout { axes, design, columns })
     }

@@ -10,12 +10,12 @@ const SHORT: Duration = Duration::from_millis(100);
 
 /// Work beside the curve and the walk, with the time when it was first seen.
 #[derive(Debug, Default)]
-pub(super) struct Late {
+pub(super) struct SlowNotice {
     since: Option<(BackgroundJob, Instant)>,
     is_told: bool,
 }
 
-impl Late {
+impl SlowNotice {
     /// Looks at what is under way, and says whether `app` has something else to show of it.
     pub(super) fn look(&mut self, app: &mut App) -> bool {
         let now = Instant::now();
@@ -38,7 +38,7 @@ impl Late {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::slow_notice::*;
     use crate::explorer::pins::Pins;
     use crate::store::Store;
     use crate::tui::theme::Theme;
@@ -48,7 +48,7 @@ mod tests {
         let store = Store::at("/nowhere", &[]);
         let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
         let (mut app, _) = App::new(loaded, Theme::default());
-        let mut late = Late::default();
+        let mut late = SlowNotice::default();
         assert!(!late.look(&mut app) && late.due().is_none());
         app.model.pins = Pins::awaiting([(1, app.model.preset.clone()), (2, app.model.preset.clone())]);
         while !late.look(&mut app) {

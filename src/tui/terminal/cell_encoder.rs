@@ -27,7 +27,7 @@ const PLAIN: Ink = Ink { fg: Color::Reset, bg: Color::Reset, modifier: Modifier:
 const SEEN_ON_BLANKS: Modifier = Modifier::REVERSED.union(Modifier::UNDERLINED).union(Modifier::CROSSED_OUT);
 
 /// What the terminal is writing with, for the length of one frame, which begins and ends with a plain look.
-pub(super) struct Pen<'a> {
+pub(super) struct CellEncoder<'a> {
     frame: &'a mut Vec<u8>,
     ink: Ink,
     /// Where the next character goes, if that is known,
@@ -36,8 +36,8 @@ pub(super) struct Pen<'a> {
     is_sure: bool,
 }
 
-impl<'a> Pen<'a> {
-    /// A pen that is nobody knows where.
+impl<'a> CellEncoder<'a> {
+    /// A encoder that is nobody knows where.
     pub(super) fn new(frame: &'a mut Vec<u8>) -> Self {
         Self { frame, ink: PLAIN, at: None, is_sure: false }
     }
@@ -186,7 +186,7 @@ fn width(symbol: &str) -> Width {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::super::cell_encoder::*;
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
     use ratatui::style::Style;
@@ -204,11 +204,11 @@ mod tests {
 
     fn frame(old: &Buffer, new: &Buffer) -> Vec<u8> {
         let mut bytes = Vec::new();
-        let mut pen = Pen::new(&mut bytes);
+        let mut encoder = CellEncoder::new(&mut bytes);
         for (x, y, cell) in old.diff(new) {
-            pen.write(Position::new(x, y), cell);
+            encoder.write(Position::new(x, y), cell);
         }
-        pen.end();
+        encoder.end();
         bytes
     }
 
