@@ -51,7 +51,6 @@ pub const LOOK: [(&str, &[&str]); 4] = [
 /// The keys of one command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Binding {
-    /// The command.
     pub id: Id,
     /// Its keys as written; none takes away those it has.
     pub keys: Vec<String>,
@@ -71,7 +70,6 @@ pub struct Mistake {
 /// Why there are no settings.
 #[derive(Debug, Error)]
 pub enum ConfigError {
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
     /// Lines of it are wrong; at least one.
@@ -79,7 +77,6 @@ pub enum ConfigError {
     Mistakes {
         /// The file, safe to show.
         name: String,
-        /// What is wrong.
         mistakes: Vec<Mistake>,
     },
 }
@@ -117,18 +114,13 @@ pub fn path() -> Option<PathBuf> {
 }
 
 /// The settings of a file.
-///
-/// # Errors
-/// It cannot be read, or lines of it are wrong.
+/// Errors: It cannot be read, or lines of it are wrong.
 pub fn load(path: &Path) -> Result<Config, ConfigError> {
     let (text, _) = read_text(path, LARGEST)?;
     read(&show_path(path), &text)
 }
 
 /// The same, where a file that is not there has none.
-///
-/// # Errors
-/// As [`load`].
 pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
     match load(path) {
         Err(ConfigError::File(FileError::Io { cause, .. }))
@@ -141,9 +133,6 @@ pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
 }
 
 /// The settings of a text; `name` names it in messages.
-///
-/// # Errors
-/// Every line that is wrong.
 pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
     let mut config = Config { name: name.to_owned(), ..Config::default() };
     let mut sheet = Sheet { text, mistakes: Vec::new() };

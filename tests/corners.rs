@@ -74,7 +74,7 @@ fn a_limit_point_sits_on_the_corner() {
 /// The radii of a walk by hand from the start inward, or with `back` from far inside outward.
 fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
     let curve = Arc::new(CurveData::compute(preset, |_| true).unwrap());
-    let drawn = &curve.sweep.curve;
+    let drawn = &curve.base.curve;
     let corner = drawn.corners()[0];
     let from = if back { 0.94 * corner } else { 1.3 * corner };
     let request = Request {

@@ -39,16 +39,16 @@ fn assert_as_computed_afresh(session: &Session) {
 #[test]
 fn turning_the_stiffness_moves_limit_points_and_events_and_sweeps_nothing_again() {
     let mut session = on_control_knob("wavy-sphere");
-    let sweep = Arc::clone(&curve(&session).sweep);
+    let base = Arc::clone(&curve(&session).base);
     let displacement = radii(&curve(&session));
     let mut ends = Vec::new();
     let mut limits = Vec::new();
     for turn in 0..60 {
         let effects = update(&mut session.model, Id::MuchLess.into());
         let [Effect::Curve(wish)] = effects.as_slice() else { panic!("{effects:?}") };
-        assert!(wish.sweep.as_ref().is_some_and(|known| Arc::ptr_eq(known, &sweep)));
+        assert!(wish.base.as_ref().is_some_and(|known| Arc::ptr_eq(known, &base)));
         session.driver.settle(&mut session.model, effects);
-        assert!(Arc::ptr_eq(&curve(&session).sweep, &sweep));
+        assert!(Arc::ptr_eq(&curve(&session).base, &base));
         assert!(!session.model.is_computing());
         if turn % 11 == 0 {
             assert_as_computed_afresh(&session);
@@ -66,9 +66,9 @@ fn turning_the_stiffness_moves_limit_points_and_events_and_sweeps_nothing_again(
     assert!(!near(&limits[limits.len() / 2], &displacement));
     assert_eq!(ends.last(), Some(&Control::Force));
     assert!(near(&limits[limits.len() - 2], limits.last().unwrap()));
-    // Another problem is another sweep, whatever was turned before.
+    // Another problem is another curve, whatever was turned before.
     session.set("gap.amplitude", "0.003");
-    assert!(!Arc::ptr_eq(&curve(&session).sweep, &sweep));
+    assert!(!Arc::ptr_eq(&curve(&session).base, &base));
     assert_as_computed_afresh(&session);
 }
 

@@ -15,10 +15,10 @@ use session::Session;
 
 /// The folder whose profiles are offered.
 fn listed_folder(session: &mut Session) -> Folder {
-    match session.model.question.take() {
-        Some(Question::Profile(folder)) => *folder,
-        other => panic!("{other:?}"),
-    }
+    let Some(Question::Profile(folder)) = session.model.question.take() else {
+        unreachable!("no folder is offered")
+    };
+    *folder
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             id: 0,
             action: Action::Jump,
             curve: Arc::clone(&curve),
-            from: curve.sweep.curve.equilibrium.explicit(limit.contact_radius),
+            from: curve.base.curve.equilibrium.explicit(limit.contact_radius),
             on_limit: true,
             control: curve.case.control,
             inward,

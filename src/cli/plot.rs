@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let preset = loaded.preset;
     let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
-    warn(&curve.sweep.warnings);
+    warn(&curve.base.warnings);
     let view = arguments.view.0;
     let inside = if view.is_state() {
         Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
@@ -211,7 +211,7 @@ fn first_line(path: &Path) -> Result<Option<String>, Failure> {
 
 /// The inside of the state of this contact radius, or of the start.
 fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<Inside, Failure> {
-    let (case, equilibrium) = (&curve.case, &curve.sweep.curve.equilibrium);
+    let (case, equilibrium) = (&curve.case, &curve.base.curve.equilibrium);
     let unit = case.units().length;
     let shown = |s: f64| said(&curve.setting.preset.units, Quantity::Length, s * unit);
     let s = match radius {

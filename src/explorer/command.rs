@@ -16,7 +16,6 @@ use std::path::PathBuf;
 /// A command's identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
-    /// One step along the curve.
     Step,
     /// Run until something happens, or pause.
     Run,
@@ -28,11 +27,8 @@ pub enum Id {
     Jump,
     /// The state of a contact radius.
     MoveTo,
-    /// Walk the other way.
     Reverse,
-    /// Halve the step length.
     Halve,
-    /// Double the step length.
     Double,
     /// The step length as a number.
     StepLength,
@@ -40,21 +36,15 @@ pub enum Id {
     Undo,
     /// Back to where the last command began.
     UndoCommand,
-    /// Forward again.
     Redo,
     /// The branches of the walk, to go to.
     Branches,
-    /// Back to the start state.
     Restart,
-    /// Another control.
     Control,
     /// The value of the selected parameter, a little less.
     Less,
-    /// A little more.
     More,
-    /// Much less.
     MuchLess,
-    /// Much more.
     MuchMore,
     /// Other values for some keys, as one change.
     Assign,
@@ -64,7 +54,6 @@ pub enum Id {
     SelectEvent,
     /// The parameter, event or line above.
     Up,
-    /// The one below.
     Down,
     /// The panel to the left, or the chart moved.
     Left,
@@ -72,19 +61,13 @@ pub enum Id {
     Right,
     /// The panel before.
     PreviousPanel,
-    /// The next panel.
     NextPanel,
-    /// The next view.
     NextView,
     /// The view before.
     PreviousView,
-    /// Closer.
     ZoomIn,
-    /// Further away.
     ZoomOut,
-    /// The whole of the chart.
     Fit,
-    /// The cross-hair.
     CrossHair,
     /// Dimensionless or raw axes.
     Axes,
@@ -92,38 +75,28 @@ pub enum Id {
     Events,
     /// The line of the loading device through the walker.
     Device,
-    /// Theory over the curve.
     Overlays,
     /// Keep the curve to compare the next ones with.
     Pin,
     /// The pinned curves, to take away.
     Pins,
-    /// Open a preset.
     Open,
-    /// Save the preset.
     Save,
-    /// Save it under another name.
     SaveAs,
     /// Write the curve, the walk, the events or a script to a file.
     Export,
-    /// Put something into the clipboard.
     Copy,
     /// Take the mouse, or leave it to the terminal.
     Mouse,
-    /// Type a command.
     CommandLine,
-    /// The help screen.
     Help,
-    /// Take back, close, pause.
     Cancel,
-    /// Leave.
     Quit,
 }
 
 /// One row of the table.
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
-    /// The command.
     pub id: Id,
     /// Its name in scripts and key bindings.
     pub name: &'static str,
@@ -133,7 +106,6 @@ pub struct Row {
     pub help: &'static str,
     /// A word or two for the footer.
     pub short: &'static str,
-    /// What it takes, if anything.
     pub argument: Option<&'static str>,
     /// What must be there before it can be done.
     pub needs: Needs,
@@ -142,9 +114,7 @@ pub struct Row {
 /// What must be there before a command can be done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// Nothing.
     Nothing,
-    /// A state of the walk.
     Walker,
     /// A state of the walk, or no curve on its way.
     WalkerOrNoCurve,
@@ -156,11 +126,8 @@ pub enum Needs {
     Redo,
     /// A second branch of the walk.
     Branches,
-    /// A curve.
     Curve,
-    /// A pinned curve.
     Pins,
-    /// The Problem panel selected.
     Parameter,
     /// A view that shows a part of its chart only.
     Zoom,
@@ -183,7 +150,6 @@ pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 pub enum Command {
     /// A command without an argument.
     Plain(Id),
-    /// So many steps.
     Steps(usize),
     /// A run that ends after so many states, if it meets nothing before.
     RunOf(usize),
@@ -195,16 +161,12 @@ pub enum Command {
     Assign(Vec<Assignment>),
     /// Another value for a key, as typed.
     Set {
-        /// The dotted key.
         key: Key,
-        /// What was typed.
         text: String,
     },
     /// Another value for a key while it is typed: what was there before can be taken back.
     Try {
-        /// The dotted key.
         key: Key,
-        /// What has been typed.
         text: String,
     },
     /// Back to the values before those tried.
@@ -213,18 +175,14 @@ pub enum Command {
     Browse(Option<PathBuf>),
     /// Select a panel, and a line of it.
     Pick {
-        /// The panel.
         panel: Panel,
-        /// The line.
         line: Option<usize>,
     },
     /// Go to the state of this contact radius, in the user's units.
     MoveTo(f64),
     /// Closer to a place of a view, or further away.
     Zoom {
-        /// The view.
         view: View,
-        /// Whether closer.
         closer: bool,
         /// The place that stays where it is, in shares of the window.
         about: (f64, f64),
@@ -235,7 +193,6 @@ pub enum Command {
     GoToState([f64; 3]),
     /// Stand on this node of the walk, by its number in this numbering.
     GoTo {
-        /// The number of the node.
         node: usize,
         /// [`History::numbering`](super::History::numbering) when it was asked for.
         numbering: u64,
@@ -246,16 +203,13 @@ pub enum Command {
     Open(String),
     /// Open this preset with other values for some keys.
     OpenWith {
-        /// Its name or path.
         name: String,
         /// The values, as on a command line.
         assignments: Vec<Assignment>,
     },
     /// Delete the person's own preset of this name, for good.
     Delete(String),
-    /// Save under this name.
     SaveAs {
-        /// The name.
         name: String,
         /// Whether a preset of that name is to be replaced.
         replace: bool,
@@ -266,18 +220,14 @@ pub enum Command {
     SaveAnyway,
     /// Write the screen to a file ending in `.txt`, or a figure to one whose ending chooses its format.
     ExportPage {
-        /// What is written.
         page: super::export::Page,
-        /// The path.
         path: String,
         /// Whether a file of that name is to be replaced.
         replace: bool,
     },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
-        /// The document.
         what: super::export::ExportKind,
-        /// The path.
         path: String,
         /// Whether a file of that name is to be replaced.
         replace: bool,

@@ -31,14 +31,12 @@ pub struct CurvePoint {
     pub force: f64,
     /// s.
     pub contact_radius: f64,
-    /// Stable under the chosen control.
     pub stable: bool,
 }
 
 /// Neighbouring states of the curve that are not admissible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inadmissible {
-    /// Where, and at which crest.
     pub report: OverlapReport,
     /// δ, P and s of its states in the user's units, both ends included.
     pub places: Vec<[f64; 3]>,
@@ -49,13 +47,11 @@ pub struct Inadmissible {
 pub struct ProblemCurve {
     /// The preset it was swept for; its control does not matter here.
     pub preset: Preset,
-    /// The same made ready.
     pub case: Case,
     /// The curve between start and end, reduced. It holds the limit points of `SHOWN`.
     pub curve: Curve,
     /// The theory over the same radii.
     pub theory: Theory,
-    /// The dimensionless groups.
     pub groups: Groups,
     /// Decimal digits the basis can be trusted for at the start.
     pub digits: f64,
@@ -67,22 +63,20 @@ pub struct ProblemCurve {
     pub start: Option<Admissibility>,
     /// Where the curve is not admissible, from the start inward; `None` until that has been looked at.
     pub inadmissible: Option<Vec<Inadmissible>>,
-    /// What to be careful about.
     pub warnings: Vec<String>,
-    /// What else is worth knowing.
     pub notes: Vec<String>,
 }
 
-/// What the screen shows of a preset: the sweep of its problem, and what belongs to its control.
+/// What the screen shows of a preset: the curve of its problem, and what belongs to its control.
 #[derive(Debug, Clone)]
 pub struct CurveData {
     /// What belongs to the problem, shared with the curves of the same problem under other controls.
-    pub sweep: Arc<ProblemCurve>,
+    pub base: Arc<ProblemCurve>,
     /// The problem made ready, with the control.
     pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
     pub setting: Arc<Setting>,
-    /// The curve in the user's units, with its stability under the chosen control: that of the sweep, and before it
+    /// The curve in the user's units, with its stability under the chosen control: that of the problem, and before it
     /// the part from which a path begins whose start is unstable.
     pub points: Vec<CurvePoint>,
     /// The limit points under the chosen control, reduced, from the start inward.
@@ -91,16 +85,13 @@ pub struct CurveData {
     pub other_limits: Vec<(Control, CurvePoint)>,
     /// The quasi-static path, reduced, or why there is none.
     pub unloading: Result<Unloading, String>,
-    /// The same as a document.
     pub report: Option<UnloadReport>,
 }
 
 impl ProblemCurve {
-    /// Sweeps the curve of `preset`; `go_on` is told how far it is and asked between the blocks of a basis and
+    /// Computes the curve of `preset`; `go_on` is told how far it is and asked between the blocks of a basis and
     /// between points.
-    ///
-    /// # Errors
-    /// [`CaseError`], [`CaseError::Cancelled`] among them.
+    /// Errors: [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &mut |share| go_on(Progress::Basis(share)))?;
         let mut asked = 0;
@@ -131,7 +122,7 @@ impl ProblemCurve {
         })
     }
 
-    /// Whether it is the sweep of `preset`, whose control may be another.
+    /// Whether it is the curve of `preset`, whose control may be another.
     pub fn is_of(&self, preset: &Preset) -> bool {
         same_curve(&self.preset, preset)
     }
@@ -154,28 +145,24 @@ impl ProblemCurve {
 
 impl CurveData {
     /// Computes `preset` whole; `go_on` is told how far it is and asked between points.
-    ///
-    /// # Errors
-    /// [`CaseError`], [`CaseError::Cancelled`] among them.
+    /// Errors: [`CaseError`], [`CaseError::Cancelled`] among them.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         Self::under(Arc::new(ProblemCurve::compute(preset, &mut go_on)?), preset, go_on)
     }
 
-    /// The curve of `sweep` under the control of `preset`, whose problem must be the sweep's: nothing is swept again.
+    /// The curve `base` under the control of `preset`, whose problem must be the same: no equilibrium is computed again.
     ///
     /// `go_on` is asked between events.
-    ///
-    /// # Errors
-    /// [`CaseError::Cancelled`] when `go_on` said no.
+    /// Errors: [`CaseError::Cancelled`] when `go_on` said no.
     pub fn under(
-        sweep: Arc<ProblemCurve>,
+        base: Arc<ProblemCurve>,
         preset: &Preset,
         mut go_on: impl FnMut(Progress) -> bool,
     ) -> Result<Self, CaseError> {
-        let mut curve = sweep.curve.clone();
-        let units = *sweep.case.units();
+        let mut curve = base.curve.clone();
+        let units = *base.case.units();
         let control = preset.path.control.in_units(units.stiffness);
-        let case = Case { control, ..sweep.case.clone() };
+        let case = Case { control, ..base.case.clone() };
         let shown = |at: &Sample| CurvePoint {
             approach: at.approach * units.length,
             force: at.force * units.force,
@@ -216,7 +203,7 @@ impl CurveData {
         let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
         let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
-        Ok(Self { sweep, case, setting, points, limits, other_limits, unloading, report })
+        Ok(Self { base, case, setting, points, limits, other_limits, unloading, report })
     }
 
     /// δ, P and s of the limit points under the chosen control in the user's units, from the start inward.
@@ -231,27 +218,27 @@ impl CurveData {
     /// Whether it is known which of its states, and of its path's, are admissible.
     pub fn is_checked(&self) -> bool {
         let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());
-        self.sweep.inadmissible.is_some() && path
+        self.base.inadmissible.is_some() && path
     }
 
     /// The same curve with its inadmissible states and those of its path; `go_on` is asked before each state, `None`
     /// when it said no.
     #[must_use]
     pub fn checked(&self, go_on: &mut dyn FnMut() -> bool) -> Option<Self> {
-        let mut sweep = Arc::clone(&self.sweep);
-        if sweep.inadmissible.is_none() {
-            let overlaps = overlaps_while(&sweep.curve, go_on)?;
-            let reports = OverlapReport::all(&overlaps, sweep.case.units());
-            let parts = overlaps.iter().zip(reports).map(|(overlap, report)| sweep.part(overlap, report));
-            sweep = Arc::new(ProblemCurve { inadmissible: Some(parts.collect()), ..(*sweep).clone() });
+        let mut base = Arc::clone(&self.base);
+        if base.inadmissible.is_none() {
+            let overlaps = overlaps_while(&base.curve, go_on)?;
+            let reports = OverlapReport::all(&overlaps, base.case.units());
+            let parts = overlaps.iter().zip(reports).map(|(overlap, report)| base.part(overlap, report));
+            base = Arc::new(ProblemCurve { inadmissible: Some(parts.collect()), ..(*base).clone() });
         }
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
-            let passed = passed_while(&sweep.curve, &unloading.pieces, go_on)?;
+            let passed = passed_while(&base.curve, &unloading.pieces, go_on)?;
             let mut checked = unchecked.clone().checked(&self.case, unloading, &passed);
             checked.warnings.extend(self.case.unsettled(unloading));
             report = Some(checked);
         }
-        Some(Self { sweep, report, ..self.clone() })
+        Some(Self { base, report, ..self.clone() })
     }
 }

@@ -32,9 +32,7 @@ impl Folder {
 
 /// Lists `folder`, or without one `own`, to which names are relative; without that they are relative to the current
 /// folder. Hidden files are left out, and names that cannot be shown.
-///
-/// # Errors
-/// Why the folder cannot be listed, in words.
+/// Errors: Why the folder cannot be listed, in words.
 pub fn list(folder: Option<&Path>, own: Option<&Path>) -> Result<Folder, String> {
     let own = own.filter(|own| !own.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let shown =

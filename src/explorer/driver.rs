@@ -82,8 +82,8 @@ impl Check {
 }
 
 fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
-    let result = match &wish.sweep {
-        Some(sweep) => CurveData::under(Arc::clone(sweep), &wish.preset, go_on),
+    let result = match &wish.base {
+        Some(base) => CurveData::under(Arc::clone(base), &wish.preset, go_on),
         None => CurveData::compute(&wish.preset, go_on),
     };
     match result {
@@ -159,9 +159,6 @@ impl<T> Slot<T> {
 
 impl Workers {
     /// Starts the threads; they end with the process.
-    ///
-    /// # Errors
-    /// When the system gives no thread.
     pub fn start(
         store: Store,
         reply: impl Fn(Reply) + Send + Clone + 'static,
@@ -241,9 +238,9 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
                 continue;
             }
         };
-        // A control changed while its problem was swept: the sweep is here, though nobody could know.
-        let known = last.take_if(|sweep| wish.sweep.is_none() && sweep.is_of(&wish.preset));
-        wish.sweep = wish.sweep.or(known);
+        // If only the control changed while the curve was computed, the last curve serves.
+        let known = last.take_if(|base| wish.base.is_none() && base.is_of(&wish.preset));
+        wish.base = wish.base.or(known);
         let begun = Instant::now();
         let mut pace = Pace::begin();
         let id = wish.id;
@@ -256,7 +253,7 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
         };
         if let Some(answer) = compute(&wish, go_on) {
             if let Reply::Curve { result: Ok(curve), .. } = &answer {
-                last = Some(Arc::clone(&curve.sweep));
+                last = Some(Arc::clone(&curve.base));
             }
             reply(answer);
         }

@@ -20,7 +20,6 @@ pub enum Effect {
     Check(Check),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
-    /// Walk.
     Walk(Box<Request>),
     /// End the walk of this number; its states so far stay.
     StopWalk(u64),
@@ -28,27 +27,22 @@ pub enum Effect {
     Pin(usize, Box<Preset>),
     /// Give up the curves of pins that are still on their way.
     StopPins,
-    /// Work on files.
     File(Box<Job>),
 }
 
 /// A curve that is wanted.
 #[derive(Debug, Clone)]
 pub struct Wish {
-    /// Its number.
     pub id: u64,
-    /// The preset.
     pub preset: Preset,
-    /// The sweep of the same problem, where it is known: then only what belongs to the control is computed.
-    pub sweep: Option<Arc<ProblemCurve>>,
+    /// The curve of the same problem, where it is known: then only what belongs to the control is computed.
+    pub base: Option<Arc<ProblemCurve>>,
 }
 
 /// A curve whose admissibility is wanted.
 #[derive(Debug, Clone)]
 pub struct Check {
-    /// The number.
     pub id: u64,
-    /// The curve.
     pub curve: Arc<CurveData>,
 }
 
@@ -57,32 +51,23 @@ pub struct Check {
 pub enum Reply {
     /// A curve, or why there is none.
     Curve {
-        /// Its number.
         id: u64,
-        /// The curve.
         result: Result<Arc<CurveData>, Reason>,
     },
     /// How far a curve is that takes long.
     Progress {
-        /// The number of the curve.
         id: u64,
-        /// How far.
         progress: Progress,
     },
     /// The same curve with what is not admissible on it.
     Checked {
         /// The number it was asked for under.
         id: u64,
-        /// The curve.
         curve: Arc<CurveData>,
     },
-    /// The inside of a state.
     Profile(Arc<Inside>),
-    /// States walked.
     Walked {
-        /// The request.
         id: u64,
-        /// New states.
         made: Vec<Made>,
         /// How it ended; `None` while it goes on.
         outcome: Option<Outcome>,
@@ -91,6 +76,5 @@ pub enum Reply {
     Pinned(usize, Option<Arc<CurveData>>),
     /// Something about the session that a person should know.
     Notice(String),
-    /// A job on files ended.
     File(Box<Done>),
 }

@@ -7,7 +7,6 @@ use std::path::Path;
 pub enum ExportKind {
     /// The points of the background curve.
     Curve,
-    /// The states walked.
     Walk,
     /// The instabilities, of the source shown.
     Events,
@@ -47,7 +46,6 @@ pub fn ends_in(path: &str, endings: &[&str]) -> bool {
 /// What is seen, for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Page {
-    /// The screen as text.
     Screen(String),
     /// A figure as SVG, drawn as its file's ending says.
     Figure(String),

@@ -212,15 +212,15 @@ fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(&curve.setting.preset, &curve.case),
-            warnings: &curve.sweep.warnings,
-            notes: &curve.sweep.notes,
+            warnings: &curve.base.warnings,
+            notes: &curve.base.notes,
             points,
             events,
         })
     };
     Ok(match content {
         Content::Curve(curve) => {
-            let (drawn, of) = (&curve.sweep.curve, &curve.sweep.curve.equilibrium);
+            let (drawn, of) = (&curve.base.curve, &curve.base.curve.equilibrium);
             let points: Vec<_> =
                 drawn.samples.iter().filter_map(|at| of.explicit(at.contact_radius)).collect();
             let report = TraceReport::new(&curve.setting.preset, &curve.case, drawn, &points, drawn.stop);

@@ -11,7 +11,6 @@ const CHUNK: usize = 256;
 #[derive(Debug, Clone)]
 struct Entry {
     node: Node,
-    /// The child last gone to.
     forward: Option<usize>,
 }
 

@@ -37,7 +37,6 @@ pub struct Journal {
 /// Where the walk began.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
-    /// Where the preset came from.
     pub source: Source,
     /// The preset of the first state.
     pub preset: Preset,
@@ -46,11 +45,9 @@ pub struct Start {
 /// What a replay of the lines has at their end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
-    /// The values.
     pub preset: Preset,
     /// Whether steps shrink the contact.
     pub inward: bool,
-    /// The longest step.
     pub length: f64,
 }
 
@@ -67,9 +64,7 @@ struct Walking {
 /// What is kept of a journal in a session: all but a walk that is not over.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Kept {
-    /// The lines.
     pub lines: Arc<Vec<String>>,
-    /// Where the walk began.
     pub start: Option<Start>,
     /// What a replay of the lines has at their end.
     pub replay: Option<Replay>,
@@ -107,9 +102,6 @@ impl Journal {
     }
 
     /// The lines that lead to `preset`, walked `way` (inward or not, step length); `failed` where it has no curve.
-    ///
-    /// # Errors
-    /// Why there are none, in words.
     pub fn so_far(&self, preset: &Preset, way: (bool, f64), failed: bool) -> Result<Vec<String>, String> {
         let mut journal = self.clone();
         journal.abandoned();

@@ -69,7 +69,7 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
 /// Draws an overlay or no longer; one that does not exist here is said to be missing.
 pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     model.overlays.toggle(overlay);
-    let missing = model.curve.as_ref().is_some_and(|curve| curve.sweep.theory.envelope.is_none());
+    let missing = model.curve.as_ref().is_some_and(|curve| curve.base.theory.envelope.is_none());
     if overlay == Overlay::Envelope && model.overlays.envelope && missing {
         model.tell(Level::Info, format!("the envelope is {NO_ENVELOPE}"));
     }

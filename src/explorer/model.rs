@@ -23,9 +23,7 @@ use std::sync::Arc;
 /// Why the values as they are have no curve, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CurveError {
-    /// It was given up.
     GivenUp(String),
-    /// It could not be computed.
     Failed(String),
 }
 
@@ -58,9 +56,7 @@ pub enum Question {
 /// A walk request that is running.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Walking {
-    /// Its number.
     pub id: u64,
-    /// The states it has made.
     pub made: usize,
     /// Those it was asked for; a run goes on until something happens.
     pub wanted: Option<usize>,
@@ -78,7 +74,6 @@ pub enum Checking {
 /// How much a message matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
-    /// For information.
     Info,
     /// Something could not be done as it was asked for.
     Error,
@@ -129,7 +124,6 @@ pub struct Model {
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
     pub device: Option<bool>,
-    /// The walk.
     pub history: History,
     /// What was done, to do it again.
     pub journal: Journal,
@@ -143,11 +137,8 @@ pub struct Model {
     pub walking: Option<Walking>,
     /// What was asked of the walk meanwhile, in order.
     pub queue: VecDeque<Command>,
-    /// The panel selected.
     pub panel: Panel,
-    /// The parameter selected.
     pub parameter: usize,
-    /// The event selected.
     pub event: usize,
     /// The view shown where only one fits, and the first where more do.
     pub view: View,
@@ -157,17 +148,13 @@ pub struct Model {
     pub windows: [Window; View::ALL.len()],
     /// The cross-hair in the first view, in shares of its window.
     pub cross: Option<(f64, f64)>,
-    /// What the axes show.
     pub axes: Axes,
-    /// Where the events come from.
     pub events: EventSource,
     /// The theory drawn over the curve.
     pub overlays: Overlays,
-    /// The curves to compare with.
     pub pins: Pins,
     /// The inside of the walker's state, for the views that show it; it can be that of the state before.
     pub profile: Option<Arc<Inside>>,
-    /// What was last asked for.
     pub profile_wanted: Option<Box<Ask>>,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
@@ -175,20 +162,15 @@ pub struct Model {
     pub preset_names: Vec<String>,
     /// What the person is to be asked.
     pub question: Option<Question>,
-    /// Numbers for requests.
     pub next_request: u64,
-    /// The session is over.
     pub quit: bool,
 }
 
 /// What there was before values were tried.
 #[derive(Debug, Clone)]
 pub struct Untried {
-    /// The preset.
     pub preset: Preset,
-    /// Where the walker stood.
     pub mark: Mark,
-    /// What had been done.
     pub journal: Journal,
 }
 
@@ -267,9 +249,6 @@ impl Model {
     }
 
     /// The lines of a script that leads to where the session is now.
-    ///
-    /// # Errors
-    /// Why there is none, in words.
     pub fn script(&self) -> Result<Vec<String>, String> {
         // Values whose curve was given up have no state: nothing was done with them.
         let preset = match &self.curve {
@@ -294,7 +273,7 @@ impl Model {
     pub fn shows_its_curve(&self) -> bool {
         self.curve.as_ref().is_some_and(|curve| {
             let control = curve.setting.preset.path.control;
-            curve.sweep.is_of(&self.preset) && control == self.preset.path.control
+            curve.base.is_of(&self.preset) && control == self.preset.path.control
         })
     }
 
@@ -403,9 +382,8 @@ impl Model {
 
     /// The inadmissible parts of the curve, where the events shown are the curve's; they stand behind those.
     pub fn shown_inadmissible(&self) -> &[Inadmissible] {
-        let sweep =
-            self.curve.as_ref().map(|curve| &curve.sweep).filter(|_| self.events == EventSource::Curve);
-        sweep.and_then(|sweep| sweep.inadmissible.as_deref()).unwrap_or_default()
+        let base = self.curve.as_ref().map(|curve| &curve.base).filter(|_| self.events == EventSource::Curve);
+        base.and_then(|base| base.inadmissible.as_deref()).unwrap_or_default()
     }
 
     /// The events of the source shown.

@@ -8,9 +8,7 @@ use std::sync::Arc;
 /// How a node came about.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NodeKind {
-    /// The start state.
     Start,
-    /// A step.
     Step,
     /// A limit point of the control, located exactly.
     Limit,
@@ -38,9 +36,7 @@ pub struct Ahead {
 pub struct Node {
     /// The node before.
     pub parent: Option<usize>,
-    /// How it came about.
     pub kind: NodeKind,
-    /// The problem it solves.
     pub setting: Arc<Setting>,
     /// The control it was reached under (reduced).
     pub control: Control,
@@ -48,7 +44,6 @@ pub struct Node {
     pub point: Point,
     /// The state, reduced.
     pub state: State,
-    /// Steps since the start.
     pub step: usize,
     /// How force and area answer to the approach here, reduced.
     pub stiffness: Stiffness,

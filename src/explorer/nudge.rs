@@ -20,9 +20,7 @@ pub enum Amount {
 
 /// `preset` with the value of `row` nudged up or down; `contact` is the contact's own stiffness in the user's units,
 /// against which that of the device is judged.
-///
-/// # Errors
-/// Why it cannot be nudged, in words: out of range, or a text.
+/// Errors: Why it cannot be nudged, in words: out of range, or a text.
 pub fn nudge(
     preset: &Preset,
     row: &Parameter,

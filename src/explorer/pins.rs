@@ -83,9 +83,7 @@ impl Pins {
     }
 
     /// Pins `curve` under the smallest free number, which is given back.
-    ///
-    /// # Errors
-    /// Why not, in words: it is pinned already, or all numbers are taken.
+    /// Errors: Why not, in words: it is pinned already, or all numbers are taken.
     pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
         let same = |pin: &&Pin| {
             let title = curve.setting.preset.title.clone();

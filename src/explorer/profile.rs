@@ -20,7 +20,6 @@ const SHARES: [f64; 2] = [0.95, 0.6];
 /// What is wanted of a state.
 #[derive(Debug, Clone)]
 pub struct Ask {
-    /// Its number.
     pub id: u64,
     /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
@@ -83,7 +82,7 @@ impl Inside {
 }
 
 fn landscape(ask: &Ask) -> Option<Landscape> {
-    let (curve, control, s) = (&ask.curve.sweep.curve, ask.control(), ask.state.contact_radius);
+    let (curve, control, s) = (&ask.curve.base.curve, ask.control(), ask.state.contact_radius);
     let wave = ask.curve.case.reduced.gap.feature_length();
     let [inward, outward] = wave
         .map_or(SHARES.map(|share| share * s), |wave| WAVES.map(|waves| (waves * wave).min(SHARES[0] * s)));

@@ -10,7 +10,6 @@ pub enum Progress {
     Basis(f64),
     /// The equilibria are computed: so many so far.
     Curve(usize),
-    /// Its limit points are located.
     Limits,
     /// Its unloading is followed: the events found.
     Events(usize),

@@ -16,9 +16,9 @@ pub(super) fn want_curve(model: &mut Model) -> Effect {
     model.curve_wanted = id;
     (model.progress, model.curve_error) = (None, None);
     // The curve does not know what is controlled: under another control it need not be swept again.
-    let known = model.curve.as_ref().map(|curve| &curve.sweep).filter(|sweep| sweep.is_of(&model.preset));
-    let sweep = known.map(Arc::clone);
-    Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), sweep }))
+    let known = model.curve.as_ref().map(|curve| &curve.base).filter(|base| base.is_of(&model.preset));
+    let base = known.map(Arc::clone);
+    Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), base }))
 }
 
 /// Asks which states of the curve on the screen are admissible, once no newer curve is on its way. A newer curve drops

@@ -10,7 +10,6 @@ use pulloff_engine::quasistatic::Scales;
 /// so a long walk through many problems stays small, and a saved one is read without computing any of them.
 #[derive(Debug, Clone)]
 pub struct Setting {
-    /// The preset.
     pub preset: Preset,
     /// The problem in reduced units.
     pub reduced: Reduced,

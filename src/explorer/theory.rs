@@ -22,7 +22,6 @@ pub struct Theory {
     pub smooth_name: &'static str,
     /// The exact solution of the gap, over the radii of the curve and as fine.
     pub exact: Vec<Place>,
-    /// Its name.
     pub exact_name: &'static str,
     /// The envelope of small waves; none without adhesion, and for wavy spheres alone.
     pub envelope: Option<Envelope>,

@@ -292,7 +292,7 @@ fn group_effect(row: &Row) -> Option<String> {
     Some(greek(&format!("turning it changes {changed}, {held} held")))
 }
 
-/// A text that is longer than its place background_jobs the label may be, whole.
+/// A text that is longer than its place beside the label may be, whole.
 fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
     /// Characters that fit on every screen.
     const FITTING: usize = 11;

@@ -9,13 +9,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Panel {
-    /// The parameters of the preset.
     Problem,
-    /// The state of the walker.
     Walker,
-    /// The charts.
     Charts,
-    /// The list of instabilities.
     Events,
 }
 
@@ -40,7 +36,6 @@ pub enum Axes {
 pub enum EventSource {
     /// The quasi-static path along the whole curve.
     Curve,
-    /// The jumps made by hand.
     Walked,
 }
 
@@ -176,9 +171,7 @@ impl Overlays {
 /// The part of a chart that is shown: from and to along each axis, 0 and 1 the ends of the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
-    /// Along x.
     pub x: [f64; 2],
-    /// Along y, upwards.
     pub y: [f64; 2],
 }
 

@@ -62,9 +62,7 @@ pub enum Action {
 /// One request.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// Its number.
     pub id: u64,
-    /// What to do.
     pub action: Action,
     /// The curve of the problem: its setting, and its limit points for jumps.
     pub curve: Arc<CurveData>,
@@ -76,18 +74,15 @@ pub struct Request {
     pub control: Control,
     /// Whether the contact is to shrink.
     pub inward: bool,
-    /// The longest step.
     pub length: f64,
 }
 
 /// One new state.
 #[derive(Debug, Clone)]
 pub struct Made {
-    /// How it came about.
     pub kind: NodeKind,
     /// The problem it solves, which may be no longer the one on the screen.
     pub setting: Arc<Setting>,
-    /// The point.
     pub point: Point,
     /// The state, reduced.
     pub state: State,
@@ -108,11 +103,9 @@ pub struct Made {
 /// The end of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// Done as asked.
     Done,
     /// A limit point of the control was reached.
     AtLimit,
-    /// It was paused.
     Paused,
     /// The end of what can be walked was reached, in words.
     Ended(String),
@@ -153,7 +146,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
 
 impl Request {
     fn equilibrium(&self) -> &Equilibrium {
-        &self.curve.sweep.curve.equilibrium
+        &self.curve.base.curve.equilibrium
     }
 
     fn case(&self) -> &Case {
@@ -198,7 +191,7 @@ const LEFT: f64 = 1e-12;
 
 /// The stops on the curve of `request` up to the radius `reach`, ascending.
 fn stops(request: &Request, reach: f64) -> Vec<Stop> {
-    let mut curve = request.curve.sweep.curve.clone();
+    let mut curve = request.curve.base.curve.clone();
     curve.reach(reach);
     let monotone = curve.monotone(request.control);
     let limits = monotone.limits.iter().map(|at| Stop {
@@ -244,7 +237,7 @@ fn first_between(stops: &[Stop], from: f64, to: f64) -> Option<Stop> {
 
 fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let equilibrium = request.equilibrium();
-    let curve = &request.curve.sweep.curve;
+    let curve = &request.curve.base.curve;
     let Some(from) = &request.from else {
         return Outcome::Stopped("there is no state to walk from".to_owned());
     };
@@ -314,16 +307,13 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
 }
 
 /// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
-///
-/// # Errors
-/// Why there is none, in words.
 fn next(request: &Request, stops: &[Stop], stepper: &mut Stepper, here: &Point) -> Result<Point, String> {
     let equilibrium = request.equilibrium();
     let s = equilibrium.contact_radius(here);
     let towards = if request.inward { 0.0 } else { f64::INFINITY };
     let on_corner = stops.iter().any(|stop| stop.is_corner && (stop.contact_radius / s - 1.0).abs() <= LEFT);
     if on_corner && !request.inward {
-        let mut curve = request.curve.sweep.curve.clone();
+        let mut curve = request.curve.base.curve.clone();
         curve.reach(1.1 * s);
         let left = curve.beyond_corner(s, stepper.length);
         return left.ok_or_else(|| "there is no equilibrium beyond the corner".to_owned());
@@ -358,14 +348,12 @@ fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
 
 /// The place that the edge leaves at constant control from `from`, and where it comes to rest: nowhere where the bodies come
 /// apart; with a curve that reaches there.
-///
-/// # Errors
-/// Why the landing is not known.
+/// Errors: Why the landing is not known.
 fn landing(request: &Request, from: &Point) -> Result<(Curve, Place, Option<Place>), &'static str> {
     let equilibrium = request.equilibrium();
     let control = request.control;
     let s = equilibrium.contact_radius(from);
-    let mut curve = request.curve.sweep.curve.clone();
+    let mut curve = request.curve.base.curve.clone();
     curve.reach(s * (1.0 + 1e-9));
     let mut reach = s;
     loop {
@@ -464,7 +452,7 @@ fn solve(request: &Request, old: &State, emit: &mut dyn FnMut(Made) -> bool) -> 
 
 /// The state nearest to the radius `s` at which the curve takes the control value.
 fn nearest_crossing(request: &Request, value: f64, s: f64) -> Option<Point> {
-    let curve = &request.curve.sweep.curve;
+    let curve = &request.curve.base.curve;
     let solution = &*curve.solution;
     let monotone = curve.monotone(request.control);
     let value = match request.control {

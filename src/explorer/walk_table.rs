@@ -13,11 +13,8 @@ use std::sync::Arc;
 /// One state of the walk as a row.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WalkRow {
-    /// Steps since the start.
     pub step: usize,
-    /// How it came about.
     pub kind: &'static str,
-    /// What was controlled.
     pub control: String,
     /// s.
     pub contact_radius: f64,
@@ -27,21 +24,16 @@ pub struct WalkRow {
     pub force: f64,
     /// U.
     pub energy: f64,
-    /// The crest of the edge.
     pub wave: Option<u64>,
-    /// Newton rounds spent.
     pub newton_iterations: usize,
-    /// Stability under each control.
     pub stable: StableReport,
     /// The energy lost in the jump that led here.
     pub dissipated: Option<f64>,
-    /// The same by the area.
     pub dissipated_by_area: Option<f64>,
     /// γ when it was solved: parameters may change during a walk.
     pub work_of_adhesion: f64,
     /// R when it was solved, where the gap has one.
     pub radius_of_curvature: Option<f64>,
-    /// A when it was solved.
     pub amplitude: Option<f64>,
     /// λ when it was solved.
     pub wavelength: Option<f64>,

@@ -5,9 +5,7 @@ use crate::explorer::Window;
 /// The range of both axes, ascending and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Of x.
     pub x: [f64; 2],
-    /// Of y.
     pub y: [f64; 2],
 }
 

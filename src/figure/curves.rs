@@ -63,7 +63,7 @@ pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
 /// The inadmissible parts, over the curve: whether they are stable is still seen beneath.
 pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     let view = figure.view;
-    let lines = subject.curve.sweep.inadmissible.iter().flatten().map(|part| {
+    let lines = subject.curve.base.inadmissible.iter().flatten().map(|part| {
         let points = part.places.iter().map(|at| scale.place(view, *at));
         Line::new(Role::Inadmissible, "inadmissible", points.collect())
     });
@@ -80,7 +80,7 @@ fn device(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
 
 /// The overlays that are on and exist, and what the envelope says.
 fn theory(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
-    let theory = &subject.curve.sweep.theory;
+    let theory = &subject.curve.base.theory;
     let view = figure.view;
     let line = |role, name: &str, places: &[[f64; 3]]| {
         Line::new(role, name, places.iter().map(|at| scale.place(view, *at)).collect())
@@ -93,7 +93,7 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
             figure.lines.push(line(Role::Envelope, "envelope", side));
         }
         // The estimate is of the force under a dead load, over P_c; the path's own least force stands beside it.
-        let critical = subject.curve.sweep.critical_force;
+        let critical = subject.curve.base.critical_force;
         let ours = subject.curve.report.as_ref().map(|report| -report.min_force / critical);
         figure.notes.push(format!(
             "Kesari-Lew peak {}, here {}, n = s/λ = {}",

@@ -7,44 +7,34 @@ use pulloff_engine::problem::Control;
 /// What a line shows. A renderer gives each role a stroke of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
-    /// Where an axis is zero.
     Zero,
-    /// The undeformed gap.
     Undeformed,
     /// The smooth sphere of the same curvature and adhesion.
     Smooth,
-    /// An envelope of small waves.
     Envelope,
     /// A pinned curve, by its number.
     Pin(usize),
     /// The states of another branch of the walk.
     Branch,
-    /// The exact solution.
     Exact,
-    /// Equilibrium, unstable under the control.
     Unstable,
-    /// Equilibrium, stable under the control.
     Stable,
     /// Equilibrium that cannot be: the next crest would already touch.
     Inadmissible,
     /// A computed profile or landscape: pressure, deformed gap, potential.
     Body,
-    /// The disc of contact.
     Contact,
     /// From the walker's level up to the barrier.
     Barrier,
     /// The line of the loading device through the walker.
     Device,
-    /// The states walked.
     Walk,
-    /// A jump at constant control.
     Jump,
 }
 
 /// A line through points in axis values, its parts in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// What it shows.
     pub role: Role,
     /// Its name in a legend; empty where it needs none.
     pub name: String,
@@ -61,21 +51,15 @@ pub enum Sign {
     Limit,
     /// The last limit point of a path: the bodies come apart.
     PullOff,
-    /// Where a jump lands.
     Landing,
-    /// A crest of the wave.
     Crest,
-    /// The edge of the contact.
     Edge,
-    /// A smallest potential: stable.
     Minimum,
-    /// A largest potential: unstable.
     Maximum,
     /// The barrier next to the walker's state.
     Barrier,
     /// The walker, in a state of other values than the curve's.
     Stray,
-    /// The walker.
     Walker,
     /// A computed value, on a line through all of them.
     Value,
@@ -84,9 +68,7 @@ pub enum Sign {
 /// A sign at a point in axis values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// What it is.
     pub sign: Sign,
-    /// Where.
     pub at: (f64, f64),
 }
 
@@ -125,25 +107,19 @@ impl Axis {
 /// A figure: everything a renderer needs but strokes, letters and colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What is shown.
     pub view: View,
-    /// One line above it.
     pub title: String,
-    /// The axis to the right.
     pub x: Axis,
-    /// The axis upwards.
     pub y: Axis,
     /// The lines, in the order of drawing.
     pub lines: Vec<Line>,
     /// The signs, the last on top.
     pub marks: Vec<Mark>,
-    /// The hatched areas.
     pub areas: Vec<Area>,
     /// The whole of it: what is shown at first.
     pub bounds: Bounds,
     /// What else it says, in words.
     pub notes: Vec<String>,
-    /// Why it is empty.
     pub missing: Option<String>,
 }
 

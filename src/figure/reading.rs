@@ -22,13 +22,8 @@ const SAME: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum What {
     /// A point of the curve, stable under the control or not.
-    Curve {
-        /// Whether stable.
-        stable: bool,
-    },
-    /// A limit point.
+    Curve { stable: bool },
     Limit {
-        /// Of this control.
         control: Control,
         /// Its number from the start inward, from 1.
         number: usize,
@@ -48,7 +43,6 @@ pub enum What {
 pub struct Nearest {
     /// Where it stands in the view.
     pub at: (f64, f64),
-    /// What it is.
     pub what: What,
     /// δ, in the user's units.
     pub approach: f64,

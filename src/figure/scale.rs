@@ -13,7 +13,6 @@ pub struct Scale<'a> {
     pub force: Option<f64>,
     /// λ.
     pub wave: Option<f64>,
-    /// E*.
     pub modulus: Option<f64>,
     /// The units in which the other axes are shown.
     pub units: &'a UnitSystem,
@@ -28,7 +27,7 @@ impl<'a> Scale<'a> {
         }
         let problem = &curve.case.problem;
         Self {
-            force: Some(curve.sweep.critical_force).filter(|force| *force > 0.0),
+            force: Some(curve.base.critical_force).filter(|force| *force > 0.0),
             wave: problem.shape.wavelength(),
             modulus: Some(problem.effective_modulus),
             units,

@@ -39,7 +39,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let radius = drawing.radius(inside.profile.contact_radius);
     figure.title = format!("{}, {} {}", figure.title, scale.radius_axis("s").symbol, significant(radius, 4));
     match view {
-        View::Pressure => drawing.pressure(subject.curve.sweep.theory.exact_name, &mut figure),
+        View::Pressure => drawing.pressure(subject.curve.base.theory.exact_name, &mut figure),
         View::Gap => drawing.gap(&mut figure),
         _ => drawing.energy(&mut figure),
     }

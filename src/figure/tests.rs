@@ -165,7 +165,7 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
         assert_eq!(figure.areas.len() + unbounded, unloading.events.len(), "{control}");
         assert_eq!(count(&figure, Role::Jump), unloading.events.len());
         assert_eq!(signs(&figure, Sign::PullOff), 1);
-        let scale = curve.sweep.critical_force;
+        let scale = curve.base.critical_force;
         for (area, event) in figure.areas.iter().zip(&unloading.events) {
             // The outline encloses what was lost: P/Pc over δ.
             let next = area.outline.iter().cycle().skip(1);

@@ -7,7 +7,6 @@ use crate::figure::{Area, Bounds, Figure, Line, Mark, Role};
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Run {
-    /// Equal steps.
     #[default]
     Linear,
     /// Equal factors; what is not positive is not drawn.
@@ -19,26 +18,20 @@ pub enum Run {
 pub struct Axis {
     /// What stands beside it: `δ (µm)`.
     pub title: String,
-    /// How it runs.
     pub run: Run,
 }
 
 /// A chart: what a figure shows, without what only a screen needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// The axis to the right.
     pub x: Axis,
-    /// The axis upwards.
     pub y: Axis,
-    /// The part that is shown.
     pub bounds: Bounds,
     /// The lines, in the order of drawing; those of one name are one entry of the legend.
     pub lines: Vec<Line>,
     /// The signs, the last on top.
     pub marks: Vec<Mark>,
-    /// The hatched areas.
     pub areas: Vec<Area>,
-    /// Why it is empty.
     pub missing: Option<String>,
 }
 
@@ -66,9 +59,7 @@ impl Chart {
     }
 
     /// The part of its x axis in `range`; an empty chart stays as it is.
-    ///
-    /// # Errors
-    /// [`RangeError`] when the range shows nothing.
+    /// Errors: [`RangeError`] when the range shows nothing.
     pub fn across(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.x = range.ends(&self.x.title, self.bounds.x, self.drawn().x)?;
@@ -77,9 +68,7 @@ impl Chart {
     }
 
     /// The part of its y axis in `range`; an empty chart stays as it is.
-    ///
-    /// # Errors
-    /// [`RangeError`] when the range shows nothing.
+    /// Errors: [`RangeError`] when the range shows nothing.
     pub fn upwards(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.y = range.ends(&self.y.title, self.bounds.y, self.drawn().y)?;

@@ -21,9 +21,7 @@ pub struct Stroke {
 /// How a sign is drawn, and what it means in a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
-    /// Its shape.
     pub shape: MarkerShape,
-    /// Its colour.
     pub color: &'static str,
     /// Half its width in units of 1/96 inch.
     pub size: f64,

@@ -26,7 +26,6 @@ const DECADE: f64 = 10.0;
 pub struct Map {
     /// What stands beside the axes, x and y.
     pub titles: [String; 2],
-    /// What stands beside the colours.
     pub quantity: String,
     /// The values of the axes, ascending.
     pub values: [Vec<f64>; 2],
@@ -39,7 +38,6 @@ pub struct Map {
 /// Why results are not drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
-    /// The results cannot be read.
     #[error(transparent)]
     Results(#[from] ResultsError),
     /// They are neither a grid over two axes of numbers nor rows over one.
@@ -65,9 +63,7 @@ impl MapError {
 
 impl Map {
     /// The map of `quantity` in `results`, whose first two columns behind the row are the axes.
-    ///
-    /// # Errors
-    /// [`MapError`] when there is no such column, or the rows make no whole grid of at least two by two.
+    /// Errors: [`MapError`] when there is no such column, or the rows make no whole grid of at least two by two.
     pub fn of(results: &Results, axes: &[String], quantity: &str) -> Result<Self, MapError> {
         let [x, y] = axes else {
             let what =

@@ -42,7 +42,6 @@ pub enum PaperError {
     /// A shipped preset is not what it was.
     #[error("a shipped preset cannot be read: {0}")]
     Preset(#[from] ReadError),
-    /// A shipped preset is missing.
     #[error("the shipped preset {0} is missing")]
     Missing(&'static str),
     /// A problem could not be computed.
@@ -66,9 +65,7 @@ const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
 const COMPARED: f64 = 0.9;
 
 /// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
-///
-/// # Errors
-/// [`PaperError`] when a figure cannot be computed.
+/// Errors: [`PaperError`] when a figure cannot be computed.
 pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
     let mut sheets = Vec::new();
     begin("Fig. 1");

@@ -29,14 +29,7 @@ pub enum RangeError {
     Narrow(String),
     /// Nothing of the figure is in it.
     #[error("shows nothing of the figure, where {title} goes from {from} to {to}")]
-    Empty {
-        /// What stands beside the axis.
-        title: String,
-        /// The least value on it.
-        from: String,
-        /// The largest.
-        to: String,
-    },
+    Empty { title: String, from: String, to: String },
 }
 
 /// Digits of a number in a message, and beside an axis.
@@ -48,9 +41,7 @@ const ROUNDING: f64 = 1e-9;
 
 impl Range {
     /// Its ends on an axis of this title that goes over `whole` when nothing is asked for, and whose lines over `drawn`.
-    ///
-    /// # Errors
-    /// [`RangeError`] when the ends do not ascend or nothing drawn lies between them.
+    /// Errors: [`RangeError`] when the ends do not ascend or nothing drawn lies between them.
     pub fn ends(self, title: &str, whole: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], RangeError> {
         let empty = || RangeError::Empty {
             title: title.to_owned(),

@@ -6,9 +6,7 @@ use crate::figure::{Line, Mark, Role, Sign};
 use crate::sweep::Results;
 
 /// The chart of `quantity` in `results` over the column `axis`; a row without a value is a gap.
-///
-/// # Errors
-/// [`MapError`] when there is no such column, one is not of numbers, or no row has a value.
+/// Errors: [`MapError`] when there is no such column, one is not of numbers, or no row has a value.
 pub fn chart(results: &Results, axis: &str, quantity: &str) -> Result<Chart, MapError> {
     let mut columns = results.numbers(&[axis, quantity])?.into_iter();
     let mut next = || columns.next().unwrap_or_default();

@@ -24,7 +24,6 @@ use std::path::Path;
 /// The format of a figure's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Lines and letters as text.
     Svg,
     /// Pixels, 384 an inch.
     Png,
@@ -43,9 +42,7 @@ impl Format {
     };
 
     /// The format that the ending of `path` names.
-    ///
-    /// # Errors
-    /// It names none, or one that this build lacks.
+    /// Errors: It names none, or one that this build lacks.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let missing = |name, feature| Err(FormatError::Missing { name, feature });
@@ -60,9 +57,7 @@ impl Format {
     }
 
     /// The file of `svg`, a figure of this program.
-    ///
-    /// # Errors
-    /// [`DrawError`] when the document is no figure of this program, or this build lacks the format.
+    /// Errors: [`DrawError`] when the document is no figure of this program, or this build lacks the format.
     pub fn bytes(self, svg: &str) -> Result<Vec<u8>, DrawError> {
         match self {
             Self::Svg => Ok(svg.as_bytes().to_vec()),

@@ -25,7 +25,6 @@ const LINKS: usize = 40;
 /// What to do about a file that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Overwrite {
-    /// Refuse.
     Never,
     /// Replace it only if it is the file that was loaded.
     IfUnchanged(Fingerprint),
@@ -38,54 +37,23 @@ pub enum Overwrite {
 pub enum WriteError {
     /// There is a file, and it is not to be replaced.
     #[error("{path}: exists already")]
-    Exists {
-        /// The file.
-        path: String,
-    },
+    Exists { path: String },
     /// The file is not the one that was loaded.
     #[error("{path}: was changed by someone else since it was read")]
-    Changed {
-        /// The file.
-        path: String,
-    },
+    Changed { path: String },
     /// The file is read-only: its owner does not want it changed, or it is not ours to change.
     #[error("{path}: is read-only, and is not replaced")]
-    ReadOnly {
-        /// The file.
-        path: String,
-    },
+    ReadOnly { path: String },
     /// A folder, a pipe, a device.
     #[error("{path}: is {what}, not a regular file")]
-    NotRegular {
-        /// The file.
-        path: String,
-        /// What it is.
-        what: &'static str,
-    },
+    NotRegular { path: String, what: &'static str },
     /// What was read back is not what it should be.
     #[error("{path}: what was written does not read back: {why}")]
-    NotReadBack {
-        /// The file.
-        path: String,
-        /// What is wrong.
-        why: String,
-    },
-    /// Another saver holds the folder.
+    NotReadBack { path: String, why: String },
     #[error("{path}: another pulloff is saving in this folder; try again")]
-    Locked {
-        /// The file.
-        path: String,
-    },
-    /// The system says no.
+    Locked { path: String },
     #[error("{path}: cannot {doing}: {cause}")]
-    Io {
-        /// The file.
-        path: String,
-        /// What was being done.
-        doing: &'static str,
-        /// What the system says.
-        cause: io::Error,
-    },
+    Io { path: String, doing: &'static str, cause: io::Error },
 }
 
 impl Mend for WriteError {
@@ -114,18 +82,14 @@ pub fn explained(cause: io::Error) -> io::Error {
 }
 
 /// Writes `bytes` to `path` whole or not at all, and says how to recognise the file written.
-///
-/// # Errors
-/// The file must not be replaced, or cannot be written; nothing has changed then. Only if the last step fails,
+/// Errors: The file must not be replaced, or cannot be written; nothing has changed then. Only if the last step fails,
 /// syncing the folder, is the new file in its place, and may be gone after a power loss.
 pub fn write_atomically(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<Fingerprint, WriteError> {
     write_verified(path, bytes, overwrite, |_| Ok(()))
 }
 
 /// As [`write_atomically`], after `verify` approved what was read back from the disk.
-///
-/// # Errors
-/// As there, or `verify` refuses.
+/// Errors: As there, or `verify` refuses.
 pub fn write_verified(
     path: &Path,
     bytes: &[u8],
@@ -153,9 +117,7 @@ pub fn write_verified(
 }
 
 /// As [`write_atomically`] for a file that is not held in memory: `fill` writes it. It is not read back.
-///
-/// # Errors
-/// As there, or those of `fill`.
+/// Errors: As there, or those of `fill`.
 pub fn write_filled<E: From<WriteError>>(
     path: &Path,
     overwrite: Overwrite,
@@ -217,9 +179,7 @@ impl<'a> Begun<'a> {
 }
 
 /// The file that a path names after all links, whether or not it exists.
-///
-/// # Errors
-/// The links run in a circle, or cannot be read.
+/// Errors: The links run in a circle, or cannot be read.
 pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
     let failed = |cause| WriteError::Io { path: show_path(path), doing: "follow its links", cause };
     let mut target = path.to_owned();
@@ -284,9 +244,6 @@ fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), Write
 }
 
 /// Refuses what can be no file of results that grows in its place: a folder, a device, a file that is read-only.
-///
-/// # Errors
-/// As said; the system says no.
 pub fn check_growing(path: &Path) -> Result<(), WriteError> {
     let metadata = match path.metadata() {
         Ok(metadata) => metadata,

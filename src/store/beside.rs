@@ -17,10 +17,8 @@ use thiserror::Error;
 /// Why the data cannot be copied.
 #[derive(Debug, Error)]
 pub enum DataError {
-    /// They cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// They cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// They are gone or others than those in the preset, in words.
@@ -46,9 +44,7 @@ impl From<String> for DataError {
 
 /// `preset` with its data in `folder`, where they are copied under their own name. Data there already stay if they are the
 /// same; another file is never replaced. Presets without a file of their own are as they were.
-///
-/// # Errors
-/// They are gone, others than those in the preset, or another file has the name.
+/// Errors: They are gone, others than those in the preset, or another file has the name.
 pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> {
     let mut copy = preset.clone();
     let Shape::Profile(measured) = &preset.gap else { return Ok(copy) };

@@ -17,7 +17,6 @@ pub const FILES: Files = Files(load);
 /// Why a file gives no profile.
 #[derive(Debug, Error)]
 pub enum ProfileError {
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
     /// The text of the file is no profile.
@@ -25,15 +24,12 @@ pub enum ProfileError {
     Text {
         /// The file, safe to show.
         path: String,
-        /// What is wrong.
         cause: TextError,
     },
 }
 
 /// Reads the profile in the file `path`.
-///
-/// # Errors
-/// [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
+/// Errors: [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
 pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
     let (bytes, _) = read_bytes(path, LARGEST)?;
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
@@ -41,9 +37,7 @@ pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
 
 /// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that
 /// begins with [`SHIPPED_DATA`].
-///
-/// # Errors
-/// Why there are no rows, in words that are safe to show.
+/// Errors: Why there are no rows, in words that are safe to show.
 pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
     if name.is_empty() || name.chars().any(is_unsafe) {
         return Err(format!("\"{}\" is no name of a file", quote(name)));
@@ -63,26 +57,17 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
 }
 
 /// Reads a preset, whose files are relative to the current folder; `name` names the text in messages.
-///
-/// # Errors
-/// Every mistake found, with its line.
 pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
     read_with(name, text, &[] as &[&str])
 }
 
 /// Reads a preset and lays `KEY=VALUE` assignments over it, in order.
-///
-/// # Errors
-/// Every mistake found, with its line or assignment.
 pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Result<Preset, ReadError> {
     read_in(None, name, text, assignments)
 }
 
 /// Reads a preset whose files are relative to `folder`, or to the current one; those of assignments always are relative
 /// to the current one.
-///
-/// # Errors
-/// Every mistake found, with its line or assignment.
 pub fn read_in<S: AsRef<str>>(
     folder: Option<&Path>,
     name: &str,

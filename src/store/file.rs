@@ -46,12 +46,10 @@ impl Fingerprint {
 /// Why a file cannot be read.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The system says no.
     #[error("{}: cannot read: {cause}", .path)]
     Io {
         /// The file, safe to show.
         path: String,
-        /// What the system says.
         cause: io::Error,
     },
     /// A folder, a pipe, a device.
@@ -59,7 +57,6 @@ pub enum FileError {
     NotRegular {
         /// The file, safe to show.
         path: String,
-        /// What it is.
         what: &'static str,
     },
     /// Larger than a preset can be.
@@ -67,9 +64,7 @@ pub enum FileError {
     TooLarge {
         /// The file, safe to show.
         path: String,
-        /// Its size.
         bytes: u64,
-        /// The largest size.
         limit: u64,
     },
     /// A pipe or a device that gives more than a preset can be.
@@ -77,10 +72,8 @@ pub enum FileError {
     Endless {
         /// The name, safe to show.
         path: String,
-        /// The largest size.
         limit: u64,
     },
-    /// Bytes that are no text.
     #[error("{path}: is not UTF-8 text (byte {at} on)")]
     NotText {
         /// The file, safe to show.
@@ -119,9 +112,7 @@ pub fn kind_of(metadata: &Metadata) -> &'static str {
 }
 
 /// The text of a regular file of at most `limit` bytes.
-///
-/// # Errors
-/// It cannot be read, is not regular, is larger, or is not UTF-8.
+/// Errors: It cannot be read, is not regular, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<(String, Fingerprint), FileError> {
     let (bytes, fingerprint) = read_bytes(path, limit)?;
     Ok((text(&show_path(path), bytes)?, fingerprint))
@@ -136,9 +127,7 @@ pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
 }
 
 /// The content of a regular file of at most `limit` bytes.
-///
-/// # Errors
-/// It cannot be read, is not regular, or is larger.
+/// Errors: It cannot be read, is not regular, or is larger.
 pub fn read_bytes(path: &Path, limit: u64) -> Result<(Vec<u8>, Fingerprint), FileError> {
     let io = |cause| FileError::Io { path: show_path(path), cause };
     // Looked at before it is opened, since opening a device can have effects; and again after, since the

@@ -25,9 +25,7 @@ pub struct FolderLock {
 
 impl FolderLock {
     /// Waits up to `patience` for the lock; `None` if another still holds it.
-    ///
-    /// # Errors
-    /// The folder cannot be opened or locked. A file system that knows no locks is none: there the check of
+    /// Errors: The folder cannot be opened or locked. A file system that knows no locks is none: there the check of
     /// the file itself, just before it is replaced, is all there is.
     pub fn acquire(folder: &Path, patience: Duration) -> io::Result<Option<Self>> {
         let file = File::open(folder)?;
@@ -36,9 +34,7 @@ impl FolderLock {
 }
 
 /// Waits up to `patience` for the lock of an open file, which lasts until it is closed; whether it was given.
-///
-/// # Errors
-/// The file cannot be locked. A file system that knows no locks gives every one.
+/// Errors: The file cannot be locked. A file system that knows no locks gives every one.
 pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
     let deadline = Instant::now() + patience;
     while !lock(file)? {
@@ -71,9 +67,7 @@ impl FileLock {
     const PATIENCE: Duration = Duration::from_millis(50);
 
     /// Takes the lock of the file `path`, which is made; `None` if another holds it.
-    ///
-    /// # Errors
-    /// The file cannot be made or locked.
+    /// Errors: The file cannot be made or locked.
     pub fn acquire(path: &Path) -> io::Result<Option<Self>> {
         let deadline = Instant::now() + Self::PATIENCE;
         loop {

@@ -15,22 +15,13 @@ pub enum NameError {
         "\"{name}\" is no preset name: use a-z, 0-9, - and _, first a letter or digit, at most {LONGEST} \
          characters (a file's path has a / or ends in .toml)"
     )]
-    Malformed {
-        /// The name.
-        name: String,
-    },
+    Malformed { name: String },
     /// It is the name of a command.
     #[error("\"{name}\" is a command, so no preset can have that name")]
-    Command {
-        /// The name.
-        name: String,
-    },
+    Command { name: String },
     /// It is the name of a preset that comes with the program.
     #[error("\"{name}\" comes with the program and is read-only: choose another name")]
-    Shipped {
-        /// The name.
-        name: String,
-    },
+    Shipped { name: String },
 }
 
 /// Whether a name has the form of a preset's: `[a-z0-9][a-z0-9_-]{0,63}`.
@@ -43,9 +34,7 @@ pub fn is_well_formed(name: &str) -> bool {
 }
 
 /// Checks a name that a preset is to be saved under.
-///
-/// # Errors
-/// It is malformed, one of the `commands`, or a shipped preset's.
+/// Errors: It is malformed, one of the `commands`, or a shipped preset's.
 pub fn check<S: AsRef<str>>(name: &str, commands: &[S]) -> Result<(), NameError> {
     let shown = quote(name);
     if !is_well_formed(name) {

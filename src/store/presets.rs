@@ -32,22 +32,17 @@ const LISTED: usize = 1000;
 /// Where a preset comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
-    /// It comes with the program.
     Shipped(&'static Shipped),
     /// It is the person's own, by name.
     User {
-        /// Its name.
         name: String,
-        /// Its file.
         path: PathBuf,
     },
-    /// A file by its path.
     File(PathBuf),
     /// A text that came through a pipe and cannot be read again.
     Piped {
         /// How messages call where it came from.
         name: String,
-        /// The text.
         text: Arc<str>,
     },
 }
@@ -76,7 +71,6 @@ impl Source {
 /// A preset as loaded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// Where it comes from.
     pub source: Source,
     /// The preset, with the assignments laid over it.
     pub preset: Preset,
@@ -91,7 +85,6 @@ pub struct Loaded {
 pub struct Listed {
     /// What to type to open it: its name, or for a file without a good name its path (safe to show).
     pub name: String,
-    /// Where it comes from.
     pub source: Source,
     /// Its title, or why it cannot be opened, in one line.
     pub title: Result<String, String>,
@@ -109,18 +102,11 @@ pub struct Listing {
 /// Why a preset was not found, loaded or saved, in one line.
 #[derive(Debug, Error)]
 pub enum StoreError {
-    /// No preset has this name.
     #[error("no preset is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
-    NotFound {
-        /// The name.
-        name: String,
-        /// The known name most alike.
-        meant: Option<String>,
-    },
+    NotFound { name: String, meant: Option<String> },
     /// The name cannot be a preset's.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
     /// The file holds no valid preset.
@@ -132,12 +118,10 @@ pub enum StoreError {
     /// Neither a configuration folder nor a home folder is known.
     #[error("no folder for presets: neither XDG_CONFIG_HOME nor HOME is set")]
     NoFolder,
-    /// The folder cannot be made.
     #[error("{path}: cannot make the folder: {cause}")]
     Folder {
         /// The folder, safe to show.
         path: String,
-        /// What the system says.
         cause: io::Error,
     },
     /// The data of a profile cannot be copied.
@@ -149,12 +133,10 @@ pub enum StoreError {
     /// What comes with the program stays.
     #[error("{0} comes with the program and cannot be deleted")]
     Shipped(&'static str),
-    /// The file cannot be deleted.
     #[error("{path}: cannot delete it: {cause}")]
     Delete {
         /// The file, safe to show.
         path: String,
-        /// What the system says.
         cause: io::Error,
     },
 }
@@ -205,18 +187,14 @@ impl Store {
     }
 
     /// The file of the preset `name`.
-    ///
-    /// # Errors
-    /// The name cannot be a preset's, or there is no folder.
+    /// Errors: The name cannot be a preset's, or there is no folder.
     pub fn path_of(&self, name: &str) -> Result<PathBuf, StoreError> {
         name::check(name, &self.commands)?;
         Ok(self.folder.as_ref().ok_or(StoreError::NoFolder)?.join(format!("{name}.toml")))
     }
 
     /// What an argument names: a path if it has a `/` or ends in `.toml`, else a preset by name.
-    ///
-    /// # Errors
-    /// No preset has the name. A path is not looked at.
+    /// Errors: No preset has the name. A path is not looked at.
     pub fn resolve(&self, argument: impl AsRef<OsStr>) -> Result<Source, StoreError> {
         let argument = argument.as_ref();
         let bytes = argument.as_encoded_bytes();
@@ -253,9 +231,7 @@ impl Store {
     }
 
     /// Loads a preset and lays `KEY=VALUE` assignments over it.
-    ///
-    /// # Errors
-    /// Its file cannot be read, or it and the assignments make no valid preset.
+    /// Errors: Its file cannot be read, or it and the assignments make no valid preset.
     pub fn load<S: AsRef<str>>(&self, source: &Source, assignments: &[S]) -> Result<Loaded, StoreError> {
         let (text, fingerprint) = match source {
             Source::Shipped(shipped) => (shipped.text.to_owned(), None),
@@ -327,9 +303,7 @@ impl Store {
     }
 
     /// Deletes the person's own preset of this name, for good, and says where its file was. Data copied beside it stay.
-    ///
-    /// # Errors
-    /// The person has no preset of this name, another saver holds the folder, or the system says no; nothing has
+    /// Errors: The person has no preset of this name, another saver holds the folder, or the system says no; nothing has
     /// changed then.
     pub fn delete(&self, name: &str) -> Result<PathBuf, StoreError> {
         let path = self.own(name)?;
@@ -342,9 +316,7 @@ impl Store {
     }
 
     /// The file of the person's own preset of this name, which can be deleted.
-    ///
-    /// # Errors
-    /// The person has no preset of this name.
+    /// Errors: The person has no preset of this name.
     pub fn own(&self, name: &str) -> Result<PathBuf, StoreError> {
         match shipped::find(name) {
             Some(shipped) => Err(StoreError::Shipped(shipped.name)),
@@ -355,9 +327,7 @@ impl Store {
 
     /// Saves a preset by name, and says where it is now and how to recognise the file. What the person has written around
     /// the values in the text that it was read `from` stays.
-    ///
-    /// # Errors
-    /// The name or the preset is not valid, or the file must not be replaced or cannot be written; nothing has
+    /// Errors: The name or the preset is not valid, or the file must not be replaced or cannot be written; nothing has
     /// changed then.
     pub fn save(
         &self,
@@ -373,9 +343,7 @@ impl Store {
     }
 
     /// The same with the data of a profile copied beside it: the preset with them is what was saved.
-    ///
-    /// # Errors
-    /// As [`save`](Self::save), or the data cannot be copied; no preset has changed then.
+    /// Errors: As [`save`](Self::save), or the data cannot be copied; no preset has changed then.
     pub fn save_with_data(
         &self,
         name: &str,
@@ -400,9 +368,7 @@ fn make_own_folder(folder: &Path) -> Result<(), StoreError> {
 }
 
 /// Makes a folder of the person's own, and those above it.
-///
-/// # Errors
-/// What the system says.
+/// Errors: What the system says.
 pub fn make_folder(folder: &Path) -> io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }
@@ -427,9 +393,7 @@ fn locked(folder: &Path, path: &Path) -> Result<FolderLock, WriteError> {
 
 /// Saves a preset to a file by its path, read back before it takes the file's place: with what the person has written
 /// around the values in the text that it was read `from`, or anew.
-///
-/// # Errors
-/// The preset is not valid, or the file must not be replaced or cannot be written; nothing has changed then.
+/// Errors: The preset is not valid, or the file must not be replaced or cannot be written; nothing has changed then.
 pub fn save_file(
     path: &Path,
     preset: &Preset,
@@ -496,7 +460,7 @@ mod tests {
         assert_eq!(rings, with_rings(50));
         let listing = store.list();
         let last = listing.presets.last().unwrap();
-        assert_eq!((last.name.as_str(), last.title.clone()), ("mine", Ok(wavy().title)));
+        assert_eq!((last.name.as_str(), last.title.as_deref()), ("mine", Ok(&*wavy().title)));
         assert_eq!(store.folder().unwrap().metadata().unwrap().permissions().mode() & 0o777, 0o700);
     }
 

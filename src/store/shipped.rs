@@ -4,9 +4,7 @@
 /// A preset, or data, that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
-    /// Its name.
     pub name: &'static str,
-    /// Its file, comments included.
     pub text: &'static str,
 }
 

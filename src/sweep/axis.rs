@@ -17,40 +17,26 @@ use toml::de::DeValue;
 pub struct Axis {
     /// A dotted key that [`Preset::set`] takes.
     pub key: String,
-    /// Its values.
     pub points: Points,
 }
 
 /// The values of an axis; every number is in the units of the preset: SI, or reduced.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Points {
-    /// These.
     Values(Vec<Value>),
-    /// In equal steps.
     Linear {
-        /// The first.
         from: f64,
-        /// The last.
         to: f64,
-        /// How many.
         count: u64,
     },
-    /// Whole numbers in equal steps.
     Whole {
-        /// The first.
         from: i64,
-        /// From one to the next.
         step: i64,
-        /// How many.
         count: u64,
     },
-    /// In equal ratios.
     Logarithmic {
-        /// The first.
         from: f64,
-        /// The last.
         to: f64,
-        /// How many.
         count: u64,
     },
     /// Drawn at random, one for each row.
@@ -60,15 +46,10 @@ pub enum Points {
 /// From what values are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
-    /// Evenly between the two.
     Uniform([f64; 2]),
-    /// Their logarithm evenly.
     LogUniform([f64; 2]),
-    /// Normally.
     Normal {
-        /// The mean.
         mean: f64,
-        /// The standard deviation.
         deviation: f64,
     },
     /// Whole numbers, each as likely, both ends included.

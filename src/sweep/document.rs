@@ -10,7 +10,6 @@ use toml::de::{DeArray, DeTable, DeValue};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{origin}: {what}")]
 pub struct SpecError {
-    /// Where.
     pub origin: Origin,
     /// What, safe to show.
     pub what: String,

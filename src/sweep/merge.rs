@@ -16,86 +16,41 @@ use thiserror::Error;
 /// Why parts cannot be joined. Paths are safe to show.
 #[derive(Debug, Error)]
 pub enum MergeError {
-    /// The result cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// There is a file already.
     #[error("{path}: exists already; --overwrite replaces it")]
-    Exists {
-        /// The file.
-        path: String,
-    },
+    Exists { path: String },
     /// Nothing says what a part is.
     #[error("{path}: is not known to be a part of a sweep ({cause})")]
-    NotOurs {
-        /// The part.
-        path: String,
-        /// Why not.
-        cause: SidecarError,
-    },
-    /// A part of another sweep.
+    NotOurs { path: String, cause: SidecarError },
     #[error("{path}: is of another sweep than {first}")]
-    OtherSweep {
-        /// The part.
-        path: String,
-        /// The first part.
-        first: String,
-    },
-    /// A part of another division.
+    OtherSweep { path: String, first: String },
     #[error("{path}: is shard {found}, while {first} is one of {of}")]
     OtherDivision {
-        /// The part.
         path: String,
-        /// What it is.
         found: Shard,
-        /// The first part.
         first: String,
         /// Into how many parts the first one is divided.
         of: u64,
     },
     /// Two parts that are the same.
     #[error("{path}: is shard {shard}, as is {other}")]
-    Doubled {
-        /// The part.
-        path: String,
-        /// What it is.
-        shard: Shard,
-        /// The other.
-        other: String,
-    },
-    /// Parts that are not given.
+    Doubled { path: String, shard: Shard, other: String },
     #[error("shards are missing: {0}")]
     Missing(String),
     /// A part that is not at its end.
     #[error("{path}: has {rows} of the {of} rows of shard {shard}; run it again to go on")]
-    Incomplete {
-        /// The part.
-        path: String,
-        /// The rows it has.
-        rows: u64,
-        /// Those it should have.
-        of: u64,
-        /// What it is.
-        shard: Shard,
-    },
+    Incomplete { path: String, rows: u64, of: u64, shard: Shard },
     /// A row that is not the one that belongs there.
     #[error("{path}:{line}: {what}: the file was changed")]
     Changed {
-        /// The part.
         path: String,
         /// The line, from 1.
         line: u64,
-        /// What is wrong with it.
         what: Wrong,
     },
-    /// A part cannot be read.
     #[error("{path}: cannot read: {cause}")]
-    Io {
-        /// The part.
-        path: String,
-        /// What the system says.
-        cause: io::Error,
-    },
+    Io { path: String, cause: io::Error },
 }
 
 impl Mend for MergeError {
@@ -129,7 +84,6 @@ struct Part {
     path: PathBuf,
     shard: Shard,
     reader: BufReader<File>,
-    /// Lines read.
     lines: u64,
     line: Vec<u8>,
 }
@@ -159,9 +113,7 @@ impl Part {
 }
 
 /// Joins `parts`, in any order, to `results`; says how many rows there are.
-///
-/// # Errors
-/// A part is missing, doubled, incomplete or of another sweep; there is a file already, and `existing` does not replace it;
+/// Errors: A part is missing, doubled, incomplete or of another sweep; there is a file already, and `existing` does not replace it;
 /// nothing has changed then.
 pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u64, MergeError> {
     let Some(first) = parts.first() else { return Err(MergeError::Missing("none is given".to_owned())) };

@@ -25,7 +25,6 @@ use thiserror::Error;
 pub enum Existing {
     /// Go on with those of the same sweep, refuse all others.
     GoOn,
-    /// Replace them.
     Overwrite,
 }
 
@@ -35,59 +34,25 @@ pub enum OutputError {
     /// The file beside them cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The system says no.
     #[error("{path}: cannot {doing}: {cause}")]
-    Io {
-        /// The file.
-        path: String,
-        /// What was being done.
-        doing: &'static str,
-        /// What the system says.
-        cause: io::Error,
-    },
-    /// Another process writes them.
+    Io { path: String, doing: &'static str, cause: io::Error },
     #[error("{path}: another pulloff is writing it")]
-    Busy {
-        /// The file.
-        path: String,
-    },
+    Busy { path: String },
     /// There is a file, and nothing beside it says that it is a sweep's.
     #[error("{path}: exists already, and is not known to be of a sweep ({cause}); --overwrite replaces it")]
-    NotOurs {
-        /// The file.
-        path: String,
-        /// Why not.
-        cause: SidecarError,
-    },
-    /// Results of another sweep.
+    NotOurs { path: String, cause: SidecarError },
     #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
-    OtherSweep {
-        /// The file.
-        path: String,
-        /// What differs, in words.
-        what: String,
-    },
-    /// Results of another part.
+    OtherSweep { path: String, what: String },
     #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
-    OtherShard {
-        /// The file.
-        path: String,
-        /// The part it holds.
-        found: Shard,
-        /// The part wanted.
-        wanted: Shard,
-    },
+    OtherShard { path: String, found: Shard, wanted: Shard },
     /// A whole line that is not what this sweep writes there.
     #[error("{path}:{line}: {what}: the file was changed; --overwrite begins anew")]
     Changed {
-        /// The file.
         path: String,
         /// The line, from 1.
         line: u64,
-        /// What is wrong with it.
         what: Wrong,
     },
-    /// No threads.
     #[error("cannot start the threads: {0}")]
     Threads(String),
 }
@@ -119,9 +84,7 @@ pub struct Output {
     /// Whole lines that are not in the file yet.
     buffer: Vec<u8>,
     flushed: Instant,
-    /// The rows that were there.
     pub rows: u64,
-    /// Their faults.
     pub faults: Faults,
 }
 
@@ -131,9 +94,7 @@ const LATEST: Duration = Duration::from_millis(200);
 
 impl Output {
     /// Opens the results of a part of a sweep, and finds how far they are.
-    ///
-    /// # Errors
-    /// They cannot be opened, or are not of this part of this sweep.
+    /// Errors: They cannot be opened, or are not of this part of this sweep.
     pub fn open(path: &Path, spec: &Spec, shard: Shard, existing: Existing) -> Result<Self, OutputError> {
         let shown = show_path(path);
         let failed = |doing| {
@@ -218,18 +179,12 @@ impl Output {
     }
 
     /// Appends a whole line, now or a little later.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn append(&mut self, line: &str) -> Result<(), OutputError> {
         self.buffer.extend_from_slice(line.as_bytes());
         if self.buffer.len() >= BUFFER || self.flushed.elapsed() >= LATEST { self.flush() } else { Ok(()) }
     }
 
     /// Writes what was appended.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         (&self.file).write_all(&self.buffer).map_err(self.failed("write"))?;
         self.buffer.clear();
@@ -238,9 +193,6 @@ impl Output {
     }
 
     /// Makes sure that the disk has all rows.
-    ///
-    /// # Errors
-    /// They cannot be written.
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.flush()?;
         if self.is_stream { Ok(()) } else { self.file.sync_all().map_err(self.failed("write")) }

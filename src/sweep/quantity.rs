@@ -11,26 +11,21 @@ use pulloff_engine::units::Quantity as Unit;
 pub struct Quantity {
     /// Its name in a spec and in the results.
     pub name: &'static str,
-    /// What is measured.
     pub unit: Unit,
     /// What it is, in one line.
     pub meaning: &'static str,
-    /// From what it is computed.
     pub(super) of: Stage,
 }
 
 /// From what a quantity is computed: each needs all before it but the paths, which need the curve alone.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stage {
-    /// The values of the preset.
     Preset(fn(&PresetValues) -> Option<Cell>),
     /// The state at the start: a basis and a search.
     Start(fn(&super::stage::StartState) -> Option<Cell>),
-    /// The equilibrium curve.
     Curve(fn(&CurveMinima) -> Result<Option<Cell>, Fault>),
     /// The limit points of a control on the curve.
     Limits,
-    /// The unloading under a control.
     Unloading(fn(&UnloadingPath) -> Option<Cell>),
     /// The states it passes that are not admissible: to find them takes longer than all the rest.
     Passed,
@@ -163,9 +158,7 @@ pub const USUAL: [&str; 6] =
 pub enum Under {
     /// That of the preset, `path.control`.
     Own,
-    /// The approach.
     Displacement,
-    /// The force.
     Force,
 }
 
@@ -188,7 +181,6 @@ impl Under {
 /// A quantity as it is wanted: a column of the results.
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
-    /// The quantity.
     pub quantity: &'static Quantity,
     /// Under which control, where that matters.
     pub under: Under,
@@ -217,9 +209,7 @@ impl Quantity {
 
 impl Column {
     /// The column of a name.
-    ///
-    /// # Errors
-    /// What is wrong with the name, in words, with the nearest one.
+    /// Errors: What is wrong with the name, in words, with the nearest one.
     pub fn named(name: &str) -> Result<Self, String> {
         let all = || QUANTITIES.iter().flat_map(Quantity::columns);
         all().find(|column| column.name() == name).ok_or_else(|| {

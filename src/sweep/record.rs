@@ -17,9 +17,7 @@ pub const ERROR: &str = "error";
 /// What is known of the rows without computing them: the values of the axes in each, and the names of all columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// The axes.
     pub axes: Vec<Axis>,
-    /// How they make rows.
     pub design: Design,
     /// The names of all columns, in their order.
     pub columns: Vec<String>,
@@ -102,9 +100,6 @@ impl Layout {
     }
 
     /// Looks at the first line.
-    ///
-    /// # Errors
-    /// It has other columns.
     pub fn check_header(&self, line: &[u8]) -> Result<(), Wrong> {
         if line == self.header().as_bytes() {
             return Ok(());
@@ -114,9 +109,7 @@ impl Layout {
     }
 
     /// The reason of the fault of a row, if it has one, from its whole line.
-    ///
-    /// # Errors
-    /// It is not the line of that row: another row or value of an axis, too few fields, no numbers.
+    /// Errors: It is not the line of that row: another row or value of an axis, too few fields, no numbers.
     pub fn fault(&self, row: u64, line: &[u8]) -> Result<Option<&'static str>, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));

@@ -14,24 +14,10 @@ pub enum ResultsError {
     /// Nothing says what the columns are.
     #[error(transparent)]
     Sidecar(#[from] SidecarError),
-    /// There is no such column.
     #[error("{path}: has no column \"{name}\"{hint}")]
-    NoColumn {
-        /// The file.
-        path: String,
-        /// The name.
-        name: String,
-        /// The nearest one, in words.
-        hint: String,
-    },
-    /// The table cannot be read.
+    NoColumn { path: String, name: String, hint: String },
     #[error("{path}: {what}")]
-    Table {
-        /// The file.
-        path: String,
-        /// What is wrong.
-        what: String,
-    },
+    Table { path: String, what: String },
 }
 
 impl Mend for ResultsError {
@@ -57,9 +43,7 @@ pub struct Results {
 
 impl Results {
     /// Opens the results; nothing but what stands beside them is read.
-    ///
-    /// # Errors
-    /// The file beside them is missing or none of ours.
+    /// Errors: The file beside them is missing or none of ours.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
@@ -83,17 +67,13 @@ impl Results {
     }
 
     /// The cells of some columns, one vector each; only these are held in memory. A torn line at the end is left out.
-    ///
-    /// # Errors
-    /// There is no such column, or the table cannot be read.
+    /// Errors: There is no such column, or the table cannot be read.
     pub fn texts(&self, names: &[&str]) -> Result<Vec<Vec<String>>, ResultsError> {
         self.read(names, |cell| Some(cell.to_owned()))
     }
 
     /// The same as numbers; an empty cell is none.
-    ///
-    /// # Errors
-    /// As [`texts`](Self::texts), or a cell is neither empty nor a number.
+    /// Errors: As [`texts`](Self::texts), or a cell is neither empty nor a number.
     pub fn numbers(&self, names: &[&str]) -> Result<Vec<Vec<Option<f64>>>, ResultsError> {
         self.read(names, |cell| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) })
     }

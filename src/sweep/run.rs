@@ -26,9 +26,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 pub struct Summary {
     /// The rows that were there before.
     pub before: u64,
-    /// The rows written now.
     pub now: u64,
-    /// The rows of this part.
     pub of: u64,
     /// The faults of all rows that are there.
     pub faults: Faults,
@@ -46,9 +44,6 @@ impl Summary {
 ///
 /// `go_on` is asked often, by every thread; when it says no, what is done is kept. `written` is told how many rows there
 /// are and how many of them have faults, several times a second.
-///
-/// # Errors
-/// The results cannot be written.
 pub fn run(
     spec: &Spec,
     shard: Shard,
@@ -96,7 +91,6 @@ struct Window {
 struct State {
     /// The next row that is written.
     written: u64,
-    /// No more rows are wanted.
     closed: bool,
 }
 

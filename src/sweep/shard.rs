@@ -13,7 +13,6 @@ pub const MOST_SHARDS: u64 = 1000;
 pub struct Shard {
     /// Which, from 1.
     pub number: u64,
-    /// Of how many.
     pub of: u64,
 }
 

@@ -24,10 +24,8 @@ const ENDING: &str = ".spec.toml";
 /// Why the file beside some results says nothing.
 #[derive(Debug, Error)]
 pub enum SidecarError {
-    /// It cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It is none of ours.
     #[error("{path}: {what}")]
     Unknown {
         /// The file, safe to show.
@@ -49,7 +47,6 @@ impl Mend for SidecarError {
 /// A column of the results.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct ColumnInfo {
-    /// Its name.
     pub name: String,
     /// What it is called in formulas; `None` where it has no such name.
     pub symbol: Option<String>,
@@ -62,13 +59,10 @@ pub struct ColumnInfo {
 /// What the file says.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct Sidecar {
-    /// The hash of the sweep.
     pub identity: String,
-    /// The part, as text.
     shard: String,
     /// The rows of the whole sweep.
     pub rows: u64,
-    /// The columns, in their order.
     #[serde(rename = "column")]
     pub columns: Vec<ColumnInfo>,
     sweep: Canonical,
@@ -228,9 +222,7 @@ impl ColumnInfo {
 
 impl Sidecar {
     /// Reads the file beside `results`, with its text.
-    ///
-    /// # Errors
-    /// It is not there, or none of ours.
+    /// Errors: It is not there, or none of ours.
     pub fn read(results: &Path) -> Result<(Self, String), SidecarError> {
         let path = path(results);
         // Every value of every axis stands in it.
@@ -243,9 +235,7 @@ impl Sidecar {
     }
 
     /// The layout of the results beside `text`, that of this file.
-    ///
-    /// # Errors
-    /// The sweep in it is none of ours.
+    /// Errors: The sweep in it is none of ours.
     pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SidecarError> {
         let path = path(results);
         let document = Document { name: &path.to_string_lossy(), text };

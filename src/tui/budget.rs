@@ -191,7 +191,7 @@ fn keys_that_come_while_a_frame_is_written_make_one_frame() {
     let (let_go, gate) = channel();
     let counter = Counter::leak((120, 40), Some(told), Some(gate));
     let mut session = Session::new("wavy-sphere", THEMES[0]);
-    let inbox = Inbox::<Reply>::new();
+    let inbox = Inbox::<Reply>::empty();
     let typist = inbox.typist();
     let driving = std::thread::spawn(move || {
         // The first frame is held by the terminal for as long as the keys come: none is in flight beside it.
@@ -244,7 +244,7 @@ fn the_first_curve_waits_for_no_pace_and_every_frame_after_it_does() {
     let store = Store::at(folder.path(), &[]);
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
     let (mut app, effects) = App::new(loaded, THEMES[0]);
-    let inbox = Inbox::<Reply>::new();
+    let inbox = Inbox::<Reply>::empty();
     let (typist, sender) = (inbox.typist(), inbox.sender());
     let driving = std::thread::spawn(move || {
         // The empty screen is there before the curve.

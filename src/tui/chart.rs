@@ -20,9 +20,7 @@ use ratatui::widgets::{Block, Widget};
 /// A curve to draw.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Its style.
     pub style: Style,
     /// How it is drawn.
     pub stroke: Stroke,
@@ -31,32 +29,25 @@ pub struct Series {
 /// A letter at a point.
 #[derive(Debug, Clone)]
 pub struct Mark {
-    /// Where.
     pub at: (f64, f64),
-    /// The letter.
     pub letter: &'static str,
-    /// Its look.
     pub style: Style,
 }
 
 /// A chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
-    /// Title, with the axes' names.
     pub title: String,
     /// What else it says, at the right end of the title's line where it fits.
     pub note: String,
     /// The name of the x axis, at its right end.
     pub x_title: String,
-    /// Closed outlines, hatched.
     pub areas: Vec<Vec<(f64, f64)>>,
     /// The curves, in the order of drawing.
     pub series: Vec<Series>,
     /// The marks, the last on top.
     pub marks: Vec<Mark>,
-    /// The cross-hair.
     pub cross: Option<(f64, f64)>,
-    /// x and y range.
     pub bounds: Bounds,
     /// What lines and letters mean, for the frame's lower edge: the first that fits.
     pub legend: Vec<String>,

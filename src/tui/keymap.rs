@@ -12,11 +12,8 @@ use pulloff_engine::text::quote;
 /// One key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
-    /// A character.
     Char(char),
-    /// A character with Ctrl.
     Ctrl(char),
-    /// A key with a name.
     Named(KeyCode),
 }
 
@@ -73,9 +70,7 @@ impl Key {
     }
 
     /// The key of a label.
-    ///
-    /// # Errors
-    /// Why a command cannot have it, in words.
+    /// Errors: Why a command cannot have it, in words.
     pub fn parse(label: &str) -> Result<Self, String> {
         let named = NAMES.iter().find(|(name, _)| name.eq_ignore_ascii_case(label)).map(|(_, key)| *key);
         let ctrl = label
@@ -187,9 +182,7 @@ impl Default for Keymap {
 
 impl Keymap {
     /// The usual keys with those of `config` instead, where it has some.
-    ///
-    /// # Errors
-    /// A key that is none or is reserved, one that two commands would have, or no key for the command line.
+    /// Errors: A key that is none or is reserved, one that two commands would have, or no key for the command line.
     pub fn of(config: &Config) -> Result<Self, ConfigError> {
         let (mut map, mut mistakes) = (Self::default(), Vec::new());
         for binding in &config.keys {

@@ -11,17 +11,12 @@ pub const SMALLEST: (u16, u16) = (40, 10);
 pub struct Regions {
     /// The preset and what is controlled.
     pub header: Rect,
-    /// The parameters.
     pub problem: Option<Rect>,
-    /// The walker.
     pub walker: Option<Rect>,
     /// The views with their place, the first one first.
     pub charts: Vec<(View, Rect)>,
-    /// The instabilities.
     pub events: Option<Rect>,
-    /// What the state is.
     pub status: Rect,
-    /// The keys.
     pub footer: Rect,
 }
 

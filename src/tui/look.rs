@@ -18,7 +18,6 @@ use clap::ValueEnum;
 /// What the command line or the table `[look]` of a configuration asks for; nothing where it says nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LookFile {
-    /// The colours.
     pub theme: Option<Palette>,
     /// What curves are drawn with.
     pub charts: Option<Charts>,
@@ -49,14 +48,12 @@ pub struct Environment {
     pub no_color: bool,
     /// The locale's characters are UTF-8.
     pub utf8: bool,
-    /// TERM.
     pub term: String,
 }
 
 /// How the screen looks, and whether the mouse is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Look {
-    /// The colours.
     pub theme: Palette,
     /// What curves are drawn with.
     pub charts: Charts,

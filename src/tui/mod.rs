@@ -56,7 +56,6 @@ use view::Pictures;
 /// What a person has set, ready to be used.
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
-    /// The keys of the commands.
     pub keymap: Keymap,
     /// How the screen is to look.
     pub look: look::LookFile,
@@ -71,7 +70,6 @@ pub enum Start {
     Preset(Box<Loaded>, Option<String>),
     /// A preset, with the offer to resume a session that was cut off.
     Offer(Box<Loaded>, Box<Held>),
-    /// A session.
     Resume(Box<Held>),
 }
 
@@ -116,9 +114,7 @@ fn begin(start: Start, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, 
 }
 
 /// Runs the explorer until the person quits; its session is kept in `archive`.
-///
-/// # Errors
-/// When the terminal cannot be taken, or the system gives no thread.
+/// Errors: When the terminal cannot be taken, or the system gives no thread.
 pub fn run(
     store: Store,
     archive: Archive,

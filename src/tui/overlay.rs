@@ -11,15 +11,12 @@ use tui_input::Input;
 /// What lies over the screen.
 #[derive(Debug, Clone)]
 pub enum Overlay {
-    /// A line to type.
     Prompt(Prompt),
-    /// A list to choose from.
     Choose(Choose),
     /// A question to answer with yes or no.
     Confirm(Confirm),
     /// A session to resume, or not.
     Offer(Offer),
-    /// The help.
     Help(Help),
 }
 
@@ -36,15 +33,12 @@ pub const LONGEST_LINE: usize = 4096;
 /// A line to type.
 #[derive(Debug, Clone)]
 pub struct Prompt {
-    /// What is asked for.
     pub title: String,
     /// What is allowed, in one line.
     pub note: String,
-    /// What has been typed.
     pub input: Input,
     /// Whether the text is still the old value: the first character typed replaces it.
     pub fresh: bool,
-    /// What it is for.
     pub purpose: Purpose,
     /// Why the last try was refused.
     pub error: Option<String>,
@@ -57,18 +51,14 @@ pub struct Prompt {
 /// What a typed line is for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
-    /// The value of a key.
     Value(Key),
     /// The gap as a formula: tried while it is typed.
     Formula(Key),
-    /// The name to save under.
     Name {
         /// Whether the data of a profile are copied beside the preset.
         with_data: bool,
     },
-    /// The file to export to.
     File(ExportKind),
-    /// The file for this page.
     Page(Page),
     /// The path of a preset to open.
     Path,
@@ -79,11 +69,9 @@ pub enum Purpose {
 /// The help, and what is looked for in it.
 #[derive(Debug, Clone, Default)]
 pub struct Help {
-    /// The first line shown.
     pub line: usize,
     /// What is being typed to look for.
     pub typing: Option<Input>,
-    /// What was looked for last.
     pub pattern: String,
     /// Where it was found: the line, the number of that place from 1, and how many there are.
     pub found: Option<(usize, usize, usize)>,
@@ -139,9 +127,7 @@ impl Purpose {
 /// A list to choose from.
 #[derive(Debug, Clone)]
 pub struct Choose {
-    /// What is chosen.
     pub title: String,
-    /// Its lines.
     pub items: Vec<Item>,
     /// What was typed: only lines with it are shown.
     pub filter: String,
@@ -168,9 +154,7 @@ impl Choose {
 /// One line of a list.
 #[derive(Debug, Clone)]
 pub struct Item {
-    /// What it shows.
     pub text: String,
-    /// What it does.
     pub action: Action,
     /// What is asked before it is deleted, and what does it; nothing where it cannot be.
     pub delete: Option<Box<Confirm>>,
@@ -186,11 +170,8 @@ impl Item {
 /// What choosing a line does.
 #[derive(Debug, Clone)]
 pub enum Action {
-    /// A command.
     Command(Command),
-    /// Asks for a line.
     Prompt(Box<Prompt>),
-    /// Puts something into the clipboard.
     Copy(Content),
 }
 
@@ -199,7 +180,6 @@ pub enum Action {
 pub struct Offer {
     /// What is offered, and how to answer.
     pub question: String,
-    /// The session.
     pub snapshot: Box<Snapshot>,
 }
 
@@ -208,7 +188,6 @@ pub struct Offer {
 pub struct Confirm {
     /// The question, ending in what `y` does.
     pub question: String,
-    /// What yes does.
     pub yes: Command,
 }
 
@@ -217,11 +196,8 @@ pub struct Confirm {
 pub enum Content {
     /// The state of the walker, a quantity a line.
     State,
-    /// The events shown, with tabs.
     Events,
-    /// The first chart.
     Chart,
-    /// The whole screen.
     Screen,
 }
 

@@ -12,23 +12,16 @@ use ratatui::symbols::Marker;
 /// How a curve is drawn; no two look alike, so that none needs its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// A line.
     Solid,
-    /// Close dots.
     Dotted,
-    /// Dots far apart.
     Sparse,
-    /// Dashes.
     Dashed,
-    /// Short dashes.
     ShortDashed,
-    /// Long dashes.
     LongDashed,
     /// Long and short dashes in turn.
     DashDotted,
     /// A line with this letter along it.
     Marked(&'static str),
-    /// Dots with this letter between.
     Lettered(&'static str),
     /// This letter again and again, over what else is there.
     Repeated(&'static str),

@@ -31,13 +31,11 @@ struct Shared {
 #[derive(Debug, Default)]
 struct Desk {
     newest: Option<Arc<Snapshot>>,
-    /// How many there have been.
     count: u64,
     /// The last snapshots of sessions that the person has left for another.
     left: Vec<Arc<Snapshot>>,
     /// A resumed session as it is in its file, the right to write it, and how it had ended.
     resumed: Option<(Snapshot, Claim, Ended)>,
-    /// Nothing is written any more.
     is_over: bool,
 }
 
@@ -53,16 +51,13 @@ struct Writer {
 }
 
 impl Autosave {
-    /// A keeper that nobody works for: [`Autosave::start`] writes by itself.
+    /// Writes nothing until [`Autosave::start`].
     pub fn new(archive: Archive) -> Self {
         let (desk, writer) = (Mutex::default(), Mutex::default());
         Self(Arc::new(Shared { archive, desk, filled: Condvar::new(), writer }))
     }
 
     /// Starts the thread that writes; what a person should know is told to `tell`.
-    ///
-    /// # Errors
-    /// When the system gives no thread.
     pub fn start(&self, tell: impl Fn(String) + Send + 'static) -> std::io::Result<()> {
         let keeper = self.clone();
         thread::Builder::new().name("session".to_owned()).spawn(move || keeper.work(&tell))?;
@@ -89,9 +84,7 @@ impl Autosave {
 
     /// Writes the newest state for the last time, from any thread, and gives the session up; waits no longer than
     /// `patience` for a write that is under way.
-    ///
-    /// # Errors
-    /// Why it was not written. The file is as it was.
+    /// Errors: Why it was not written. The file is as it was.
     pub fn finish(&self, ended: Ended, patience: Duration) -> Result<(), String> {
         let until = Instant::now() + patience;
         let busy = || "the one before is still being written".to_owned();

@@ -50,48 +50,36 @@ pub enum ArchiveError {
     /// Neither a state folder nor a home folder is known.
     #[error("no folder for sessions: neither XDG_STATE_HOME nor HOME is set")]
     NoFolder,
-    /// No session has this name.
     #[error("no session is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
     NotFound {
         /// The name, safe to show.
         name: String,
-        /// The known name most alike.
         meant: Option<String>,
     },
     /// There is no session at all.
     #[error("there is no session to resume")]
     Empty,
-    /// Another program writes it.
     #[error("the session {name} is running in another pulloff")]
-    Running {
-        /// Its name.
-        name: String,
-    },
+    Running { name: String },
     /// Its file is no session of this program.
     #[error("{path}: {cause}")]
     Unreadable {
         /// The file, safe to show.
         path: String,
-        /// Why.
         cause: Unreadable,
     },
-    /// Its file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Its file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// It has no form as a document.
     #[error("the session cannot be written: {0}")]
     Document(serde_json::Error),
-    /// The system says no.
     #[error("{path}: cannot {doing}: {cause}")]
     Io {
         /// The file or folder, safe to show.
         path: String,
-        /// What was being done.
         doing: &'static str,
-        /// What the system says.
         cause: io::Error,
     },
 }
@@ -132,22 +120,17 @@ fn failed(path: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> Archive
 /// One line of the list of sessions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Its name.
     pub name: String,
-    /// When it was last written.
     pub written: SystemTime,
-    /// The size of its file.
     pub bytes: u64,
 }
 
 /// A session read, and held until it is written or dropped.
 #[derive(Debug)]
 pub struct Held {
-    /// The right to write it.
     pub claim: Claim,
     /// What a list shows of it.
     pub summary: Summary,
-    /// What is in it.
     pub snapshot: Snapshot,
 }
 
@@ -182,9 +165,7 @@ impl Archive {
     }
 
     /// The sessions, the newest first.
-    ///
-    /// # Errors
-    /// The folder cannot be listed; one that is not there is empty.
+    /// Errors: The folder cannot be listed; one that is not there is empty.
     pub fn list(&self) -> Result<Vec<Entry>, ArchiveError> {
         let Some(folder) = &self.folder else { return Ok(Vec::new()) };
         let files = match fs::read_dir(folder) {
@@ -219,17 +200,13 @@ impl Archive {
     }
 
     /// The bytes of a session, as they are.
-    ///
-    /// # Errors
-    /// It is not there or cannot be read.
+    /// Errors: It is not there or cannot be read.
     pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ArchiveError> {
         Ok(read_bytes(&self.path(name)?, LARGEST)?.0)
     }
 
     /// What a list shows of a session.
-    ///
-    /// # Errors
-    /// It is not there, cannot be read, or is no session of this program.
+    /// Errors: It is not there, cannot be read, or is no session of this program.
     pub fn summary(&self, name: &str) -> Result<Summary, ArchiveError> {
         let path = self.path(name)?;
         let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
@@ -250,17 +227,12 @@ impl Archive {
     }
 
     /// The newest session that no program writes; with its name.
-    ///
-    /// # Errors
-    /// As [`list`](Self::list).
     pub fn newest(&self) -> Result<Option<String>, ArchiveError> {
         Ok(self.list()?.into_iter().map(|entry| entry.name).find(|name| !self.is_running(name)))
     }
 
     /// Reads a session and holds it: nobody else can.
-    ///
-    /// # Errors
-    /// It is not there, another program holds it, or it cannot be read; its file is as it was.
+    /// Errors: It is not there, another program holds it, or it cannot be read; its file is as it was.
     pub fn load(&self, name: &str) -> Result<Held, ArchiveError> {
         let path = self.path(name)?;
         let claim = Claim::of(self.folder_or()?, name)?;
@@ -273,9 +245,7 @@ impl Archive {
 
     /// The newest session, if it was cut off: its program did not end as its person wanted. One that is damaged is
     /// kept aside under another name.
-    ///
-    /// # Errors
-    /// Words for the person; nothing but this one session is the matter.
+    /// Errors: Words for the person; nothing but this one session is the matter.
     pub fn cut_off(&self) -> Result<Option<Held>, String> {
         // A folder that cannot be read will be a notice once there is something to write.
         let Ok(Some(name)) = self.newest() else { return Ok(None) };
@@ -307,9 +277,7 @@ impl Archive {
     }
 
     /// Removes a session.
-    ///
-    /// # Errors
-    /// It is not there, a program writes it, or the system says no.
+    /// Errors: It is not there, a program writes it, or the system says no.
     pub fn delete(&self, name: &str) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
         let _claim = Claim::of(self.folder_or()?, name)?;
@@ -317,9 +285,7 @@ impl Archive {
     }
 
     /// The right to write a new session, called after `base` and the next number.
-    ///
-    /// # Errors
-    /// The folder cannot be made, or no file in it.
+    /// Errors: The folder cannot be made, or no file in it.
     pub fn begin(&self, base: &str) -> Result<Claim, ArchiveError> {
         let folder = self.folder_or()?;
         crate::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;

@@ -6,7 +6,6 @@ use pulloff_engine::text::is_unsafe;
 /// A word of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Word {
-    /// Without its quotes.
     pub text: String,
     /// Where it begins, in characters from 1.
     pub column: usize,

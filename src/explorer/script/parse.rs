@@ -17,9 +17,7 @@ const TRY: &str = "try";
 pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
 
 /// The command of a line; `None` where there is none.
-///
-/// # Errors
-/// What is wrong, where, and what is allowed.
+/// Errors: What is wrong, where, and what is allowed.
 pub fn parse(line: &str) -> Result<Option<Command>, Fault> {
     let words = split(line)?;
     let Some((name, rest)) = words.split_first() else { return Ok(None) };
@@ -41,9 +39,6 @@ pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, Fault> 
 }
 
 /// Whether a command means something without a screen.
-///
-/// # Errors
-/// Why not, in words.
 pub fn for_script(command: &Command) -> Result<(), String> {
     let row = row_of(command.id());
     let missing = |what: &str| Err(format!("{} needs {what}", row.name));

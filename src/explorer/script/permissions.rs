@@ -12,16 +12,11 @@ use std::path::Path;
 /// What a script may do to files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Permission {
-    /// Replace files.
     pub overwrite: bool,
-    /// Write outside the current folder.
     pub anywhere: bool,
 }
 
 /// The command as it may be done.
-///
-/// # Errors
-/// Why it may not.
 pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -> Result<Command, String> {
     let Permission { overwrite, anywhere } = permission;
     let may_replace = |replace: bool| match (replace, overwrite) {

@@ -17,18 +17,14 @@ use thiserror::Error;
 pub struct Failed {
     /// The line's number, from 1.
     pub number: usize,
-    /// The command.
     pub command: String,
-    /// Why it failed.
     pub reason: Reason,
 }
 
 /// Does `effects`, and then the lines one after another; `told` hears of each that was done.
 ///
 /// What ends a run (a limit point, the end of the path) is no failure.
-///
-/// # Errors
-/// The first line that fails; those behind it are not done.
+/// Errors: The first line that fails; those behind it are not done.
 pub fn play(
     model: &mut Model,
     driver: &Inline,

@@ -23,7 +23,6 @@ pub struct Line {
     pub number: usize,
     /// Whether the script goes on when it fails.
     pub may_fail: bool,
-    /// What is to be done.
     pub command: Command,
 }
 
@@ -47,9 +46,7 @@ impl fmt::Display for ScriptError {
 }
 
 /// Reads a script; `name` names it in messages. Nothing of it is done.
-///
-/// # Errors
-/// All lines that are no commands, or none for a script.
+/// Errors: All lines that are no commands, or none for a script.
 pub fn read(name: &str, text: &str) -> Result<Vec<Line>, ScriptError> {
     let (mut lines, mut faults) = (Vec::new(), Vec::new());
     for (i, text) in text.lines().enumerate() {

@@ -20,7 +20,6 @@ use std::sync::Arc;
 pub enum Ended {
     /// It has not, or its program was killed.
     Running,
-    /// The person left it.
     Quit,
     /// The connection dropped, or a signal or a fault ended the program.
     Dropped,
@@ -40,19 +39,14 @@ impl Ended {
 /// What a list shows of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// The version of the format.
     pub format: u32,
     /// The version of the program that wrote it.
     pub program_version: String,
-    /// How it ended.
     pub ended: Ended,
     /// When it was written, in seconds since 1970.
     pub saved_at: u64,
-    /// What its preset is called.
     pub preset_name: String,
-    /// The title of its preset.
     pub title: String,
-    /// The states walked by hand.
     pub steps: usize,
     /// Whether its preset has changes that are in no file.
     pub unsaved: bool,
@@ -195,9 +189,7 @@ impl Document {
     }
 
     /// As JSON, in one line.
-    ///
-    /// # Errors
-    /// None that is known: every number and text has a form.
+    /// Errors: None that is known: every number and text has a form.
     pub fn json(&self) -> serde_json::Result<Vec<u8>> {
         let mut bytes = serde_json::to_vec(self)?;
         bytes.push(b'\n');
@@ -205,9 +197,6 @@ impl Document {
     }
 
     /// Reads a document.
-    ///
-    /// # Errors
-    /// [`Unreadable`].
     pub fn read(bytes: &[u8]) -> Result<Self, Unreadable> {
         check_format(bytes)?;
         serde_json::from_slice(bytes).map_err(|error| damaged(&error))
@@ -224,9 +213,7 @@ impl Document {
     }
 
     /// The snapshot of it; no problem is made ready and no file is read.
-    ///
-    /// # Errors
-    /// [`Unreadable::Damaged`].
+    /// Errors: [`Unreadable::Damaged`].
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
         let Restored { presets, settings, was_former } = self.problems.back()?;
         let preset = |number: usize| {
@@ -257,9 +244,6 @@ fn damaged(error: &serde_json::Error) -> Unreadable {
 }
 
 /// What a list shows of a document.
-///
-/// # Errors
-/// [`Unreadable`].
 pub fn summary(bytes: &[u8]) -> Result<Summary, Unreadable> {
     check_format(bytes)?;
     serde_json::from_slice(bytes).map_err(|error| damaged(&error))

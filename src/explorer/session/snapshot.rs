@@ -22,11 +22,9 @@ pub struct Snapshot {
     pub preset: Preset,
     /// The preset as loaded or last saved.
     pub saved: Preset,
-    /// Where it came from.
     pub source: Source,
     /// How its file was when last seen.
     pub fingerprint: Option<Fingerprint>,
-    /// The walk.
     pub history: History,
     /// Whether the walker has been tried on the preset as it is.
     pub settled: bool,
@@ -34,7 +32,6 @@ pub struct Snapshot {
     pub pins: Vec<(usize, Preset)>,
     /// How it is looked at and walked.
     pub look: Look,
-    /// The script that leads here.
     pub journal: Kept,
     /// Whether it was read from a session that calls the exact basis spectral, as programs before this one did.
     pub was_former: bool,
@@ -46,27 +43,19 @@ const FORMER: &str = "its basis spectral is exact now";
 /// How a session is looked at and walked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Look {
-    /// The panel selected.
     pub panel: Panel,
-    /// The parameter selected.
     pub parameter: usize,
-    /// The event selected.
     pub event: usize,
-    /// The first view.
     pub view: View,
     /// The parts of the views that are shown, where that is not the whole.
     pub windows: Vec<(View, Window)>,
-    /// The cross-hair.
     pub cross: Option<(f64, f64)>,
-    /// What the axes show.
     pub axes: Axes,
-    /// Where the events come from.
     pub events: EventSource,
     /// The theory drawn.
     pub overlays: Overlays,
     /// Whether steps shrink the contact.
     pub inward: bool,
-    /// The longest step by hand.
     pub length: f64,
     /// The last stiffness of the device.
     pub stiffness: Option<f64>,

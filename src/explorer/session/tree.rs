@@ -19,7 +19,6 @@ use std::sync::Arc;
 pub(super) struct Saved {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     parent: Option<usize>,
-    /// The child last gone to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     forward: Option<usize>,
     kind: Kind,

@@ -8,7 +8,6 @@ pub const FORMAT: u32 = 1;
 /// Why a document is no session of this program.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Unreadable {
-    /// Not what was written.
     #[error("the session is damaged: {0}")]
     Damaged(String),
     /// Of a later version of the program.
@@ -17,7 +16,6 @@ pub enum Unreadable {
          {FORMAT}"
     )]
     Future {
-        /// Its format.
         format: u32,
         /// The version of the program that wrote it.
         program: String,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.curve_shown = model.curve_wanted;
-    let control = model.curve.as_ref().filter(|curve| curve.sweep.is_of(&model.preset)).map(|curve| {
+    let control = model.curve.as_ref().filter(|curve| curve.base.is_of(&model.preset)).map(|curve| {
         // Only the control was changed, which undo does not take back.
         curve.setting.preset.path.control
     });

@@ -23,8 +23,8 @@ use std::sync::Arc;
 /// The stiffness of the contact at the start in the user's units; before there is a curve, the unit of stiffness.
 fn contact_stiffness(model: &Model) -> f64 {
     let known = model.curve.as_ref().and_then(|curve| {
-        let sweep = &curve.sweep;
-        Some(sweep.stiffness?.in_units(sweep.case.units()).contact)
+        let base = &curve.base;
+        Some(base.stiffness?.in_units(base.case.units()).contact)
     });
     known.unwrap_or_else(|| model.preset.problem().reduced().units.stiffness)
 }

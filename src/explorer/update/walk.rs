@@ -252,10 +252,10 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
 
 /// The first state of the walk: the start of the curve.
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
-    let drawn = &curve.sweep.curve;
+    let drawn = &curve.base.curve;
     let Some(point) = drawn.equilibrium.explicit(drawn.outermost()) else { return };
-    let (Some(stiffness), Some(admissibility)) = (curve.sweep.stiffness, curve.sweep.start) else { return };
-    let state = curve.sweep.curve.equilibrium.state(&point);
+    let (Some(stiffness), Some(admissibility)) = (curve.base.stiffness, curve.base.start) else { return };
+    let state = curve.base.curve.equilibrium.state(&point);
     let control = curve.case.control;
     model.journal.begin(model.source.clone(), curve.setting.preset.clone());
     model.history.push(Node {
@@ -269,7 +269,7 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         stiffness,
         ahead: None,
         admissibility,
-        digits: curve.sweep.digits,
+        digits: curve.base.digits,
         from_exact: from_exact(&curve.case, &state),
         begins: true,
         request: 0,

@@ -37,7 +37,7 @@ pub(super) struct CellEncoder<'a> {
 }
 
 impl<'a> CellEncoder<'a> {
-    /// A encoder that is nobody knows where.
+    /// An encoder that does not know where the cursor is.
     pub(super) fn new(frame: &'a mut Vec<u8>) -> Self {
         Self { frame, ink: PLAIN, at: None, is_sure: false }
     }
@@ -164,11 +164,9 @@ fn color(codes: &mut String, color: Color, shift: u8) {
 
 /// How many columns a symbol takes.
 enum Width {
-    /// One, on any terminal.
     One,
     /// One, but two on some that are set up for East Asian text.
     MostlyOne,
-    /// Nothing is known of it.
     Other,
 }
 

@@ -26,10 +26,7 @@ impl Drop for Guard {
 /// From here on SIGTERM, SIGINT, SIGHUP and SIGQUIT end the process with 128 plus their number, the loss of the
 /// terminal with 129 and a panic in any thread with 101, each after the last words
 /// ([`set_last_words`](super::set_last_words)) and with the terminal given back.
-///
-/// # Errors
-///
-/// If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
+/// Errors: If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
 /// cannot be started. The terminal is then as it was.
 pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl Sink>, Inbox<T>)> {
     let tty = Tty::open()?;
@@ -38,7 +35,7 @@ pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl Sink>, Inbo
     let signals = signals::catch()?;
     let guard = Guard(());
     tty.take()?;
-    let inbox = Inbox::new();
+    let inbox = Inbox::empty();
     signals::serve(signals, tty, inbox.notifier())?;
     hangup::watch(tty)?;
     inbox.read_terminal(tty)?;

@@ -40,7 +40,6 @@ pub enum Incoming<T> {
 /// What travels in the queue.
 enum Post<T> {
     Message(Incoming<T>),
-    /// Look at the notices.
     Notice,
 }
 
@@ -61,7 +60,8 @@ pub struct Inbox<T> {
 }
 
 impl<T: Send + 'static> Inbox<T> {
-    pub fn new() -> Self {
+    /// A queue with nothing in it.
+    pub fn empty() -> Self {
         let (sender, receiver) = sync_channel(CAPACITY);
         Self { receiver, sender, notices: Arc::default() }
     }
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn messages_arrive_in_order_and_the_wait_ends_at_the_deadline() {
-        let inbox = Inbox::new();
+        let inbox = Inbox::empty();
         let sender = inbox.sender();
         assert!(sender.send(1) && sender.send(2));
         assert_eq!(inbox.next(None), Some(Incoming::App(1)));
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn notices_collapse_and_pass_a_full_queue() {
-        let inbox = Inbox::new();
+        let inbox = Inbox::empty();
         let (sender, notifier) = (inbox.sender(), inbox.notifier());
         for number in 0..CAPACITY {
             assert!(sender.send(number));
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_notice_wakes_a_waiting_loop() {
-        let inbox = Inbox::<()>::new();
+        let inbox = Inbox::<()>::empty();
         let notifier = inbox.notifier();
         let waker = thread::spawn(move || notifier.resized());
         assert_eq!(inbox.next(None), Some(Incoming::Resized));
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn one_round_takes_at_most_one_queue_full() {
-        let inbox = Inbox::new();
+        let inbox = Inbox::empty();
         let sender = inbox.sender();
         let worker = thread::spawn(move || (0..CAPACITY + 10).all(|number| sender.send(number)));
         let first = inbox.next(None);

@@ -27,7 +27,6 @@ use super::sink::Sink;
 /// The terminal as ratatui sees it.
 pub struct Screen<S: Sink + 'static> {
     line: &'static S,
-    /// The frame so far.
     frame: Vec<u8>,
     /// Whether the cursor is shown, if known.
     cursor_shown: Option<bool>,

@@ -61,7 +61,6 @@ pub(super) struct Tty {
     before: Mutex<Termios>,
     /// How often the terminal changed hands. Odd: ours. A frame begun under another number is not continued.
     hands: AtomicU32,
-    /// Whether the mouse is wanted.
     mouse: AtomicBool,
     /// Held for the length of one write.
     turn: Mutex<()>,

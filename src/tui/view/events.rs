@@ -69,7 +69,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         .collect();
     // Where there is room; the documents have it too.
     let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);
-    let notes = notes.flat_map(|curve| &curve.sweep.notes);
+    let notes = notes.flat_map(|curve| &curve.base.notes);
     lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
     frame.render_widget(Paragraph::new(lines), body);
 }
@@ -127,7 +127,7 @@ fn title(model: &Model, keymap: &Keymap) -> String {
 /// `P_c`, by which forces are divided; 0 without adhesion, and on raw axes where forces have no column of their own.
 fn critical(model: &Model, wide: bool) -> f64 {
     let curve = model.curve.as_ref().filter(|_| wide || model.axes == Axes::Reduced);
-    curve.map_or(0.0, |curve| curve.sweep.critical_force)
+    curve.map_or(0.0, |curve| curve.base.critical_force)
 }
 
 /// Pull-off and total loss, as much of it as there is room for.
@@ -146,8 +146,8 @@ fn headline(model: &Model, room: usize) -> String {
     }
     let Some(report) = &curve.report else { return String::new() };
     let least = shown(Quantity::Force, report.min_force);
-    let share = (curve.sweep.critical_force > 0.0)
-        .then(|| format!("{} Pc", significant(report.min_force / curve.sweep.critical_force, 4)));
+    let share = (curve.base.critical_force > 0.0)
+        .then(|| format!("{} Pc", significant(report.min_force / curve.base.critical_force, 4)));
     let force = share.clone().filter(|_| model.axes == Axes::Reduced).unwrap_or_else(|| least.clone());
     // Both, where the one has a unit and there is room.
     let both =

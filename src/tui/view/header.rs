@@ -51,7 +51,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             theme.dim(),
         ));
     }
-    let warnings = model.curve.iter().flat_map(|curve| &curve.sweep.warnings);
+    let warnings = model.curve.iter().flat_map(|curve| &curve.base.warnings);
     let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
     // What is under way and a warning need the room more than what the Problem panel says as well.
     if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())

@@ -81,8 +81,8 @@ fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<Entry> {
     let entry = |text: &str, style| Entry::new("  ", theme.text(text), style);
     let mut entries = vec![entry(&keymap.spelled(&model.status().1), Style::new())];
     if let Some(curve) = &model.curve {
-        entries.extend(curve.sweep.warnings.iter().map(|text| entry(&format!("! {text}"), theme.error())));
-        entries.extend(curve.sweep.notes.iter().map(|text| entry(text, Style::new())));
+        entries.extend(curve.base.warnings.iter().map(|text| entry(&format!("! {text}"), theme.error())));
+        entries.extend(curve.base.notes.iter().map(|text| entry(text, Style::new())));
     }
     entries
 }

@@ -20,12 +20,16 @@ use std::sync::Arc;
 /// A panel, and what of the session only this panel shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum What {
-    /// The state of the walker.
     Walker,
     /// The instabilities, and the selected one.
     Events(usize),
     /// A view, its window, and the cross-hair; the first has the keys.
-    Chart { view: View, window: Window, cross: Option<(f64, f64)>, is_first: bool },
+    Chart {
+        view: View,
+        window: Window,
+        cross: Option<(f64, f64)>,
+        is_first: bool,
+    },
 }
 
 /// A panel as it was drawn.
@@ -33,7 +37,6 @@ pub(super) enum What {
 struct Picture {
     what: What,
     is_selected: bool,
-    /// Its cells and its place.
     cells: Buffer,
 }
 
@@ -43,7 +46,6 @@ pub struct Pictures {
     scene: Option<Scene>,
     /// Those of the frame before, as far as they have not been shown again,
     old: Vec<Picture>,
-    /// and those of this one.
     shown: Vec<Picture>,
 }
 
@@ -103,7 +105,6 @@ fn copy(from: &Buffer, to: &mut Buffer, area: Rect) {
 #[derive(Debug)]
 struct Scene {
     session: u64,
-    /// Of the history.
     revision: u64,
     curve: Option<Arc<CurveData>>,
     /// What stands in place of a curve.

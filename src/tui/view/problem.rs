@@ -26,9 +26,7 @@ struct Arranged {
     parameters: usize,
     /// The first one shown: the list scrolls so that the selected line is seen.
     first: usize,
-    /// So many lines have parameters.
     rows: usize,
-    /// The lines below.
     groups: Vec<Line<'static>>,
 }
 

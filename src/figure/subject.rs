@@ -1,0 +1,78 @@
+//! What figures are built from.
+
+use super::scale::Scale;
+use crate::explorer::branches::{Branch, branches};
+use crate::explorer::model::is_on_curve;
+use crate::explorer::pins::{Pin, name_among};
+use crate::explorer::profile::Inside;
+use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
+use pulloff_engine::preset::Preset;
+
+/// What figures are built from.
+#[derive(Debug, Clone)]
+pub struct Subject<'a> {
+    /// The curve with its theory and its path.
+    pub curve: &'a CurveData,
+    /// The states that led to the walker, which is the last.
+    pub walk: Vec<&'a Node>,
+    /// The other branches of the walk.
+    pub branches: Vec<Branch<'a>>,
+    /// The inside of the walker's state, where it is known.
+    pub inside: Option<&'a Inside>,
+    /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
+    pub device: Option<[(f64, f64); 2]>,
+    pub pins: &'a [Pin],
+    /// The preset by which the pins are named.
+    pub preset: &'a Preset,
+    /// The theory to draw.
+    pub overlays: Overlays,
+    /// What the axes are divided by.
+    pub axes: Axes,
+}
+
+impl<'a> Subject<'a> {
+    /// What is on the screen of a session; `None` before its first curve.
+    pub fn of(model: &'a Model) -> Option<Self> {
+        Some(Self {
+            curve: model.curve.as_deref()?,
+            walk: model.history.path().into_iter().map(|(_, node)| node).collect(),
+            branches: branches(&model.history).into_iter().filter(|branch| !branch.is_here).collect(),
+            inside: model.shown_profile(),
+            device: device::line(model),
+            pins: model.pins.all(),
+            preset: &model.preset,
+            overlays: model.overlays,
+            axes: model.axes,
+        })
+    }
+
+    /// A curve nobody walks on, with its theory.
+    pub fn alone(curve: &'a CurveData, overlays: Overlays) -> Self {
+        Self {
+            curve,
+            walk: Vec::new(),
+            branches: Vec::new(),
+            inside: None,
+            device: None,
+            pins: &[],
+            preset: &curve.setting.preset,
+            overlays,
+            axes: Axes::Reduced,
+        }
+    }
+
+    /// The divisors of the axes.
+    pub fn scale(&self) -> Scale<'a> {
+        Scale::of(self.curve, self.axes)
+    }
+
+    /// What tells the curve from the pinned ones beside it, named as they are; `None` without any.
+    pub fn own_name(&self) -> Option<String> {
+        name_among(&self.curve.setting.preset, self.pins)
+    }
+
+    /// Whether a state solves the problem of the curve.
+    pub fn is_on_curve(&self, node: &Node) -> bool {
+        is_on_curve(self.curve, node)
+    }
+}

@@ -1,0 +1,38 @@
+//! Why a figure has no file.
+
+use crate::mend::Mend;
+
+/// Why a figure has no file of this name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
+    Ending(String),
+    /// This build was made without it.
+    #[error("this build writes no {name} (feature `{feature}` is off); use .svg")]
+    Missing { name: &'static str, feature: &'static str },
+}
+
+impl Mend for FormatError {
+    fn can_be_mended(&self) -> bool {
+        true
+    }
+}
+
+/// Why a figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// The document could not be read back.
+    #[error("the figure cannot be read back: {0}")]
+    Document(String),
+    /// It has no area, or too large a one.
+    #[error("a figure of {0} x {1} cannot be drawn")]
+    Size(f32, f32),
+    #[error("the figure cannot be written as {format}: {cause}")]
+    Refused { format: &'static str, cause: String },
+}
+
+impl Mend for DrawError {
+    fn can_be_mended(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,209 @@
+//! What quantities are computed from, each stage from the one before: the values of the preset, its start, its curve, the
+//! unloading under one control.
+
+use super::fault::Fault;
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::disc::{ExactSolution, Solution};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::{Control, Groups, Problem};
+use pulloff_engine::quasistatic::monotone::weighted;
+use pulloff_engine::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
+use pulloff_engine::report::number::exact;
+use pulloff_engine::theory::guduru::Guduru;
+use pulloff_engine::theory::kesari_lew::KesariLew;
+use std::cell::OnceCell;
+use std::fmt;
+
+/// A value of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell {
+    /// A number; in the user's units once it is in a row.
+    Number(f64),
+    Count(usize),
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(x) => f.write_str(&exact(*x)),
+            Self::Count(n) => write!(f, "{n}"),
+        }
+    }
+}
+
+/// Values of the preset, in the user's units.
+pub(super) struct PresetValues {
+    problem: Problem,
+    pub(super) groups: Groups,
+}
+
+/// The start, reduced.
+pub(super) struct StartState {
+    pub(super) case: Case,
+}
+
+/// The curve, reduced.
+pub(super) struct CurveMinima {
+    pub(super) curve: Curve,
+    /// The state of smallest force and that of smallest approach.
+    least: [Least; 2],
+    critical_force: Option<f64>,
+}
+
+/// A state of the curve at which what a control holds is smallest; none where it is smaller in a contact larger than
+/// that of the start.
+struct Least {
+    state: State,
+    is_cut_off: OnceCell<bool>,
+    control: Control,
+}
+
+/// What is smallest in contacts up to so many times the start's, and in so many more waves, is sought: from wave to wave
+/// the minima fall on the way out until they rise.
+const REACH: f64 = 1.5;
+
+const WAVES: f64 = 2.0;
+
+/// Smaller by this share is smaller.
+const SMALLER: f64 = 1e-3;
+
+/// The unloading under one control, reduced.
+pub(super) struct UnloadingPath {
+    pub(super) unloading: Unloading,
+}
+
+impl PresetValues {
+    pub(super) fn new(preset: &Preset) -> Self {
+        let problem = preset.problem();
+        let groups = Groups::of(&problem, preset.range_of_action());
+        Self { problem, groups }
+    }
+
+    pub(super) fn critical_force(&self) -> Option<Cell> {
+        let radius = self.problem.shape.radius_of_curvature()?;
+        Some(Cell::Number(1.5 * std::f64::consts::PI * self.problem.work_of_adhesion * radius))
+    }
+
+    pub(super) fn kesari_lew(&self) -> Option<Cell> {
+        let (amplitude, wavelength) = self.problem.shape.wave()?;
+        let sphere = Guduru {
+            effective_modulus: self.problem.effective_modulus,
+            work_of_adhesion: self.problem.work_of_adhesion,
+            radius_of_curvature: self.problem.shape.radius_of_curvature()?,
+            amplitude,
+            wavelength,
+        };
+        let ratio = KesariLew { sphere }.pull_off_ratio();
+        ratio.is_finite().then_some(Cell::Number(ratio))
+    }
+}
+
+impl StartState {
+    pub(super) fn contact_radius(&self) -> Cell {
+        Cell::Number(self.case.start)
+    }
+}
+
+impl CurveMinima {
+    pub(super) fn new(case: &Case, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
+        let mut curve = case.curve_in(Detail::Borders, go_on)?;
+        let least = [Control::Force, Control::Displacement].map(|control| {
+            curve.hold(control);
+            Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
+        });
+        let critical_force = case.critical_force().map(|force| force / case.units().force);
+        Ok(Self { curve, least, critical_force })
+    }
+
+    /// Stage the state of smallest force.
+    pub(super) fn least(&self, of: fn(&State) -> f64) -> Result<Option<Cell>, Fault> {
+        Ok(Some(Cell::Number(of(self.smallest(0)?))))
+    }
+
+    pub(super) fn least_approach(&self) -> Result<Option<Cell>, Fault> {
+        Ok(Some(Cell::Number(self.smallest(1)?.approach)))
+    }
+
+    pub(super) fn enhancement(&self) -> Result<Option<Cell>, Fault> {
+        let Some(critical_force) = self.critical_force else { return Ok(None) };
+        Ok(Some(Cell::Number(-self.smallest(0)?.force / critical_force)))
+    }
+
+    pub(super) fn waves(&self) -> Result<Option<Cell>, Fault> {
+        let Some(wave) = self.curve.equilibrium.problem.gap.feature_length() else { return Ok(None) };
+        Ok(Some(Cell::Number(self.smallest(0)?.contact_radius / wave)))
+    }
+
+    /// The state of smallest force, or of smallest approach, of all contacts and not only of those up to the start's.
+    fn smallest(&self, which: usize) -> Result<&State, Fault> {
+        let Least { state, is_cut_off, control } = &self.least[which];
+        let is_cut_off = is_cut_off.get_or_init(|| {
+            state.contact_radius >= self.curve.outermost() || self.is_smaller_beyond(state, *control)
+        });
+        if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
+    }
+
+    /// Whether what `control` holds is smaller in a larger contact than the curve has, by the table of the gap: rings need not
+    /// resolve the waves out there.
+    fn is_smaller_beyond(&self, state: &State, control: Control) -> bool {
+        let Equilibrium { problem, table, .. } = &self.curve.equilibrium;
+        let start = self.curve.outermost();
+        let waves = problem.gap.feature_length().map_or(0.0, |wave| WAVES * wave);
+        let far = (REACH * start + waves).min(problem.largest_contact());
+        let Ok(panels) = table.up_to(far) else { return false };
+        let exact = ExactSolution::new(panels, problem.work_of_adhesion);
+        let Some(here) = exact.place(state.contact_radius).map(|place| exact.at(place)) else { return false };
+        let here = weighted(control, here.approach, here.force);
+        let [Some(first), Some(last)] = [start, far].map(|s| exact.place(s)) else { return false };
+        let monotone = Monotone::on(&exact, control, first.panel..last.panel + 1);
+        let ends = monotone.stretches.iter().flat_map(|stretch| {
+            let [inner, outer] = stretch.radii;
+            [(inner, stretch.values[0]), (outer, stretch.values[1])]
+        });
+        let least = ends
+            .filter(|(s, _)| *s > start && *s <= far)
+            .map(|(_, value)| value)
+            .fold(f64::INFINITY, f64::min);
+        start < far && least < here - SMALLER * here.abs()
+    }
+}
+
+/// The state of the curve at which the quantity that `control` holds is smallest.
+fn least(curve: &Curve, control: Control) -> State {
+    let limits = curve
+        .limit_points(control)
+        .into_iter()
+        .map(|limit| [limit.contact_radius, limit.approach, limit.force]);
+    let ends = [curve.samples.first(), curve.samples.last()].into_iter().flatten();
+    let ends = ends.map(|at| [at.contact_radius, at.approach, at.force]);
+    let value = |[_, approach, force]: &[f64; 3]| weighted(control, *approach, *force);
+    let found = limits.chain(ends).min_by(|a, b| value(a).total_cmp(&value(b)));
+    let [contact_radius, approach, force] = found.unwrap_or([f64::NAN; 3]);
+    // No energy is asked for here.
+    State { contact_radius, approach, force, energy: f64::NAN }
+}
+
+impl UnloadingPath {
+    pub(super) fn pull_off(&self, of: fn(&State) -> f64) -> Option<Cell> {
+        let last = self.unloading.events.last().filter(|event| event.kind == EventKind::PullOff)?;
+        Some(Cell::Number(of(&last.before)))
+    }
+
+    fn snapping(&self) -> impl Iterator<Item = &pulloff_engine::quasistatic::Event> {
+        self.unloading.events.iter().filter(|event| event.kind == EventKind::Snap)
+    }
+
+    pub(super) fn snaps(&self) -> Cell {
+        Cell::Count(self.snapping().count())
+    }
+
+    pub(super) fn snap_loss(&self) -> Cell {
+        Cell::Number(self.snapping().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss))
+    }
+
+    pub(super) fn pull_off_loss(&self) -> Option<Cell> {
+        let last = self.unloading.events.last().filter(|event| event.kind == EventKind::PullOff)?;
+        last.dissipated.map(Cell::Number)
+    }
+}

@@ -1,0 +1,451 @@
+//! The explorer on the screen: the session, what lies over it, and the keys that reach both.
+
+use super::typed::Typed;
+use crate::explorer::background_jobs::BackgroundJob;
+use crate::explorer::branches::are_several;
+use crate::explorer::job::Done;
+use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
+use crate::explorer::model::{Level, Question};
+use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
+use crate::figure::Subject;
+use crate::store::{Listed, Listing, Loaded, Source};
+use crate::tui::keymap::Keymap;
+use crate::tui::overlay::{
+    Action, Choose, Confirm, Help, Item, LONGEST_LINE, Overlay as Over, Prompt, Purpose,
+};
+use crate::tui::theme::Theme;
+use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::preset::Value;
+use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::with_unit;
+use pulloff_engine::text::{sanitize, show_path};
+use pulloff_engine::units::Quantity;
+use ratatui::layout::Rect;
+use tui_input::backend::crossterm::EventHandler;
+
+/// Longest count typed before a command.
+const COUNT: usize = 9999;
+
+/// The question before the deletion of a preset of one's own; what ships with the program stays.
+fn deletion(source: &Source) -> Option<Box<Confirm>> {
+    let Source::User { name, path } = source else { return None };
+    let question = format!("Delete {} for good? y deletes it, Esc goes back.", show_path(path));
+    Some(Box::new(Confirm { question, yes: Command::Delete(name.clone()) }))
+}
+
+/// The explorer as a person sees it.
+#[derive(Debug)]
+pub struct App {
+    pub model: Model,
+    pub overlay: Option<Over>,
+    /// The number typed before a command.
+    pub count: Option<usize>,
+    pub theme: Theme,
+    pub keymap: Keymap,
+    pub typed: Typed,
+    /// Whether the mouse is taken from the terminal.
+    pub mouse: bool,
+    /// What is to be put into the clipboard.
+    pub clipboard: Option<String>,
+    /// The screen as last drawn.
+    pub screen: Rect,
+    /// What takes so long beside the curve and the walk that it is told of.
+    pub late: Option<BackgroundJob>,
+}
+
+impl App {
+    /// Opens a preset.
+    pub fn new(loaded: Loaded, theme: Theme) -> (Self, Vec<Effect>) {
+        let (model, effects) = open(loaded);
+        (Self::on(model, theme), effects)
+    }
+
+    /// The screen of a session.
+    pub(super) fn on(model: Model, theme: Theme) -> Self {
+        Self {
+            model,
+            overlay: None,
+            count: None,
+            theme,
+            keymap: Keymap::default(),
+            typed: Typed::default(),
+            mouse: false,
+            clipboard: None,
+            screen: Rect::ZERO,
+            late: None,
+        }
+    }
+
+    /// A key was pressed.
+    pub fn key(&mut self, key: KeyEvent) -> Vec<Effect> {
+        if key.modifiers.contains(KeyModifiers::ALT) {
+            // No command has an Alt key; Escape and the next key arriving together look like one.
+            let mut effects = self.key(KeyCode::Esc.into());
+            effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
+            return effects;
+        }
+        match self.overlay.take() {
+            None => self.command_key(key),
+            Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
+            Some(Over::Choose(choose)) => self.choose_key(choose, key),
+            Some(Over::Confirm(confirm)) => self.confirm_key(confirm, key),
+            Some(Over::Offer(offer)) => self.offer_key(offer, key),
+            Some(Over::Help(help)) => {
+                self.help_key(help, key);
+                Vec::new()
+            }
+        }
+    }
+
+    /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
+    pub fn paste(&mut self, text: &str) -> Vec<Effect> {
+        let Some(mut over) = self.overlay.take() else { return Vec::new() };
+        let mut effects = Vec::new();
+        if let Over::Prompt(prompt) = &mut over
+            && !prompt.waits
+        {
+            if std::mem::take(&mut prompt.fresh) {
+                prompt.input.reset();
+            }
+            for c in sanitize(text.split(['\n', '\r']).next().unwrap_or(""), LONGEST_LINE).chars() {
+                prompt.input.handle(tui_input::InputRequest::InsertChar(c));
+            }
+            effects = self.check(prompt);
+        }
+        self.overlay = Some(over);
+        effects
+    }
+
+    /// The screen is so large, and has room for so many views.
+    pub fn make_room(&mut self, screen: Rect, views: usize) -> Vec<Effect> {
+        self.screen = screen;
+        make_room(&mut self.model, views)
+    }
+
+    /// A worker has answered.
+    pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
+        let is_answer = matches!(&reply, Reply::File(done) if !matches!(**done, Done::Named(_)));
+        let effects = answer(&mut self.model, reply);
+        if is_answer {
+            self.file_answered();
+        }
+        // A line being typed, or an offer, is not torn away: the question waits for its end.
+        if !matches!(self.overlay, Some(Over::Prompt(_) | Over::Offer(_))) {
+            self.raise_questions();
+        }
+        effects
+    }
+
+    /// A prompt that waited for a file closes, or stays with the reason why it was refused.
+    pub(super) fn file_answered(&mut self) {
+        let model = &mut self.model;
+        let Some(Over::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
+        // What is asked instead says the reason itself.
+        if model.question.is_none()
+            && let Some((_, reason)) = model.message.take_if(|(level, _)| level.is_bad())
+        {
+            (prompt.waits, prompt.error) = (false, Some(self.keymap.spelled(&reason)));
+        } else {
+            self.overlay = None;
+        }
+    }
+
+    /// A prompt whose line was taken: it stays with the reason if that was refused, and while it waits for a file.
+    pub(super) fn taken(&mut self, mut prompt: Prompt, effects: Vec<Effect>) -> Vec<Effect> {
+        let refused = self.model.message.take_if(|(level, _)| level.is_bad());
+        prompt.error = refused.map(|(_, reason)| self.keymap.spelled(&reason));
+        prompt.waits =
+            prompt.error.is_none() && effects.iter().any(|effect| matches!(effect, Effect::File(_)));
+        if prompt.waits || prompt.error.is_some() {
+            self.overlay = Some(Over::Prompt(prompt));
+        }
+        effects
+    }
+
+    /// Does a command, and notices when it leaves a question.
+    pub(super) fn run(&mut self, command: Command) -> Vec<Effect> {
+        let effects = update(&mut self.model, command);
+        self.raise_questions();
+        effects
+    }
+
+    /// What the model wants to be asked becomes an overlay.
+    pub(super) fn raise_questions(&mut self) {
+        match self.model.question.take() {
+            None => {}
+            Some(Question::Profile(folder)) => self.choose_profile(&folder),
+            Some(Question::Preset(listing)) => self.choose_preset(&listing),
+            Some(Question::SaveAnyway) => {
+                let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
+                self.ask(question.to_owned(), Command::SaveAnyway);
+            }
+            Some(Question::ReplacePreset(name, with_data)) => {
+                let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
+                self.ask(question, Command::SaveAs { name, replace: true, with_data });
+            }
+            Some(Question::ReplaceFile(what, path)) => {
+                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+                self.ask(question, Command::Export { what, path, replace: true });
+            }
+            Some(Question::ReplacePage(page, path)) => {
+                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+                self.ask(question, Command::ExportPage { page, path, replace: true });
+            }
+        }
+    }
+
+    pub(super) fn choose_preset(&mut self, listing: &Listing) {
+        let shown = |title: &Result<String, String>| match title {
+            Ok(title) => title.clone(),
+            Err(error) => format!("cannot be read: {error}"),
+        };
+        // A preset saved under another name keeps its title: which one it is must be told.
+        let titles: Vec<_> = listing.presets.iter().filter_map(|entry| entry.title.as_ref().ok()).collect();
+        let own = |entry: &Listed| {
+            let same = titles.iter().filter(|title| Ok(**title) == entry.title.as_ref()).count();
+            if same > 1 && matches!(entry.source, Source::User { .. }) { " (saved by you)" } else { "" }
+        };
+        let mut items: Vec<Item> = listing
+            .presets
+            .iter()
+            .map(|entry| Item {
+                text: format!("{:<14} {}{}", entry.name, sanitize(&shown(&entry.title), 90), own(entry)),
+                action: Action::Command(Command::Open(entry.name.clone())),
+                delete: deletion(&entry.source),
+            })
+            .collect();
+        let note = "a path with a / or ending in .toml";
+        let prompt = Prompt::new("Open a file", note, String::new(), Purpose::Path);
+        items.push(Item::new("a file ...", Action::Prompt(Box::new(prompt))));
+        self.choose("Open a preset", items, 0);
+    }
+
+    pub(super) fn ask(&mut self, question: String, yes: Command) {
+        self.overlay = Some(Over::Confirm(Confirm { question, yes }));
+    }
+
+    pub(super) fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
+        if let KeyCode::Char(digit @ '0'..='9') = key.code
+            && key.modifiers.is_empty()
+            && (digit != '0' || self.count.is_some())
+        {
+            let value = usize::try_from(u32::from(digit) - u32::from('0')).unwrap_or(0);
+            self.count = Some((self.count.unwrap_or(0) * 10 + value).min(COUNT));
+            return Vec::new();
+        }
+        let count = self.count.take();
+        let Some(id) = self.keymap.command(key) else {
+            if let Some(effects) = self.page_key(key) {
+                return effects;
+            }
+            let text = format!("that key does nothing here; {} shows all keys", self.keymap.first(Id::Help));
+            self.model.message = Some((Level::Info, text));
+            return Vec::new();
+        };
+        self.act(id, count)
+    }
+
+    /// Does a command so many times, as far as it can be done.
+    pub(super) fn again(&mut self, id: Id, count: usize) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        for _ in 0..count.max(1) {
+            let before = self.model.history.cursor();
+            effects.extend(self.run(id.into()));
+            if self.model.history.cursor() == before {
+                break;
+            }
+        }
+        effects
+    }
+
+    /// Does a command, or asks for what it takes.
+    pub(super) fn act(&mut self, id: Id, count: Option<usize>) -> Vec<Effect> {
+        match id {
+            Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
+            Id::Undo | Id::UndoCommand | Id::Redo if count.is_some() => self.again(id, count.unwrap_or(1)),
+            Id::Help => {
+                self.overlay = Some(Over::Help(Help::default()));
+                Vec::new()
+            }
+            Id::CommandLine => self.ask_line(),
+            Id::Quit if self.model.is_unsaved() => {
+                let saves =
+                    self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
+                let question = format!(
+                    "Not saved; the session keeps it. y quits, Esc stays{}.",
+                    saves.unwrap_or_default()
+                );
+                self.ask(question, Id::Quit.into());
+                Vec::new()
+            }
+            Id::Save if self.model.source.path().is_none() => self.ask_name(),
+            Id::SaveAs => self.ask_name(),
+            Id::Export => self.ask_export(),
+            Id::Copy => self.ask_copy(),
+            Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
+            Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
+            Id::Branches if are_several(&self.model.history) => self.ask_branch(),
+            Id::ZoomIn | Id::ZoomOut => {
+                let about = self.walker_place();
+                self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
+            }
+            Id::Mouse => {
+                self.switch_mouse();
+                Vec::new()
+            }
+            Id::Edit if self.model.panel == Panel::Charts => self.go_to_cross_hair(),
+            Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
+            id => self.run(id.into()),
+        }
+    }
+
+    /// The cross-hair, or where the walker stands in the window of the first view, or its middle.
+    pub(super) fn walker_place(&self) -> (f64, f64) {
+        let view = self.model.view;
+        if let Some(cross) = self.model.cross {
+            return cross;
+        }
+        let place = Subject::of(&self.model).and_then(|subject| {
+            let figure = subject.figure(view);
+            figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
+        });
+        place.unwrap_or(MIDDLE)
+    }
+
+    pub(super) fn ask_overlays(&mut self, selected: usize) -> Vec<Effect> {
+        let Some(curve) = &self.model.curve else { return Vec::new() };
+        let theory = &curve.base.theory;
+        let items = Overlay::ALL.map(|overlay| {
+            let name = match (overlay, &theory.envelope) {
+                (Overlay::Smooth, _) => format!("smooth sphere ({})", theory.smooth_name),
+                (Overlay::Exact, _) => format!("exact solution ({})", theory.exact_name),
+                (Overlay::Envelope, Some(_)) => "envelope of small waves (Kesari-Lew)".to_owned(),
+                (Overlay::Envelope, None) => format!("envelope of small waves: {NO_ENVELOPE}"),
+            };
+            let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
+            Item::new(format!("[{on}] {name}"), Action::Command(Command::Overlay(overlay)))
+        });
+        self.choose("Theory over the curve", items.to_vec(), selected);
+        Vec::new()
+    }
+
+    pub(super) fn ask_pins(&mut self) -> Vec<Effect> {
+        let pins = self.model.pins.all().iter();
+        let mut items: Vec<Item> = pins
+            .map(|pin| {
+                let name = self.theme.symbols(&pin.name(&self.model.preset));
+                let text = format!("{}  {name}", pin.number);
+                Item::new(text, Action::Command(Command::Unpin(Some(pin.number))))
+            })
+            .collect();
+        items.push(Item::new("all", Action::Command(Command::Unpin(None))));
+        self.choose("Take a pinned curve away", items, 0);
+        Vec::new()
+    }
+
+    /// Offers a list.
+    pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
+        let picture = items.get(selected).and_then(|item| self.picture(&item.action));
+        let (title, filter) = (title.to_owned(), String::new());
+        self.overlay = Some(Over::Choose(Choose { title, items, filter, selected, picture }));
+    }
+
+    pub(super) fn ask_value(&mut self) -> Vec<Effect> {
+        let Some((row, value)) = self.model.selected_knob() else { return Vec::new() };
+        match (&*row.key, row.kind) {
+            ("gap.shape", Kind::Choice(words)) => return self.ask_shape(words),
+            ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
+            (_, Kind::File) => return self.run(Command::Browse(None)),
+            _ => {}
+        }
+        let units = &self.model.preset.units;
+        let text = value.map_or_else(String::new, |value| match value {
+            // With its unit, which holds for a bare number typed instead of it too.
+            Value::Number(x) => {
+                let shown = row.shown(units, x);
+                shown.text(&format!("{:?}", shown.number), true)
+            }
+            Value::Control(Control::Stiffness(k)) => {
+                with_unit(units, Quantity::ForcePerLength, k, true, |k| format!("stiffness={k}"))
+            }
+            other => other.to_string(),
+        });
+        let note = match row.unit_in(units) {
+            Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
+            None => row.allowed(),
+        };
+        self.prompt(&format!("{}: {}", row.label, row.meaning), &note, text, Purpose::Value(row.key.clone()))
+    }
+
+    pub(super) fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
+        self.overlay = Some(Over::Prompt(Prompt::new(title, note, text, purpose)));
+        Vec::new()
+    }
+
+    /// Whether a key closes a prompt: one of those that quit, and is no text.
+    pub(super) fn closes(&self, key: KeyEvent) -> bool {
+        let is_text = matches!(key.code, KeyCode::Char(_)) && !key.modifiers.contains(KeyModifiers::CONTROL);
+        self.keymap.command(key) == Some(Id::Quit) && !is_text
+    }
+
+    pub(super) fn prompt_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        if prompt.purpose == Purpose::Line {
+            return self.line_key(prompt, key);
+        }
+        match key.code {
+            KeyCode::Esc => return self.close(&prompt),
+            _ if prompt.waits => {}
+            KeyCode::Enter => {
+                let text = prompt.input.value().to_owned();
+                if let Some(fault) = prompt.formula_error() {
+                    prompt.refuse(&fault);
+                    self.overlay = Some(Over::Prompt(prompt));
+                    return Vec::new();
+                }
+                let Some(command) = prompt.purpose.clone().command(text) else { return effects };
+                let effects = self.run(command);
+                return self.taken(prompt, effects);
+            }
+            _ if self.closes(key) => return self.close(&prompt),
+            _ if prompt.input.value().chars().count() >= LONGEST_LINE
+                && matches!(key.code, KeyCode::Char(_)) => {}
+            code => {
+                let plain = key.modifiers.difference(KeyModifiers::SHIFT).is_empty();
+                if std::mem::take(&mut prompt.fresh) && matches!(code, KeyCode::Char(_)) && plain {
+                    prompt.input.reset();
+                }
+                let is_changed =
+                    prompt.input.handle_event(&Event::Key(key)).is_some_and(|change| change.value);
+                if is_changed {
+                    effects = self.check(&mut prompt);
+                }
+            }
+        }
+        self.overlay = Some(Over::Prompt(prompt));
+        effects
+    }
+
+    /// Opening another preset gives up unsaved changes: asked first.
+    pub(super) fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
+        if self.model.is_unsaved() && matches!(command, Command::Open(_) | Command::OpenWith { .. }) {
+            let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";
+            self.ask(question.to_owned(), command);
+            return Vec::new();
+        }
+        self.run(command)
+    }
+
+    pub(super) fn confirm_key(&mut self, confirm: Confirm, key: KeyEvent) -> Vec<Effect> {
+        match key.code {
+            KeyCode::Char('y') => self.run(confirm.yes),
+            KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
+            _ if self.keymap.command(key) == Some(Id::SaveAs) => self.ask_name(),
+            _ => {
+                self.overlay = Some(Over::Confirm(confirm));
+                Vec::new()
+            }
+        }
+    }
+}

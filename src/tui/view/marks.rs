@@ -1,0 +1,50 @@
+//! How each line and sign of a figure is drawn: its stroke, letter and colour.
+
+use crate::figure::{Role, Sign};
+use crate::tui::stroke::Stroke;
+use crate::tui::theme::Styles;
+use pulloff_engine::problem::Control;
+use ratatui::style::Style;
+
+/// The digits of the pinned curves, by number.
+const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
+
+/// The stroke and the style of a line.
+pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
+    match role {
+        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
+        Role::Branch => (Stroke::Lettered("b"), styles.smooth),
+        Role::Envelope => (Stroke::LongDashed, styles.exact),
+        Role::Exact => (Stroke::Dashed, styles.exact),
+        Role::Pin(number) => {
+            let at = number.saturating_sub(1) % DIGITS.len();
+            (Stroke::Lettered(DIGITS[at]), styles.pins[at])
+        }
+        Role::Unstable => (Stroke::Dotted, styles.unstable),
+        Role::Stable | Role::Body => (Stroke::Solid, styles.stable),
+        Role::Inadmissible => (Stroke::Repeated("!"), styles.aid),
+        Role::Contact => (Stroke::Marked("c"), styles.walk),
+        Role::Walk => (Stroke::Marked("w"), styles.walk),
+        Role::Barrier => (Stroke::DashDotted, styles.aid),
+        Role::Device => (Stroke::ShortDashed, styles.aid),
+        Role::Jump => (Stroke::Marked("j"), styles.jump),
+    }
+}
+
+/// The letter of a sign.
+pub fn letter(sign: Sign) -> &'static str {
+    match sign {
+        Sign::OtherLimit(Control::Force) => "p",
+        Sign::OtherLimit(_) => "d",
+        Sign::Limit => "v",
+        Sign::PullOff => "X",
+        Sign::Landing => "L",
+        Sign::Crest => "^",
+        Sign::Edge => "|",
+        Sign::Minimum => "m",
+        Sign::Maximum => "M",
+        Sign::Barrier => "B",
+        Sign::Stray | Sign::Walker => "@",
+        Sign::Value => "o",
+    }
+}

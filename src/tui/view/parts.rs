@@ -1,0 +1,42 @@
+//! Parts that several regions draw with: frames of panels, cut texts, pairs of key and value.
+
+use crate::explorer::{Id, Panel};
+use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
+use crate::tui::theme::Theme;
+use ratatui::text::Span;
+use ratatui::widgets::{Block, Borders};
+
+/// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
+pub(super) fn side_panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
+    panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
+}
+
+/// A panel's frame with its title.
+pub(super) fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
+    Block::bordered()
+        .border_set(theme.border())
+        .border_style(theme.frame(selected))
+        .title(Span::styled(theme.text(title), theme.title(selected)))
+}
+
+/// Whether a panel is the selected one, and nothing lies over it.
+pub(super) fn is_selected(app: &App, panel: Panel) -> bool {
+    app.model.panel == panel && app.overlay.is_none()
+}
+
+/// `text` as far as there is room for it; where it is cut, or more is to be told, the key of the help, which has all.
+pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> String {
+    if more.is_empty() && text.chars().count() <= room {
+        return text.to_owned();
+    }
+    let rest = if more.is_empty() { "...".to_owned() } else { format!("... {more}") };
+    let rest = format!("{rest} {}: all", keymap.label(Id::Help));
+    let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
+    format!("{}{rest}", kept.trim_end())
+}
+
+/// `key value` with the key dim.
+pub(super) fn pair(theme: Theme, key: &str, value: &str) -> [Span<'static>; 2] {
+    [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(value))]
+}
