@@ -4,7 +4,7 @@
 //! the explicit curve, traces that found all, traces that reached their end. The defaults of
 //! `continuation::settings` were chosen from it.
 
-use pulloff_engine::continuation::{Settings, Work, events};
+use pulloff_engine::continuation::{Settings, Tracer};
 use pulloff_engine::disc::Basis;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
@@ -79,8 +79,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let mut settings = settings(&curve.equilibrium);
                 settings.grazing = if grazing { settings.grazing } else { -1.0 };
                 let row = curve.equilibrium.control_row(control);
-                let mut work = Work::default();
-                events::brackets(&curve.equilibrium, &branch.points, &row, &settings, &mut work).len()
+                let brackets = Tracer::new(&curve.equilibrium, settings).brackets(&branch.points, &row);
+                brackets.map_or(0, |found| found.len())
             });
             found += counts.iter().sum::<usize>();
             complete += usize::from(counts.to_vec() == *truth);

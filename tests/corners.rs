@@ -42,7 +42,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
         assert!(radii.is_sorted_by(|a, b| a > b), "{height}");
         // Every point is on the curve, those next to the corner among them.
         for point in &branch.points {
-            let [delta, force, s] = curve.equilibrium.quantities(&point.y);
+            let [delta, force, s] = curve.equilibrium.quantities(point.y());
             let exact = case.basis.equilibrium(&case.reduced, s).unwrap();
             assert!((delta - exact.approach).abs() < 1e-9 * unit.recip(), "{height} {s}");
             assert!((force - exact.force).abs() < 1e-9, "{height} {s}");

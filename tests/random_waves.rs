@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff_engine::continuation::{Work, events, locate};
+use pulloff_engine::continuation::Tracer;
 use pulloff_engine::disc::{Basis, Exact};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
@@ -51,11 +51,9 @@ fn sign_changes(problem: &Reduced, basis: &Arc<dyn Basis>, wavelength: f64) -> [
 /// The radii of the limit points of `control` on an arc-length trace, by the tracer's own search and location.
 fn located(equilibrium: &Equilibrium, points: &[Point], control: Control) -> Vec<f64> {
     let (settings, row) = (settings(equilibrium), equilibrium.control_row(control));
-    let mut work = Work::default();
-    let brackets = events::brackets(equilibrium, points, &row, &settings, &mut work);
-    let found = brackets.iter().map(|bracket| {
-        locate::limit_point(equilibrium, bracket, &row.normalize(), &settings, &mut work).unwrap()
-    });
+    let mut tracer = Tracer::new(equilibrium, settings);
+    let brackets = tracer.brackets(points, &row).unwrap();
+    let found = brackets.iter().map(|bracket| tracer.limit_point(bracket, &row.normalize()).unwrap());
     found.map(|limit| equilibrium.contact_radius(&limit.point)).collect()
 }
 

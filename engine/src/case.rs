@@ -13,7 +13,6 @@ use crate::preset::{BasisSpec, Material, Preset};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::equilibrium::unknown;
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
 use crate::quasistatic::unload::{UnloadError, unload_while};
@@ -199,7 +198,7 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError::Start`] when there is no equilibrium at the start.
-    pub fn trace(&self, curve: &Curve) -> Result<(Branch<{ unknown::COUNT }>, CurveStop), CaseError> {
+    pub fn trace(&self, curve: &Curve) -> Result<(Branch, CurveStop), CaseError> {
         curve.traced(|settings| settings.points = TRACE_POINTS, || true).ok_or_else(|| self.no_start())
     }
 

@@ -7,7 +7,7 @@ use super::curve::CurveData;
 use super::node::{Ahead, NodeKind};
 use super::setting::Setting;
 use pulloff_engine::case::Case;
-use pulloff_engine::continuation::{Stepper, step_size};
+use pulloff_engine::continuation::Tracer;
 use pulloff_engine::disc::Place;
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::curve::settings;
@@ -245,10 +245,10 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
     if !run {
         settings.longest = request.length;
     }
-    let mut stepper = Stepper::new(settings);
-    stepper.length = request.length;
+    let mut tracer = Tracer::new(equilibrium, settings);
+    tracer.length = request.length;
     let turned = |point: Point| {
-        let shrinking = point.frame.tangent[2] < 0.0;
+        let shrinking = point.tangent()[2] < 0.0;
         if shrinking == request.inward { point } else { point.reversed() }
     };
     let mut here = turned(from.clone());
@@ -259,10 +259,10 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
     for _ in 0..count {
         if !run {
             // In steps by hand the length asked for counts, not the one the last step would allow.
-            stepper.length = request.length;
+            tracer.length = request.length;
         }
         let before = equilibrium.contact_radius(&here);
-        let next = match next(request, &stops, &mut stepper, &here) {
+        let next = match next(request, &stops, &mut tracer, &here) {
             Ok(next) => turned(next),
             Err(failure) => return Outcome::Stopped(failure),
         };
@@ -276,8 +276,7 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
             let Some(mut point) = equilibrium.explicit(stop.contact_radius).map(turned) else {
                 return Outcome::Stopped("there is no equilibrium at the next limit point".to_owned());
             };
-            point.length = (point.y - here.y).norm();
-            point.turning = step_size::turning(&here, &point);
+            point = point.after(&here);
             point.rounds = next.rounds;
             let kind = if stop.is_limit { NodeKind::Limit } else { NodeKind::Step };
             here = point.clone();
@@ -307,7 +306,10 @@ fn steps(request: &Request, count: usize, run: bool, emit: &mut dyn FnMut(Made) 
 }
 
 /// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
-fn next(request: &Request, stops: &[Stop], stepper: &mut Stepper, here: &Point) -> Result<Point, String> {
+///
+/// # Errors
+/// Why there is none, in words.
+fn next(request: &Request, stops: &[Stop], tracer: &mut Tracer, here: &Point) -> Result<Point, String> {
     let equilibrium = request.equilibrium();
     let s = equilibrium.contact_radius(here);
     let towards = if request.inward { 0.0 } else { f64::INFINITY };
@@ -315,15 +317,15 @@ fn next(request: &Request, stops: &[Stop], stepper: &mut Stepper, here: &Point) 
     if on_corner && !request.inward {
         let mut curve = request.curve.base.curve.clone();
         curve.reach(1.1 * s);
-        let left = curve.beyond_corner(s, stepper.length);
+        let left = curve.beyond_corner(s, tracer.length);
         return left.ok_or_else(|| "there is no equilibrium beyond the corner".to_owned());
     }
     let ahead = first_between(stops, s, towards).filter(|stop| stop.is_corner);
     let corner = ahead.and_then(|stop| equilibrium.explicit(stop.contact_radius));
-    if let Some(corner) = corner.filter(|corner| (corner.y - here.y).norm() <= stepper.length) {
+    if let Some(corner) = corner.filter(|corner| (corner.y() - here.y()).norm() <= tracer.length) {
         return Ok(corner);
     }
-    stepper.step(equilibrium, here).map_err(|failure| failure.to_string())
+    tracer.step(here).map_err(|failure| failure.to_string())
 }
 
 fn jump(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {

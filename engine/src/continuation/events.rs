@@ -6,75 +6,71 @@
 //! 2. equal signs can hide a pair. The cubic through both values and slopes is looked at: where its
 //!    extreme comes close to zero, the curve is solved there and both halves are judged anew.
 
-use super::branch::{Point, Work, hermite};
-use super::corrector::{Constraint, correct};
-use super::settings::Settings;
-use super::system::{System, Vector};
+use super::branch::{Point, hermite};
+use super::corrector::Constraint;
+use super::system::{SizeError, Vector};
+use super::tracer::Tracer;
 
 /// Two neighbouring points between which the slope of a control changes its sign.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bracket<const N: usize> {
+pub struct Bracket {
     /// The index of the branch point before it.
     pub index: usize,
     /// The point before.
-    pub from: Point<N>,
+    pub from: Point,
     /// The point after.
-    pub to: Point<N>,
+    pub to: Point,
 }
 
-/// All sign changes of the slope of `row` along `points`, in order.
-pub fn brackets<const N: usize>(
-    system: &dyn System<N>,
-    points: &[Point<N>],
-    row: &Vector<N>,
-    settings: &Settings,
-    work: &mut Work,
-) -> Vec<Bracket<N>> {
-    let mut found = Vec::new();
-    for (index, pair) in points.windows(2).enumerate() {
-        let mut search = Search { system, row, settings, work: &mut *work, index, found: &mut found };
-        search.piece(&pair[0], &pair[1], settings.grazing_depth);
+impl Tracer<'_> {
+    /// All sign changes of the slope of `row` (n numbers) along `points`, in order.
+    ///
+    /// # Errors
+    /// When the sizes do not agree.
+    pub fn brackets(&mut self, points: &[Point], row: &Vector) -> Result<Vec<Bracket>, SizeError> {
+        let mut found = Vec::new();
+        for (index, pair) in points.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            self.check(&[from, to], Some(row))?;
+            self.piece(from, to, row, self.settings.grazing_depth, &mut |from, to| {
+                found.push(Bracket { index, from: from.clone(), to: to.clone() });
+            });
+        }
+        Ok(found)
     }
-    found
-}
 
-struct Search<'a, const N: usize> {
-    system: &'a dyn System<N>,
-    row: &'a Vector<N>,
-    settings: &'a Settings,
-    work: &'a mut Work,
-    index: usize,
-    found: &'a mut Vec<Bracket<N>>,
-}
-
-impl<const N: usize> Search<'_, N> {
-    fn piece(&mut self, from: &Point<N>, to: &Point<N>, depth: usize) {
-        let (f0, f1) = (from.slope(self.row), to.slope(self.row));
+    fn piece(
+        &mut self,
+        from: &Point,
+        to: &Point,
+        row: &Vector,
+        depth: usize,
+        found: &mut dyn FnMut(&Point, &Point),
+    ) {
+        let (f0, f1) = (from.slope(row), to.slope(row));
         // A slope of exactly zero belongs to the piece that ends with it, so that it counts once.
         if (f0 > 0.0) != (f1 > 0.0) && f0 != 0.0 {
-            self.found.push(Bracket { index: self.index, from: from.clone(), to: to.clone() });
-            return;
+            return found(from, to);
         }
-        let length = (to.y - from.y).norm();
+        let chord = to.y() - from.y();
+        let length = chord.norm();
         if depth == 0 || length < self.settings.grazing_shortest {
             return;
         }
-        let slopes = [from, to].map(|p| length * self.row.dot(&p.frame.curvature));
+        let slopes = [from, to].map(|p| length * row.dot(&p.curvature()));
         let Some(x) = approach_to_zero([f0, f1], slopes, self.settings.grazing) else { return };
-        let guess = hermite(from, to, x);
-        let across = from.frame.tangent * (1.0 - x) + to.frame.tangent * x;
-        let plane = Constraint::Plane { value: across.dot(&guess), row: across };
-        let Ok(corrected) = correct(self.system, guess, &plane, self.settings) else { return };
-        self.work.evaluations += corrected.rounds + 1;
-        let chord = to.y - from.y;
-        let Some(mut middle) = Point::corrected(&corrected, &chord) else { return };
-        if middle.frame.positive != from.frame.positive {
+        self.y = hermite(from, to, x);
+        let across = from.tangent() * (1.0 - x) + to.tangent() * x;
+        let plane = Constraint::Plane { row: across.column(0), value: across.dot(&self.y) };
+        let Ok(rounds) = self.correct(plane) else { return };
+        let Some(mut middle) = self.point(rounds, chord.column(0)) else { return };
+        if middle.positive != from.positive {
             middle = middle.reversed();
         }
-        let share = (middle.y - from.y).dot(&chord) / chord.norm_squared();
+        let share = (middle.y() - from.y()).dot(&chord) / chord.norm_squared();
         if share > 0.0 && share < 1.0 {
-            self.piece(from, &middle, depth - 1);
-            self.piece(&middle, to, depth - 1);
+            self.piece(from, &middle, row, depth - 1, found);
+            self.piece(&middle, to, row, depth - 1, found);
         }
     }
 }
@@ -109,22 +105,23 @@ fn approach_to_zero(f: [f64; 2], d: [f64; 2], share: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::continuation::Settings;
     use crate::continuation::examples::Cubic;
 
     #[test]
     fn a_pair_inside_one_step_is_found() {
         // Both folds of the cubic between two points whose p-slopes have the same sign.
         let points = [Cubic.point(-1.2), Cubic.point(1.2)];
-        let row = Vector::from([0.0, 1.0]);
-        let found = brackets(&Cubic, &points, &row, &Settings::new(2), &mut Work::default());
+        let row = Vector::from_vec(vec![0.0, 1.0]);
+        let found = Tracer::new(&Cubic, Settings::new(2)).brackets(&points, &row).unwrap();
         assert_eq!(found.len(), 2);
     }
 
     #[test]
     fn a_monotone_piece_has_none() {
         let points = [Cubic.point(1.5), Cubic.point(2.0), Cubic.point(3.0)];
-        let row = Vector::from([0.0, 1.0]);
-        assert!(brackets(&Cubic, &points, &row, &Settings::new(2), &mut Work::default()).is_empty());
+        let row = Vector::from_vec(vec![0.0, 1.0]);
+        assert!(Tracer::new(&Cubic, Settings::new(2)).brackets(&points, &row).unwrap().is_empty());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Every number of the continuation, with its reason.
 
+use super::convergence::Criteria;
+
 /// Settings of the continuation; lengths are in the caller's scaled unknowns, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -39,8 +41,11 @@ pub struct Settings {
     pub grazing_depth: usize,
     /// Shortest piece in which a grazing pair is looked for.
     pub grazing_shortest: f64,
-    /// Rounds of a guarded location before it is given up.
+    /// Halvings of a guarded location before it is given up.
     pub locate_rounds: usize,
+    /// Largest last correction of a located point. Range 1e-12 to 1e-6. 1e-8: the next one would be about its square,
+    /// which is rounding.
+    pub locate_correction: f64,
 }
 
 impl Settings {
@@ -65,6 +70,18 @@ impl Settings {
             grazing_depth: 3,
             grazing_shortest: 1e-6,
             locate_rounds: 60,
+            locate_correction: 1e-8,
         }
+    }
+
+    /// When a correction back to the curve has converged.
+    pub(super) fn corrector(&self) -> Criteria {
+        Criteria { contraction: self.contraction, ..Criteria::new(self.tolerance, self.rounds) }
+    }
+
+    /// When the location of a point inside a piece of this length has converged.
+    pub(super) fn location(&self, length: f64) -> Criteria {
+        let to_rounding = Criteria::new(self.tolerance, self.rounds);
+        Criteria { correction: self.locate_correction, longest: length, ..to_rounding }
     }
 }

@@ -1,21 +1,12 @@
 //! One step along the curve: predict, correct on the sphere, judge, and try again shorter.
 
-use super::branch::{Point, Work};
-use super::corrector::{Constraint, Corrected, CorrectorFailure, correct};
+use super::branch::Point;
+use super::convergence::NewtonFailure;
+use super::corrector::Constraint;
 use super::settings::Settings;
 use super::step_size;
-use super::system::{System, Vector};
-
-/// Walks a curve step by step; failures leave its caller's points untouched.
-#[derive(Debug, Clone)]
-pub struct Stepper {
-    /// The numbers it goes by.
-    pub settings: Settings,
-    /// The next step length.
-    pub length: f64,
-    /// What its steps have cost.
-    pub work: Work,
-}
+use super::system::{Column, SizeError};
+use super::tracer::Tracer;
 
 /// Why no acceptable step was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -26,7 +17,7 @@ pub enum StepFailure {
         /// The shortest length allowed.
         shortest: f64,
         /// The last failure.
-        cause: CorrectorFailure,
+        cause: NewtonFailure,
     },
     /// The orientation flips however short the step: the curve branches or ends here.
     #[error("the curve changes its orientation within {shortest:.1e}: it branches or ends here")]
@@ -34,37 +25,32 @@ pub enum StepFailure {
         /// The shortest length allowed.
         shortest: f64,
     },
+    /// There is no curve to step along.
+    #[error(transparent)]
+    Sizes(#[from] SizeError),
 }
 
 /// A step judged unfit, and by how much to cut it.
 enum Rejected {
-    Corrector(CorrectorFailure),
+    Corrector(NewtonFailure),
     Backwards,
     Orientation,
     Turning(f64),
     Increment,
 }
 
-impl Stepper {
-    /// A stepper with its first length.
-    pub fn new(settings: Settings) -> Self {
-        Self { length: settings.first, settings, work: Work::default() }
-    }
-
+impl Tracer<'_> {
     /// The next point after `from`; the step length adapts itself for the one after.
     ///
     /// # Errors
     /// [`StepFailure`] when even the shortest step is not accepted.
-    pub fn step<const N: usize>(
-        &mut self,
-        system: &dyn System<N>,
-        from: &Point<N>,
-    ) -> Result<Point<N>, StepFailure> {
+    pub fn step(&mut self, from: &Point) -> Result<Point, StepFailure> {
+        self.check(&[from], None)?;
         let shortest = self.settings.shortest;
         let mut rejected = false;
         let mut length = self.length.min(step_size::longest(from, &self.settings)).max(shortest);
         loop {
-            match self.attempt(system, from, length) {
+            let cause = match self.attempt(from, length) {
                 Ok(point) => {
                     let mut factor = step_size::factor(point.turning, &self.settings);
                     if point.rounds >= self.settings.brake_rounds {
@@ -76,90 +62,68 @@ impl Stepper {
                     self.length = (length * factor).clamp(shortest, self.settings.longest);
                     return Ok(point);
                 }
-                Err(cause) => {
-                    self.work.rejections += 1;
-                    rejected = true;
-                    if length <= shortest {
-                        return Err(match cause {
-                            Rejected::Corrector(cause) => StepFailure::Corrector { shortest, cause },
-                            _ => StepFailure::Orientation { shortest },
-                        });
-                    }
-                    let cut = match cause {
-                        Rejected::Turning(turning) => step_size::factor(turning, &self.settings).min(0.9),
-                        Rejected::Increment => 0.7,
-                        _ => self.settings.cut,
-                    };
-                    length = (length * cut).max(shortest);
+                Err(cause) => cause,
+            };
+            self.work.rejections += 1;
+            rejected = true;
+            let cut = match cause {
+                Rejected::Corrector(NewtonFailure::Sizes(sizes)) => return Err(sizes.into()),
+                Rejected::Corrector(cause) if length <= shortest => {
+                    return Err(StepFailure::Corrector { shortest, cause });
                 }
-            }
+                _ if length <= shortest => return Err(StepFailure::Orientation { shortest }),
+                Rejected::Turning(turning) => step_size::factor(turning, &self.settings).min(0.9),
+                Rejected::Increment => 0.7,
+                _ => self.settings.cut,
+            };
+            length = (length * cut).max(shortest);
         }
     }
 
     /// Corrects the prediction at `length` and judges it.
-    fn attempt<const N: usize>(
-        &mut self,
-        system: &dyn System<N>,
-        from: &Point<N>,
-        length: f64,
-    ) -> Result<Point<N>, Rejected> {
-        let tangent = &from.frame.tangent;
-        let guess = from.y + tangent * length;
-        let sphere = Constraint::Sphere { centre: from.y, radius: length };
-        let ahead = |c: &Corrected<N>| (c.y - from.y).dot(tangent) > 0.0;
-        let mut corrected = self.correct(system, guess, &sphere).map_err(Rejected::Corrector)?;
-        if !ahead(&corrected) {
+    fn attempt(&mut self, from: &Point, length: f64) -> Result<Point, Rejected> {
+        let tangent = from.tangent();
+        self.predict(from, length);
+        let sphere = Constraint::Sphere { centre: from.y(), radius: length };
+        let mut rounds = self.correct(sphere).map_err(Rejected::Corrector)?;
+        if self.ahead_of(from, tangent) <= 0.0 {
             // The sphere cuts the curve behind us as well; the plane across the tangent does not.
-            let value = tangent.dot(&guess);
-            let plane = Constraint::Plane { row: *tangent, value };
-            corrected = self.correct(system, guess, &plane).map_err(Rejected::Corrector)?;
-            if !ahead(&corrected) {
+            self.predict(from, length);
+            let plane = Constraint::Plane { row: tangent, value: tangent.dot(&self.y) };
+            rounds = self.correct(plane).map_err(Rejected::Corrector)?;
+            if self.ahead_of(from, tangent) <= 0.0 {
                 return Err(Rejected::Backwards);
             }
         }
-        let forward = corrected.y - from.y;
-        let length = forward.norm();
-        let point = Point::corrected(&corrected, tangent)
-            .map(|mut point| {
-                // The determinant decides which way is on; the old tangent only starts the guess.
-                if point.frame.positive != from.frame.positive {
-                    point = point.reversed();
-                }
-                point
-            })
-            .ok_or(Rejected::Orientation)?;
-        if point.frame.tangent.dot(&forward) <= 0.0 {
+        let mut point = self.point(rounds, tangent).ok_or(Rejected::Orientation)?;
+        // The determinant decides which way is on; the old tangent only starts the guess.
+        if point.positive != from.positive {
+            point = point.reversed();
+        }
+        if self.ahead_of(from, point.tangent()) <= 0.0 {
             return Err(Rejected::Orientation);
         }
-        let mut point = point;
-        point.length = length;
-        point.turning = step_size::turning(from, &point);
-        let shortest = self.settings.shortest;
-        if point.turning > self.settings.turning_excess * self.settings.turning && length > shortest {
+        let point = point.after(from);
+        let Settings { shortest, turning, turning_excess, .. } = self.settings;
+        if point.turning > turning_excess * turning && point.length > shortest {
             return Err(Rejected::Turning(point.turning));
         }
-        if step_size::exceeds_increment(from, &point, &self.settings) && length > shortest {
+        if step_size::exceeds_increment(from, &point, &self.settings) && point.length > shortest {
             return Err(Rejected::Increment);
         }
         Ok(point)
     }
 
-    fn correct<const N: usize>(
-        &mut self,
-        system: &dyn System<N>,
-        guess: Vector<N>,
-        constraint: &Constraint<N>,
-    ) -> Result<Corrected<N>, CorrectorFailure> {
-        let result = correct(system, guess, constraint, &self.settings);
-        self.work.evaluations += match &result {
-            Ok(corrected) => corrected.rounds + 1,
-            Err(
-                CorrectorFailure::Undefined { round }
-                | CorrectorFailure::Singular { round }
-                | CorrectorFailure::Diverging { round, .. },
-            ) => round + 1,
-            Err(CorrectorFailure::RoundsExhausted { rounds, .. }) => rounds + 1,
-        };
-        result
+    /// Puts the iterate on the tangent of `from`, at this distance.
+    fn predict(&mut self, from: &Point, length: f64) {
+        self.y.copy_from(&from.y());
+        self.y.axpy(length, &from.tangent(), 1.0);
+    }
+
+    /// How far the iterate is from `from` along `direction`.
+    fn ahead_of(&self, from: &Point, direction: Column<'_>) -> f64 {
+        let ends = [self.y.column(0), from.y(), direction];
+        let [y, from, direction] = ends.each_ref().map(Column::as_slice);
+        y.iter().zip(from).zip(direction).map(|((y, from), d)| (y - from) * d).sum()
     }
 }

@@ -1,33 +1,54 @@
 //! The equations whose solutions form the curve.
 //!
-//! N − 1 equations in N unknowns. Everything of them has room for one more: a last row, zero here, that the equation
-//! closing the system takes ([`super::closed`]). So one number N gives every size, and nothing is allocated.
+//! n − 1 equations g(y) = 0 in n unknowns, with
+//!
+//! ```text
+//! J = ∂g/∂y           (n − 1) × n
+//! J_v = ∂J/∂y · v     (n − 1) × n, the second derivatives along a direction v:   g_yy[v, z] = J_v z
+//! ```
+//!
+//! n is known when the program runs: 2 to some hundred, for the algebra is dense.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, DVectorView, MatrixXx3};
 
-/// A column of N numbers.
-pub type Vector<const N: usize> = SVector<f64, N>;
-/// A square matrix.
-pub type Matrix<const N: usize> = SMatrix<f64, N, N>;
+/// A column of numbers.
+pub type Vector = DVector<f64>;
+/// Three columns.
+pub type Columns = MatrixXx3<f64>;
+/// A column of a matrix, to read.
+pub type Column<'a> = DVectorView<'a, f64>;
+/// A matrix.
+pub type Matrix = DMatrix<f64>;
 
-/// The equations and their exact derivatives at one point; the last of each is zero.
-#[derive(Debug, Clone)]
-pub struct Linearization<const N: usize> {
-    /// g(y).
-    pub residual: Vector<N>,
-    /// The size against which each equation is judged, positive numbers but for the last.
-    pub scale: Vector<N>,
-    /// J = ∂g/∂y.
-    pub jacobian: Matrix<N>,
-    /// `∂²g_i/∂y²`, symmetric.
-    pub second: [Matrix<N>; N],
+/// The equations and their derivatives at one point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearization {
+    /// g(y), n − 1 numbers.
+    pub residual: Vector,
+    /// The size against which each equation is judged, n − 1 positive numbers.
+    pub scale: Vector,
+    /// J, (n − 1) × n.
+    pub jacobian: Matrix,
+    /// What the system wants to find again when it is asked for its second derivatives here.
+    pub kept: Vec<f64>,
 }
 
-impl<const N: usize> Linearization<N> {
+impl Linearization {
+    /// Room for the equations of a system with so many unknowns.
+    pub fn new(unknowns: usize) -> Self {
+        let equations = unknowns.saturating_sub(1);
+        Self {
+            residual: Vector::zeros(equations),
+            scale: Vector::zeros(equations),
+            jacobian: Matrix::zeros(equations, unknowns),
+            kept: Vec::new(),
+        }
+    }
+
     /// The largest residual relative to its scale; infinite when any is not a number.
     pub fn relative_residual(&self) -> f64 {
         let mut worst = 0.0_f64;
-        for (g, scale) in self.residual.iter().zip(self.scale.iter()).take(N - 1) {
+        for (g, scale) in self.residual.as_slice().iter().zip(self.scale.as_slice()) {
             let relative = (g / scale).abs();
             if !relative.is_finite() {
                 return f64::INFINITY;
@@ -37,24 +58,71 @@ impl<const N: usize> Linearization<N> {
         worst
     }
 
-    /// The second derivative along two directions, `g_yy[a, b]`.
-    pub fn along(&self, a: &Vector<N>, b: &Vector<N>) -> Vector<N> {
-        Vector::from_fn(|i, _| a.dot(&(self.second[i] * b)))
-    }
-
-    /// The row `wᵀg_yy[a, ·]`, as a column.
-    pub fn contracted(&self, w: &Vector<N>, a: &Vector<N>) -> Vector<N> {
-        self.second.iter().zip(w.iter()).map(|(hessian, w)| hessian * a * *w).sum()
-    }
-
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        self.residual.iter().chain(self.jacobian.iter()).all(|x| x.is_finite())
+        [self.residual.as_slice(), self.jacobian.as_slice()]
+            .iter()
+            .all(|part| part.iter().all(|x| x.is_finite()))
+    }
+
+    /// Whether it is one of a system with so many unknowns.
+    ///
+    /// # Errors
+    /// The first part of another size.
+    pub fn has_sizes_of(&self, unknowns: usize) -> Result<(), SizeError> {
+        let equations = unknowns.saturating_sub(1);
+        SizeError::check("the residual", self.residual.len(), equations)?;
+        SizeError::check("the scale of the residual", self.scale.len(), equations)?;
+        SizeError::check("a column of the Jacobian", self.jacobian.nrows(), equations)?;
+        SizeError::check("a row of the Jacobian", self.jacobian.ncols(), unknowns)
     }
 }
 
-/// N − 1 equations in N unknowns with exact first and second derivatives.
-pub trait System<const N: usize> {
-    /// The equations at `y`, or `None` where they are not defined.
-    fn linearize(&self, y: &Vector<N>) -> Option<Linearization<N>>;
+/// Sizes that do not agree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SizeError {
+    /// There is no curve in fewer than two unknowns.
+    #[error("a curve needs 2 unknowns, the system has {0}")]
+    TooFew(usize),
+    /// There is no unknown of this index.
+    #[error("there is no unknown {unknown} (from 0) among {unknowns}")]
+    NoUnknown {
+        /// The index.
+        unknown: usize,
+        /// How many there are.
+        unknowns: usize,
+    },
+    /// A vector or matrix is not of the system's size.
+    #[error("{part} has {found} entries, the system needs {expected}")]
+    Mismatch {
+        /// Which one.
+        part: &'static str,
+        /// Its size.
+        found: usize,
+        /// The size that the number of unknowns asks for.
+        expected: usize,
+    },
+}
+
+impl SizeError {
+    /// That `part` has the size expected.
+    pub(super) fn check(part: &'static str, found: usize, expected: usize) -> Result<(), Self> {
+        if found == expected { Ok(()) } else { Err(Self::Mismatch { part, found, expected }) }
+    }
+}
+
+/// n − 1 equations in n unknowns with an exact Jacobian, and with second derivatives where it has them.
+pub trait System {
+    /// n, at least 2.
+    fn unknowns(&self) -> usize;
+
+    /// Writes the equations at `y` (n numbers) to `at`, whose numbers are those of another point; `None` where they are
+    /// not defined.
+    fn linearize(&self, y: &Vector, at: &mut Linearization) -> Option<()>;
+
+    /// Writes `J_v` ((n − 1) × n) at the point of `at` to `second`; `None` where the system leaves it to differences of J.
+    fn second(&self, at: &Linearization, v: &Vector, second: &mut Matrix) -> Option<()> {
+        let _ = (at, v, second);
+        None
+    }
 }

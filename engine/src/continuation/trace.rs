@@ -1,10 +1,10 @@
 //! Steps until the end value, and why it stopped.
 
 use super::branch::{Branch, Point};
-use super::corrector::{Constraint, correct};
-use super::settings::Settings;
-use super::step::{StepFailure, Stepper};
-use super::system::{System, Vector};
+use super::corrector::Constraint;
+use super::step::StepFailure;
+use super::system::{SizeError, Vector};
+use super::tracer::Tracer;
 
 /// Where a trace ends: exactly where one unknown takes a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,82 +32,82 @@ pub enum Stop {
     Failed(StepFailure),
 }
 
-/// Traces the curve from `start` to `end`, at most `settings.points` points.
-///
-/// `go_on` is asked between points; when it says no, what has been traced is kept.
-pub fn trace<const N: usize>(
-    system: &dyn System<N>,
-    start: Point<N>,
-    end: End,
-    settings: &Settings,
-    mut go_on: impl FnMut(&Branch<N>) -> bool,
-) -> (Branch<N>, Stop) {
-    let mut stepper = Stepper::new(settings.clone());
-    let mut branch = Branch { points: vec![start], ..Branch::default() };
-    let stop = loop {
-        let Some(last) = branch.points.last() else { break Stop::End };
-        if branch.points.len() >= settings.points {
-            break Stop::PointLimit(settings.points);
+impl Tracer<'_> {
+    /// Traces the curve from `start` to `end`, at most `settings.points` points.
+    ///
+    /// `go_on` is asked between points; when it says no, what has been traced is kept.
+    pub fn trace(
+        &mut self,
+        start: Point,
+        end: End,
+        mut go_on: impl FnMut(&Branch) -> bool,
+    ) -> (Branch, Stop) {
+        let unknowns = self.y.len();
+        let mut branch = Branch { points: vec![start], ..Branch::default() };
+        if end.unknown >= unknowns {
+            let none = SizeError::NoUnknown { unknown: end.unknown, unknowns };
+            return (branch, Stop::Failed(none.into()));
         }
-        if !go_on(&branch) {
-            break Stop::Cancelled;
-        }
-        match stepper.step(system, last) {
-            Err(failure) => break Stop::Failed(failure),
-            Ok(next) => {
-                let side = |p: &Point<N>| p.y[end.unknown] - end.value;
-                let crossed = side(last) * side(&next) <= 0.0;
-                if crossed {
-                    let landed = land(system, last, &next, end, settings).unwrap_or(next);
-                    branch.points.push(landed);
-                    break Stop::End;
-                }
-                branch.points.push(next);
+        let before = std::mem::take(&mut self.work);
+        let stop = loop {
+            let Some(last) = branch.points.last() else { break Stop::End };
+            if branch.points.len() >= self.settings.points {
+                break Stop::PointLimit(self.settings.points);
             }
-        }
-    };
-    branch.work = stepper.work;
-    (branch, stop)
-}
+            if !go_on(&branch) {
+                break Stop::Cancelled;
+            }
+            let next = self.step(last);
+            branch.work = self.work;
+            match next {
+                Err(failure) => break Stop::Failed(failure),
+                Ok(next) => {
+                    let side = |p: &Point| p.y()[end.unknown] - end.value;
+                    if side(last) * side(&next) <= 0.0 {
+                        let landed = self.land(last, &next, end).unwrap_or(next);
+                        branch.points.push(landed);
+                        break Stop::End;
+                    }
+                    branch.points.push(next);
+                }
+            }
+        };
+        self.work += before;
+        (branch, stop)
+    }
 
-/// The point between two neighbours at which the end value is taken.
-fn land<const N: usize>(
-    system: &dyn System<N>,
-    from: &Point<N>,
-    to: &Point<N>,
-    end: End,
-    settings: &Settings,
-) -> Option<Point<N>> {
-    let mut row = Vector::zeros();
-    row[end.unknown] = 1.0;
-    let (a, b) = (from.y[end.unknown], to.y[end.unknown]);
-    // Where the unknown did not move, the quotient is no number and the far end is as good a guess.
-    let share = Some((end.value - a) / (b - a)).filter(|share| share.is_finite()).unwrap_or(1.0);
-    let guess = from.y + (to.y - from.y) * share;
-    let corrected = correct(system, guess, &Constraint::Plane { row, value: end.value }, settings).ok()?;
-    let mut point = Point::corrected(&corrected, &from.frame.tangent)?;
-    // Newton meets the plane to rounding; the caller asked for this very value.
-    point.y[end.unknown] = end.value;
-    point.length = (point.y - from.y).norm();
-    point.turning = super::step_size::turning(from, &point);
-    Some(point)
+    /// The point between two neighbours at which the end value is taken.
+    fn land(&mut self, from: &Point, to: &Point, end: End) -> Option<Point> {
+        let mut row = Vector::zeros(self.y.len());
+        row[end.unknown] = 1.0;
+        let (a, b) = (from.y()[end.unknown], to.y()[end.unknown]);
+        // Where the unknown did not move, the quotient is no number and the far end is as good a guess.
+        let share = Some((end.value - a) / (b - a)).filter(|share| share.is_finite()).unwrap_or(1.0);
+        self.y = from.y() + (to.y() - from.y()) * share;
+        let rounds = self.correct(Constraint::Plane { row: row.column(0), value: end.value }).ok()?;
+        let mut point = self.point(rounds, from.tangent())?;
+        // Newton meets the plane to rounding; the caller asked for this very value.
+        point.set(end.unknown, end.value);
+        Some(point.after(from))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::continuation::Settings;
     use crate::continuation::examples::{Circle, Cubic};
 
     #[test]
     fn lands_exactly_on_the_end_value() {
         let start = Cubic.point(-3.0);
         let (branch, stop) =
-            trace(&Cubic, start, End { unknown: 0, value: 2.5 }, &Settings::new(2), |_| true);
+            Tracer::new(&Cubic, Settings::new(2)).trace(start, End { unknown: 0, value: 2.5 }, |_| true);
         assert_eq!(stop, Stop::End);
         let last = branch.points.last().unwrap();
-        assert_eq!(last.y[0].to_bits(), 2.5f64.to_bits());
-        assert!((last.y[1] - Cubic::p(2.5)).abs() < 1e-12);
-        assert!(branch.points.iter().all(|p| (p.y[1] - Cubic::p(p.y[0])).abs() < 1e-8));
+        assert_eq!(last.y()[0].to_bits(), 2.5f64.to_bits());
+        assert!((last.y()[1] - Cubic::p(2.5)).abs() < 1e-12);
+        assert!(branch.points.iter().all(|p| (p.y()[1] - Cubic::p(p.y()[0])).abs() < 1e-8));
     }
 
     #[test]
@@ -115,9 +115,10 @@ mod tests {
         let mut settings = Settings::new(2);
         settings.points = 7;
         let end = End { unknown: 0, value: 2.5 };
-        let (branch, stop) = trace(&Cubic, Cubic.point(-3.0), end, &settings, |_| true);
+        let (branch, stop) = Tracer::new(&Cubic, settings).trace(Cubic.point(-3.0), end, |_| true);
         assert_eq!((branch.points.len(), stop), (7, Stop::PointLimit(7)));
-        let (branch, stop) = trace(&Cubic, Cubic.point(-3.0), end, &Settings::new(2), |b| b.points.len() < 4);
+        let (branch, stop) =
+            Tracer::new(&Cubic, Settings::new(2)).trace(Cubic.point(-3.0), end, |b| b.points.len() < 4);
         assert_eq!((branch.points.len(), stop), (4, Stop::Cancelled));
     }
 
@@ -126,9 +127,9 @@ mod tests {
         let mut settings = Settings::new(2);
         settings.points = 200;
         let (branch, _) =
-            trace(&Circle, Circle.point(0.0), End { unknown: 0, value: 9.0 }, &settings, |_| true);
+            Tracer::new(&Circle, settings).trace(Circle.point(0.0), End { unknown: 0, value: 9.0 }, |_| true);
         for pair in branch.points.windows(2) {
-            let turn = pair[0].y[0] * pair[1].y[1] - pair[0].y[1] * pair[1].y[0];
+            let turn = pair[0].y()[0] * pair[1].y()[1] - pair[0].y()[1] * pair[1].y()[0];
             assert!(turn > 0.0);
         }
     }

@@ -2,8 +2,7 @@
 
 use super::equilibrium::{Equilibrium, Point, Scales, Stability, State, unknown};
 use super::monotone::{Limit, Monotone};
-use crate::continuation::trace::trace;
-use crate::continuation::{Branch, End, Settings, Stop, step_size};
+use crate::continuation::{Branch, End, Settings, Stop, Tracer};
 use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::gap::Gap;
@@ -285,7 +284,7 @@ impl Curve {
         let span = self.solution.span(panel);
         let distance = |x: f64| {
             let point = self.equilibrium.explicit(span.radius(x));
-            point.map_or(f64::INFINITY, |point| (point.y - corner.y).norm())
+            point.map_or(f64::INFINITY, |point| (point.y() - corner.y()).norm())
         };
         let (mut near, mut far) = (-1.0, 1.0);
         if distance(far) > length {
@@ -305,7 +304,7 @@ impl Curve {
         &self,
         adjust: impl FnOnce(&mut Settings),
         mut go_on: impl FnMut() -> bool,
-    ) -> Option<(Branch<{ unknown::COUNT }>, CurveStop)> {
+    ) -> Option<(Branch, CurveStop)> {
         let mut settings = settings(&self.equilibrium);
         adjust(&mut settings);
         let (from, to) = (self.outermost(), self.innermost());
@@ -318,25 +317,25 @@ impl Curve {
             let corner = end > to;
             let value = end / self.equilibrium.scales.contact_radius;
             // Next to a corner the curve is vertical, and what Newton's method knows of it ends at the corner.
-            let is_near = |branch: &Branch<{ unknown::COUNT }>| {
-                let near = |point: &Point| (point.y - last.y).norm() <= CORNER_STEP;
+            let is_near = |branch: &Branch| {
+                let near = |point: &Point| (point.y() - last.y()).norm() <= CORNER_STEP;
                 corner && branch.points.last().is_some_and(near)
             };
             let mut wanted = true;
             let aim = End { unknown: unknown::CONTACT_RADIUS, value };
-            let (mut piece, stop) = trace(&self.equilibrium, start, aim, &settings, |branch| {
-                wanted = wanted && go_on();
-                wanted && !is_near(branch)
-            });
+            let (mut piece, stop) =
+                Tracer::new(&self.equilibrium, settings.clone()).trace(start, aim, |branch| {
+                    wanted = wanted && go_on();
+                    wanted && !is_near(branch)
+                });
             branch.work += piece.work;
             let landed = wanted && stop != Stop::End && is_near(&piece);
             if landed {
-                let mut point = last.clone();
-                if let Some(before) = piece.points.last() {
-                    point.length = (point.y - before.y).norm();
-                    point.turning = step_size::turning(before, &point);
-                }
-                piece.points.push(point);
+                let point = last.clone();
+                piece.points.push(match piece.points.last() {
+                    Some(before) => point.after(before),
+                    None => point,
+                });
             }
             let joint = usize::from(!branch.points.is_empty());
             branch.points.extend(piece.points.into_iter().skip(joint));

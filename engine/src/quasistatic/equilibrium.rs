@@ -20,8 +20,7 @@
 //! ```
 
 use super::admissible::{Admissibility, Judge};
-use crate::continuation::system::{Matrix, Vector};
-use crate::continuation::{self, Linearization, System};
+use crate::continuation::{self, Column, Linearization, Matrix, System, Vector};
 use crate::disc::{Basis, Evaluation, Table};
 use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
@@ -61,13 +60,13 @@ impl Scales {
     }
 
     /// δ, P and s of the unknowns.
-    pub fn quantities(&self, y: &Unknowns) -> [f64; 3] {
+    pub fn quantities(&self, y: Column<'_>) -> [f64; 3] {
         [y[0] * self.approach, y[1] * self.force, y[2] * self.contact_radius]
     }
 
     /// The slopes of the curve at a point.
     pub fn stability(&self, point: &Point) -> Stability {
-        let [delta, force, s] = self.quantities(&point.frame.tangent);
+        let [delta, force, s] = self.quantities(point.tangent());
         Stability { approach: delta / s, force: force / s }
     }
 }
@@ -154,10 +153,10 @@ pub struct Equilibrium {
 }
 
 /// A state with the frame of the curve there.
-pub type Point = continuation::Point<{ unknown::COUNT }>;
+pub type Point = continuation::Point;
 
-/// Numbers that go with the three unknowns: their values, or the row of a control.
-pub type Unknowns = Vector<{ unknown::COUNT }>;
+/// Three numbers that go with the unknowns: their values, or the row of a control.
+pub type Unknowns = Vector;
 
 /// The number of unknowns and their indices.
 pub mod unknown {
@@ -175,32 +174,33 @@ impl Equilibrium {
     /// The unknowns of a state.
     pub fn unknowns_of(&self, e: &Evaluation) -> Unknowns {
         let Scales { approach, force, contact_radius } = self.scales;
-        Unknowns::from([e.approach / approach, e.force / force, e.contact_radius / contact_radius])
+        vec![e.approach / approach, e.force / force, e.contact_radius / contact_radius].into()
     }
 
     /// δ, P and s of the unknowns.
-    pub fn quantities(&self, y: &Unknowns) -> [f64; 3] {
+    pub fn quantities(&self, y: Column<'_>) -> [f64; 3] {
         self.scales.quantities(y)
     }
 
     /// s of a point.
     pub fn contact_radius(&self, point: &Point) -> f64 {
-        point.y[unknown::CONTACT_RADIUS] * self.scales.contact_radius
+        point.y()[unknown::CONTACT_RADIUS] * self.scales.contact_radius
     }
 
     /// The row of a control: row · y is the controlled quantity.
     pub fn control_row(&self, control: Control) -> Unknowns {
         let Scales { approach, force, .. } = self.scales;
-        Unknowns::from(match control {
+        let row = match control {
             Control::Displacement => [approach, 0.0, 0.0],
             Control::Force => [0.0, force, 0.0],
             Control::Stiffness(k) => [approach, force / k, 0.0],
-        })
+        };
+        row.to_vec().into()
     }
 
     /// The state at a point, its energy evaluated there.
     pub fn state(&self, point: &Point) -> State {
-        let [delta, force, s] = self.quantities(&point.y);
+        let [delta, force, s] = self.quantities(point.y());
         let energy = self.basis.evaluate(&self.problem, s, delta).energy;
         State { contact_radius: s, approach: delta, force, energy }
     }
@@ -212,7 +212,7 @@ impl Equilibrium {
 
     /// Whether the state of a point is admissible.
     pub fn admissibility(&self, point: &Point) -> Admissibility {
-        let [delta, _, s] = self.quantities(&point.y);
+        let [delta, _, s] = self.quantities(point.y());
         self.judge().judge(s, delta)
     }
 
@@ -225,9 +225,9 @@ impl Equilibrium {
     pub fn stiffness(&self, point: &Point) -> Stiffness {
         /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
         const ROUNDING: f64 = 1e-10;
-        let [delta, _, s] = self.quantities(&point.y);
-        let [along_delta, along_force, along_s] = self.quantities(&point.frame.tangent);
-        let turns = point.frame.tangent[unknown::APPROACH].abs() <= ROUNDING;
+        let [delta, _, s] = self.quantities(point.y());
+        let [along_delta, along_force, along_s] = self.quantities(point.tangent());
+        let turns = point.tangent()[unknown::APPROACH].abs() <= ROUNDING;
         let corner = self.table.has_corner(s);
         let per_approach = |slope: f64| {
             if corner {
@@ -255,47 +255,56 @@ impl Equilibrium {
 
     /// The point of an evaluated equilibrium, its tangent running inward; `None` where the curve is singular.
     pub fn point(&self, evaluation: &Evaluation) -> Option<Point> {
-        let y = self.unknowns_of(evaluation);
-        Point::new(y, &self.linearization(evaluation, evaluation.force), &inward())
+        let mut at = Linearization::new(unknown::COUNT);
+        self.linearization(evaluation, evaluation.force, &mut at);
+        Point::new(self, &self.unknowns_of(evaluation), &at, &inward())
     }
 
     /// The two equations and their derivatives at an evaluated (s, δ) and the force `p`.
-    pub fn linearization(&self, e: &Evaluation, p: f64) -> Linearization<{ unknown::COUNT }> {
+    fn linearization(&self, e: &Evaluation, p: f64, at: &mut Linearization) {
         let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
         let [r_d, r_s] = e.residual_gradient;
-        let [r_dd, r_ds, r_ss] = e.residual_second;
         let [p_d, p_s] = e.force_gradient;
-        let [p_dd, p_ds, p_ss] = e.force_second;
-        let hessian = |dd: f64, ds: f64, ss: f64| {
-            let (dd, ds, ss) = (dd * d0 * d0, ds * d0 * s0, ss * s0 * s0);
-            Matrix::from([[dd, 0.0, ds], [0.0; 3], [ds, 0.0, ss]])
-        };
-        Linearization {
-            residual: Unknowns::from([e.residual, (p - e.force) / p0, 0.0]),
-            scale: Unknowns::from([e.residual_scale, e.force_scale.max(f64::MIN_POSITIVE) / p0, 0.0]),
-            // By columns.
-            jacobian: Matrix::from([
-                [r_d * d0, -p_d * d0 / p0, 0.0],
-                [0.0, 1.0, 0.0],
-                [r_s * s0, -p_s * s0 / p0, 0.0],
-            ]),
-            second: [hessian(r_dd, r_ds, r_ss), hessian(-p_dd / p0, -p_ds / p0, -p_ss / p0), Matrix::zeros()],
-        }
+        at.residual.copy_from_slice(&[e.residual, (p - e.force) / p0]);
+        at.scale.copy_from_slice(&[e.residual_scale, e.force_scale.max(f64::MIN_POSITIVE) / p0]);
+        // By columns.
+        at.jacobian.copy_from_slice(&[r_d * d0, -p_d * d0 / p0, 0.0, 1.0, r_s * s0, -p_s * s0 / p0]);
+        at.kept.clear();
+        at.kept.extend(e.residual_second.iter().chain(&e.force_second));
     }
 }
 
 /// The direction in which a detachment runs: the contact radius shrinks.
 pub fn inward() -> Unknowns {
-    Unknowns::from([0.0, 0.0, -1.0])
+    vec![0.0, 0.0, -1.0].into()
 }
 
-impl System<{ unknown::COUNT }> for Equilibrium {
-    fn linearize(&self, y: &Unknowns) -> Option<Linearization<{ unknown::COUNT }>> {
-        let [delta, force, s] = self.quantities(y);
+impl System for Equilibrium {
+    fn unknowns(&self) -> usize {
+        unknown::COUNT
+    }
+
+    fn linearize(&self, y: &Unknowns, at: &mut Linearization) -> Option<()> {
+        let [delta, force, s] = self.quantities(y.column(0));
         if s.is_nan() || s <= 0.0 {
             return None;
         }
-        Some(self.linearization(&self.basis.evaluate(&self.problem, s, delta), force))
+        self.linearization(&self.basis.evaluate(&self.problem, s, delta), force, at);
+        Some(())
+    }
+
+    fn second(&self, at: &Linearization, v: &Unknowns, second: &mut Matrix) -> Option<()> {
+        let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
+        let &[r_dd, r_ds, r_ss, p_dd, p_ds, p_ss] = at.kept.as_slice() else { return None };
+        // Both depend on δ and s alone.
+        let rows = [[r_dd, r_ds, r_ss], [-p_dd / p0, -p_ds / p0, -p_ss / p0]].map(|[dd, ds, ss]| {
+            let (dd, ds, ss) = (dd * d0 * d0, ds * d0 * s0, ss * s0 * s0);
+            [dd * v[0] + ds * v[2], ds * v[0] + ss * v[2]]
+        });
+        let [[r_d, r_s], [p_d, p_s]] = rows;
+        // By columns.
+        second.copy_from_slice(&[r_d, p_d, 0.0, 0.0, r_s, p_s]);
+        Some(())
     }
 }
 
@@ -358,8 +367,8 @@ mod tests {
         let equilibrium = &curve.equilibrium;
         for s in [0.48, 0.3, 0.2, 0.05] {
             let [before, after] = [s * (1.0 - 1e-5), s * (1.0 + 1e-5)].map(|s| {
-                let y = equilibrium.explicit(s).unwrap().y;
-                equilibrium.quantities(&y)
+                let point = equilibrium.explicit(s).unwrap();
+                equilibrium.quantities(point.y())
             });
             let delta = after[0] - before[0];
             let stiffness = equilibrium.stiffness(&equilibrium.explicit(s).unwrap());

@@ -9,6 +9,7 @@
 //! and the second line of (19), in its root form (see [`super::functional`], [`crate::disc::exact`]), is one equation in s. From a
 //! contact radius three times too large it takes the 5-6 rounds that the paper reports.
 
+use crate::continuation::{self, Convergence, Criteria};
 use crate::disc::{Basis, Evaluation};
 use crate::problem::{Control, Reduced};
 
@@ -47,14 +48,9 @@ pub enum NewtonFailure {
         /// The radius it came to.
         s: f64,
     },
-    /// The rounds ran out.
-    #[error("{rounds} Newton rounds were not enough: relative residual {residual:.1e}")]
-    RoundsExhausted {
-        /// The rounds.
-        rounds: usize,
-        /// The relative residual reached.
-        residual: f64,
-    },
+    /// The iteration did not converge.
+    #[error(transparent)]
+    NotConverged(#[from] continuation::NewtonFailure),
 }
 
 /// An iterate so many times as far out as the first has lost its way, and a basis may have to be made for it.
@@ -82,9 +78,10 @@ pub fn solve(
     settings: NewtonSettings,
 ) -> Result<Solved, NewtonFailure> {
     let (of_approach, of_force) = weights(control);
-    let mut residual = f64::INFINITY;
+    let mut convergence = Convergence::new(Criteria::new(settings.tolerance, settings.rounds));
     let first = s;
-    for round in 0..=settings.rounds {
+    loop {
+        let round = convergence.round();
         let mut delta = value;
         if of_force > 0.0 {
             let unloaded = basis.evaluate(problem, s, 0.0);
@@ -92,11 +89,11 @@ pub fn solve(
                 (value - of_force * unloaded.force) / (of_approach + of_force * unloaded.force_gradient[0]);
         }
         let evaluation = basis.evaluate(problem, s, delta);
-        residual = (evaluation.residual / evaluation.residual_scale).abs();
+        let residual = (evaluation.residual / evaluation.residual_scale).abs();
         if !residual.is_finite() {
             return Err(NewtonFailure::Left { round, s });
         }
-        if residual <= settings.tolerance {
+        if convergence.is_reached(residual)? {
             return Ok(Solved { evaluation, rounds: round });
         }
         let [r_d, r_s] = evaluation.residual_gradient;
@@ -106,7 +103,7 @@ pub fn solve(
         if !(next > 0.0 && next <= FARTHEST * first) {
             return Err(NewtonFailure::Left { round, s: next });
         }
+        convergence.corrected((next - s).abs() / s)?;
         s = next;
     }
-    Err(NewtonFailure::RoundsExhausted { rounds: settings.rounds, residual })
 }

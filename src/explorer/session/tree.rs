@@ -7,9 +7,8 @@ use super::number::{Real, floats, reals};
 use crate::explorer::history::History;
 use crate::explorer::node::{Ahead, Node, NodeKind};
 use crate::explorer::setting::Setting;
-use pulloff_engine::continuation::tangent::Frame;
+use pulloff_engine::continuation::{Column, Columns};
 use pulloff_engine::quasistatic::admissible::Crest;
-use pulloff_engine::quasistatic::equilibrium::Unknowns;
 use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -131,16 +130,17 @@ impl Kind {
 impl Saved {
     fn of(node: &Node, setting: usize, forward: Option<usize>) -> Self {
         let Node { point, stiffness, admissibility, .. } = node;
+        let three = |column: Column<'_>| reals([column[0], column[1], column[2]]);
         Self {
             parent: node.parent,
             forward,
             kind: Kind::of(&node.kind),
             setting,
             step: node.step,
-            y: reals(point.y.into()),
-            tangent: reals(point.frame.tangent.into()),
-            curvature: reals(point.frame.curvature.into()),
-            positive: point.frame.positive,
+            y: three(point.y()),
+            tangent: three(point.tangent()),
+            curvature: three(point.curvature()),
+            positive: point.positive,
             length: Real(point.length),
             turning: Real(point.turning),
             rounds: point.rounds,
@@ -163,20 +163,10 @@ impl Saved {
 
     fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
         let setting = Arc::clone(settings.get(self.setting)?);
-        let vector = |numbers| Unknowns::from(floats(numbers));
-        let frame = Frame {
-            tangent: vector(self.tangent),
-            curvature: vector(self.curvature),
-            positive: self.positive,
-        };
-        let point = Point {
-            y: vector(self.y),
-            frame,
-            length: self.length.0,
-            rounds: self.rounds,
-            turning: self.turning.0,
-        };
-        let [approach, force, contact_radius] = setting.scales.quantities(&point.y);
+        let columns = [self.y, self.tangent, self.curvature].map(floats).concat();
+        let mut point = Point::of(Columns::from_vec(columns), self.positive);
+        (point.length, point.rounds, point.turning) = (self.length.0, self.rounds, self.turning.0);
+        let [approach, force, contact_radius] = setting.scales.quantities(point.y());
         let [contact, tangent, area_slope] = floats(self.stiffness);
         let node = Node {
             parent: self.parent,
