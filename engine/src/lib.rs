@@ -57,11 +57,14 @@
 //! | `continuation` | arc-length continuation and the location of limit points for any system |
 //! | `disc` | one disc of contact, exactly: the table of g and what is read from it |
 //! | `ritz` | the paper's method: ring elements, Kalker's functional, Newton-Raphson |
+//! | `annuli` | the state of a disc and any number of rings of contact |
 //! | `theory` | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
 //! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
 //! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
 //! | `report`, `verify` | the one serializable form of results; our numbers against theory |
 
+#[doc(hidden)]
+pub mod annuli;
 #[doc(hidden)]
 pub mod case;
 #[doc(hidden)]
@@ -70,6 +73,11 @@ pub mod continuation;
 pub mod disc;
 #[doc(hidden)]
 pub mod expression;
+#[doc(hidden)]
+pub mod contact {
+    pub use crate::gap::*;
+    pub use crate::problem::*;
+}
 #[cfg(test)]
 mod fixtures;
 #[doc(hidden)]

@@ -117,6 +117,52 @@ fn stretch_outside(
     }
 }
 
+/// d/dr ∫_s^r g/√(r² − a²) da at `r > s`; the panels must reach to `r`.
+///
+/// ```text
+/// g(s) s/(r √(r² − s²)) + ∫_s^r g'(a) (a/r)/√(r² − a²) da
+/// ```
+pub fn slope_from(panels: &Panels, s: f64, r: f64) -> f64 {
+    let at = panels.place(s);
+    let last = panels.place(r).panel;
+    let part = |i: usize| {
+        let span = panels.list()[i].span;
+        slope_outside(panels, i, r, [span.lo.max(s), span.hi.min(r)])
+    };
+    let edge = if s > 0.0 { panels.value(at) * s / (r * ((r - s) * (r + s)).sqrt()) } else { 0.0 };
+    edge + (at.panel..=last).map(part).sum::<f64>()
+}
+
+/// ∫ g' (a/r)/√(r² − a²) da from `lo` to `hi` on one panel.
+fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f64 {
+    if hi <= lo {
+        return 0.0;
+    }
+    let span = panels.list()[index].span;
+    let rule = rule(r - hi, hi - lo);
+    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
+    };
+    let place = |a: f64| Place { panel: index, x: span.place(a) };
+    match span.variable {
+        Variable::Fifth | Variable::Radius => over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| {
+            panels.values(place(r * psi.sin())).slope * psi.sin()
+        }),
+        Variable::Root { base } => {
+            let height = (r - base).sqrt();
+            let [centre, half] = span.line();
+            let angle = |a: f64| ((a - base).max(0.0).sqrt() / height).min(1.0).asin();
+            over(angle(lo), angle(hi), &|psi| {
+                let y = height * psi.sin();
+                let a = base + y * y;
+                let x = ((y - centre) / half).clamp(-1.0, 1.0);
+                panels.slope_by_variable(Place { panel: index, x }) * (a / r) / (r + a).sqrt()
+            })
+        }
+    }
+}
+
 /// The pressure at `r < s` in a disc of radius `s` at the approach `delta`, compression positive.
 pub fn pressure(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
     let at = panels.place(s);

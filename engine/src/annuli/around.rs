@@ -1,0 +1,236 @@
+//! The bodies around the edges of a state: the gap between the contacts and outside them, and the pressure in them.
+//!
+//! ```text
+//! gap(r) = h − δ + (4/π) ∫₀^r X/√(r² − a²) da = (4/π)[Σ y (M − N)(r, r') − F(r)],       X = ½(δ − g) − Σ y/√(r'² − a²) on the disc
+//! p(r) = −(2/π) Σ y √(r'² − s²)/((r'² − r²)√(s² − r²)) + what one disc has               in the disc
+//! p(r) = f(t)/(r dr/dt)                                                                  in a ring, f its cosine series
+//! ```
+
+use super::elliptic;
+use super::ground::{Ground, Under};
+use super::state::State;
+use crate::contact::Gap;
+use crate::disc::outside;
+use std::f64::consts::{FRAC_2_PI, PI};
+use wide::f64x4;
+
+/// Between an edge and the first radius that is looked at there are so many waves: beside an edge the sums are poor.
+pub const BESIDE: f64 = 0.06;
+
+/// Radii that are looked at in each wave.
+const PER_WAVE: f64 = 14.0;
+
+/// Points by which a minimum is found.
+const POINTS: usize = 11;
+
+/// The most radii of one search.
+const MOST_RADII: f64 = 20_000.0;
+
+/// A place where the gap has a minimum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crest {
+    /// r, a length.
+    pub radius: f64,
+    /// The gap there, a length; negative where the bodies would overlap.
+    pub gap: f64,
+}
+
+/// A state at an approach, ready for radii.
+#[derive(Debug)]
+pub struct Around<'a> {
+    ground: &'a Ground,
+    state: &'a State,
+    delta: f64,
+    radii: Vec<f64>,
+    y: Vec<f64>,
+    /// Nodes under the disc and the weights times X there, for radii beyond the first ring.
+    under: Option<(Under, Vec<f64>)>,
+}
+
+impl<'a> Around<'a> {
+    /// Of a state at the approach `delta`.
+    pub fn new(ground: &'a Ground, state: &'a State, delta: f64) -> Self {
+        let y: Vec<f64> = state.y[0].iter().zip(&state.y[1]).map(|(a, b)| a + delta * b).collect();
+        let radii: Vec<f64> = state.nodes.iter().flat_map(|nodes| nodes.radii.iter().copied()).collect();
+        let (s, first) = (state.contacts.disc, state.contacts.rings.first());
+        let under = first.filter(|_| s > 0.0).and_then(|[edge, _]| {
+            let under = ground.under(s, *edge)?;
+            let rings = |below: f64| -> f64 {
+                let terms = radii.iter().zip(&y);
+                terms.map(|(r, y)| y / ((r - edge).max(0.0) * (r + edge) + below).sqrt()).sum()
+            };
+            let nodes = under.radius.iter().zip(&under.below).zip(&under.weight);
+            let x = nodes
+                .map(|((a, below), weight)| weight * (0.5 * (delta - ground.transform(*a)) - rings(*below)))
+                .collect();
+            Some((under, x))
+        });
+        Self { ground, state, delta, radii, y, under }
+    }
+
+    /// The gap at a radius outside the contacts, a length.
+    pub fn gap(&self, r: f64) -> f64 {
+        let contacts = &self.state.contacts;
+        let s = contacts.disc;
+        let Some([edge, _]) = contacts.rings.first() else {
+            return outside::gap_from(&self.ground.panels, s, self.delta, r);
+        };
+        let rings = 2.0 * FRAC_2_PI * self.pressed(r);
+        if s <= 0.0 {
+            return self.ground.gap.jet(r).value - self.delta + rings;
+        }
+        if let Some((under, x)) = self.under.as_ref().filter(|_| r > *edge) {
+            let base = (r - edge) * (r + edge);
+            let disc: f64 = under.below.iter().zip(x).map(|(below, x)| x / (base + below).sqrt()).sum();
+            return self.ground.gap.jet(r).value - self.delta + rings + 2.0 * FRAC_2_PI * disc;
+        }
+        // Beside the disc its own sum is better conditioned than a difference of h and displacements.
+        let near = r.min(*edge);
+        let under = Under::even(s, near);
+        let base = (r - near) * (r + near);
+        let shaded: f64 = under
+            .below
+            .iter()
+            .zip(&under.weight)
+            .map(|(below, weight)| {
+                let terms = self.radii.iter().zip(&self.y);
+                let there: f64 = terms.map(|(r, y)| y / ((r - near) * (r + near) + below).sqrt()).sum();
+                weight * there / (base + below).sqrt()
+            })
+            .sum();
+        outside::gap_from(&self.ground.panels, s, self.delta, r) + rings - 2.0 * FRAC_2_PI * shaded
+    }
+
+    /// Σ y M at a radius.
+    fn pressed(&self, r: f64) -> f64 {
+        let least = self.radii.iter().map(|x| (r - x).abs() / (r + x)).fold(1.0, f64::min);
+        let means = elliptic::means(least);
+        let here = f64x4::splat(r);
+        let (radii, y) = (self.radii.as_chunks::<4>().0, self.y.as_chunks::<4>().0);
+        let sum = radii.iter().zip(y).fold(f64x4::ZERO, |sum, (there, y)| {
+            let there = f64x4::new(*there);
+            let per_sigma = f64x4::ONE / (here + there);
+            let complement = (here - there).abs() * per_sigma;
+            sum + f64x4::new(*y) * elliptic::far_first(complement, means) * per_sigma
+        });
+        sum.reduce_add()
+    }
+
+    /// The pressure at a radius inside a contact, a stress, compression positive; not a number outside.
+    pub fn pressure(&self, r: f64) -> f64 {
+        let s = self.state.contacts.disc;
+        if r < s {
+            let alone = outside::pressure(&self.ground.panels, s, self.delta, r);
+            let inside = ((s - r) * (s + r)).sqrt();
+            let terms = self.radii.iter().zip(&self.y);
+            let rings: f64 = terms
+                .map(|(there, y)| {
+                    y * ((there - s) * (there + s)).sqrt() / ((there - r) * (there + r) * inside)
+                })
+                .sum();
+            return alone - FRAC_2_PI * rings;
+        }
+        let mut from = 0;
+        for nodes in &self.state.nodes {
+            let n = nodes.radii.len();
+            let [a, b] = nodes.ends;
+            if r > a && r < b {
+                return nodes.density(&self.y[from..from + n], r) / r;
+            }
+            from += n;
+        }
+        f64::NAN
+    }
+
+    /// The minima of the gap outside the contacts, from the axis outward: those between contacts, and those beyond the last up to
+    /// the radius `to`; the axis itself is one where it lies outside and the gap rises from it, and so is a corner.
+    pub fn crests(&self, to: f64) -> Vec<Crest> {
+        let contacts = &self.state.contacts;
+        let mut intervals = contacts.gaps();
+        let outermost = contacts.outermost();
+        let to = to.min(self.ground.reach());
+        let mut found = Vec::new();
+        if to > outermost {
+            intervals.push([outermost, to]);
+        }
+        let beside = BESIDE * self.ground.wave;
+        for [lo, hi] in intervals {
+            let from = if lo > 0.0 { lo + beside } else { 0.0 };
+            let until = if hi < to || outermost >= to { hi - beside } else { hi };
+            if until > from {
+                self.minima([from, until], &mut found);
+            }
+        }
+        found
+    }
+
+    /// Adds the minima of an interval to those found.
+    fn minima(&self, [from, to]: [f64; 2], found: &mut Vec<Crest>) {
+        let steps = ((to - from) * PER_WAVE / self.ground.wave).ceil().clamp(2.0, MOST_RADII);
+        let step = (to - from) / steps;
+        // Some thousand at most.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let count = steps as usize;
+        let at = |k: usize| if k == count { to } else { from + step * k as f64 };
+        let gaps: Vec<f64> = (0..=count).map(|k| self.gap(at(k))).collect();
+        if from == 0.0 && gaps[0] <= gaps[1] {
+            found.push(Crest { radius: 0.0, gap: gaps[0] });
+        }
+        for k in 1..count {
+            if gaps[k] <= gaps[k - 1] && gaps[k] < gaps[k + 1] {
+                found.push(self.minimum([at(k - 1), at(k + 1)]));
+            }
+        }
+        let corners = self.ground.breaks.iter().filter(|b| self.ground.breaks.len() < 100 && **b > from && **b < to);
+        for corner in corners {
+            let gap = self.gap(*corner);
+            let beside = 1e-4 * self.ground.wave;
+            if self.gap(corner - beside) > gap && self.gap(corner + beside) > gap {
+                found.push(Crest { radius: *corner, gap });
+            }
+        }
+    }
+
+    /// The minimum between two radii, by a Chebyshev series.
+    pub fn minimum(&self, [lo, hi]: [f64; 2]) -> Crest {
+        let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+        let series = crate::disc::chebyshev::Rule::of(POINTS).series(|x| self.gap(middle + half * x));
+        let slope = crate::disc::chebyshev::derivative(&series);
+        let roots = crate::disc::chebyshev::roots(&slope, 0.0);
+        let value = |x: f64| crate::disc::chebyshev::sum(&series, x);
+        let best = roots.into_iter().chain([-1.0, 1.0]).min_by(|a, b| value(*a).total_cmp(&value(*b)));
+        let x = best.unwrap_or(0.0);
+        Crest { radius: middle + half * x, gap: value(x) }
+    }
+}
+
+impl super::nodes::Nodes {
+    /// p r at a radius on the ring, from the terms y of its sums.
+    fn density(&self, y: &[f64], r: f64) -> f64 {
+        let n = y.len();
+        let [a, b] = self.ends;
+        let half = self.half();
+        let theta = 2.0 * ((r - a) / (b - a)).sqrt().clamp(0.0, 1.0).asin();
+        let (t, stretch) = self.angle(theta);
+        let angles = &self.rule.angles;
+        // Q(t) = (1/n) Σ Q_k [1 + 2 Σ cos m t_k cos m t] and y = (π/n) Q.
+        let kernel = |at: f64| -> f64 {
+            let term = |angle: f64| {
+                let sine = (0.5 * angle).sin();
+                if sine.abs() < 1e-12 {
+                    (2 * n) as f64 - 1.0
+                } else {
+                    ((n as f64 - 0.5) * angle).sin() / sine
+                }
+            };
+            0.5 * (term(at - t) + term(at + t))
+        };
+        let sum: f64 = angles.iter().zip(y).map(|(at, y)| y * kernel(*at)).sum();
+        sum / PI / (stretch * half * theta.sin())
+    }
+
+    /// t and dθ/dt at the angle θ.
+    fn angle(&self, theta: f64) -> (f64, f64) {
+        self.graded.as_ref().map_or((theta, 1.0), |graded| graded.angle(theta))
+    }
+}

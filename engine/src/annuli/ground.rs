@@ -1,0 +1,233 @@
+//! What rings ask of a gap: h, its transform, its lengths, and sums over the disc.
+//!
+//! Under the disc sums are taken in v, a = a₁ tanh v, with a₁ the inner edge of the first ring: 1/√(r² − a²) for r ≥ a₁ is then
+//! analytic for |Im v| < π/2 however near to the disc the ring begins.
+
+use crate::contact::{Form, Gap};
+use crate::disc::{Panels, Table, TableError};
+use gauss_quad::GaussLegendre;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::num::NonZeroUsize;
+use std::sync::{Arc, OnceLock};
+
+/// The most nodes of one sum over the disc.
+const MOST_NODES: usize = 512;
+
+/// Digits of sums over the disc, as ln(1/error).
+const DIGITS: f64 = 34.6;
+
+/// Samples of a gap in which stand-ins for its lengths are looked for.
+const SAMPLES: u32 = 4000;
+
+/// Gauss's nodes and weights on (−1, 1), ascending; made once.
+pub fn gauss(n: usize) -> &'static [[f64; 2]] {
+    static RULES: [OnceLock<Vec<[f64; 2]>>; MOST_NODES + 1] = [const { OnceLock::new() }; MOST_NODES + 1];
+    let n = n.clamp(1, MOST_NODES);
+    RULES[n].get_or_init(|| {
+        let rule = GaussLegendre::new(NonZeroUsize::new(n).unwrap_or(NonZeroUsize::MIN));
+        let mut pairs: Vec<[f64; 2]> = rule.iter().map(|(x, weight)| [*x, *weight]).collect();
+        pairs.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        pairs
+    })
+}
+
+/// A gap with its table, as far out as it was asked for.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    /// The gap.
+    pub gap: Arc<dyn Gap>,
+    /// The table.
+    pub table: Arc<Table>,
+    /// Its panels.
+    pub panels: Arc<Panels>,
+    /// λ: the shortest wave, or what stands for it.
+    pub wave: f64,
+    /// ρ: the smallest radius of curvature of a crest, 1/max h''.
+    pub crest: f64,
+    /// The wavenumber up to which h is analytic on every disc; none where it is not.
+    pub(super) entire: Option<f64>,
+    /// The smallest g from the inner end of each panel on, less what samples may miss.
+    least: Vec<f64>,
+    /// The radii where h' or a higher derivative jumps, ascending.
+    pub breaks: Vec<f64>,
+}
+
+/// Nodes of a sum over the disc: ∫₀^s f da = Σ `weight` f(`radius`).
+#[derive(Debug, Clone, Default)]
+pub struct Under {
+    /// a.
+    pub radius: Vec<f64>,
+    /// a₁² sech² v = a₁² − a².
+    pub below: Vec<f64>,
+    /// The weight.
+    pub weight: Vec<f64>,
+}
+
+impl Under {
+    fn push(&mut self, edge: f64, v: f64, weight: f64) {
+        let sech = v.cosh().recip();
+        let square = sech * sech;
+        self.radius.push(edge * v.tanh());
+        self.below.push(edge * edge * square);
+        self.weight.push(edge * weight * square);
+    }
+
+    /// The nodes for ∫₀^s da/√((r² − a²)(r'² − a²)), r and r' at least `edge`: the integrand is even in v.
+    pub fn even(s: f64, edge: f64) -> Self {
+        let end = artanh(s, edge);
+        let beta = FRAC_PI_2 / end;
+        let n = up(DIGITS / (4.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0);
+        let mut nodes = Self::default();
+        for [x, weight] in &gauss(2 * n)[n..] {
+            nodes.push(edge, end * x, end * weight);
+        }
+        nodes
+    }
+
+    /// The nodes for the same with a function of wavenumbers up to `wavenumber`, which need not be even.
+    pub fn any(s: f64, edge: f64, wavenumber: f64) -> Self {
+        let end = artanh(s, edge);
+        let beta = PI / end;
+        let phase = 0.5 * wavenumber * edge * end.min(4.0);
+        let n = up(DIGITS / (2.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0 + phase + 4.0 * phase.cbrt());
+        let mut nodes = Self::default();
+        for [x, weight] in gauss(n) {
+            nodes.push(edge, 0.5 * end * (1.0 + x), 0.5 * end * weight);
+        }
+        nodes
+    }
+}
+
+/// artanh(s/edge).
+fn artanh(s: f64, edge: f64) -> f64 {
+    0.5 * ((edge + s) / (edge - s)).ln()
+}
+
+/// The next multiple of four.
+fn up(n: f64) -> usize {
+    // Positive, and a thousand at most.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let n = n.clamp(1.0, MOST_NODES as f64) as usize;
+    n.next_multiple_of(4)
+}
+
+impl Ground {
+    /// The gap of `table` up to the radius `reach`, a length, or to where the gap ends.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn new(table: Arc<Table>, reach: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Self, TableError> {
+        let gap = Arc::clone(table.gap());
+        let panels = table.up_to_while(reach, 0, go_on)?;
+        let reach = panels.reach();
+        let breaks = gap.breaks_up_to(reach);
+        let entire = match gap.form() {
+            Form::Waves { waves, .. } => {
+                Some(waves.iter().fold(0.0, |most: f64, wave| most.max(wave.wavenumber)))
+            }
+            // Even powers are polynomials in a².
+            Form::Power { exponent, .. } if exponent.fract() == 0.0 => Some(0.0),
+            _ => None,
+        };
+        let least = least(&panels);
+        let [standin, crest] = lengths(&*gap, reach, &breaks);
+        let wave = gap.feature_length().unwrap_or(standin);
+        Ok(Self {
+            gap,
+            table,
+            panels,
+            wave,
+            crest,
+            entire,
+            least,
+            breaks,
+        })
+    }
+
+    /// The largest radius that is tabulated.
+    pub fn reach(&self) -> f64 {
+        self.panels.reach()
+    }
+
+    /// g at a radius.
+    pub fn transform(&self, a: f64) -> f64 {
+        self.panels.value(self.panels.place(a))
+    }
+
+    /// dg/da at a radius, on the side towards the axis at a break.
+    pub fn slope(&self, a: f64) -> f64 {
+        if a > 0.0 { self.panels.values(self.panels.place(a)).slope } else { 0.0 }
+    }
+
+    /// The radius beyond which g > δ: from the last edge on the gap can become negative for the first time only where g < δ, for
+    /// by Abel's inversion what a gap ≥ 0 up to a radius and g > δ beyond it give is positive.
+    pub fn can_touch_up_to(&self, delta: f64) -> f64 {
+        let after = self.least.partition_point(|least| *least < delta);
+        after.checked_sub(1).map_or(0.0, |panel| self.panels.list()[panel].span.hi)
+    }
+
+    /// Nodes for sums of the transform over the disc; none where it is not analytic under it.
+    pub fn under(&self, s: f64, edge: f64) -> Option<Under> {
+        // A sum with more nodes than there are at most would not be resolved.
+        let wavenumber = self.entire.filter(|k| k * edge < 400.0)?;
+        Some(Under::any(s, edge, wavenumber))
+    }
+}
+
+/// The smallest g from the inner end of each panel on: ascending.
+fn least(panels: &Panels) -> Vec<f64> {
+    /// Places looked at on a panel, and what may lie between them as a share of the range.
+    const PLACES: u32 = 24;
+    const MISSED: f64 = 0.01;
+    let of = |panel: usize| {
+        let values = (0..=PLACES).map(|k| {
+            let x = 2.0 * f64::from(k) / f64::from(PLACES) - 1.0;
+            panels.value(crate::disc::Place { panel, x })
+        });
+        let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), g| (lo.min(g), hi.max(g)));
+        lo - MISSED * (hi - lo)
+    };
+    let mut least: Vec<f64> = (0..panels.list().len()).map(of).collect();
+    for panel in (1..least.len()).rev() {
+        least[panel - 1] = least[panel - 1].min(least[panel]);
+    }
+    least
+}
+
+/// Stand-ins for λ and ρ up to the radius `reach`.
+///
+/// ```text
+/// λ = 2π max|h' − cr|/max|h'' − c|,  c the least-squares slope of h';      ρ = 1/max h''
+/// ```
+///
+/// λ is at most twice the least distance of corners and a fourth of the reach.
+fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> [f64; 2] {
+    let radii = (0..SAMPLES).map(|k| reach * (f64::from(k) + 0.5) / f64::from(SAMPLES));
+    let jets: Vec<(f64, [f64; 2])> = radii
+        .map(|r| {
+            let jet = gap.jet(r);
+            (r, [jet.first, jet.second])
+        })
+        .filter(|(_, [first, second])| first.is_finite() && second.is_finite())
+        .collect();
+    let [mut moment, mut square] = [0.0; 2];
+    for (r, [first, _]) in &jets {
+        moment += r * first;
+        square += r * r;
+    }
+    let slope = if square > 0.0 { moment / square } else { 0.0 };
+    let most = |f: &dyn Fn(&(f64, [f64; 2])) -> f64| jets.iter().map(f).fold(0.0, f64::max);
+    let rise = most(&|(r, [first, _])| (first - slope * r).abs());
+    let bend = most(&|(_, [_, second])| (second - slope).abs());
+    let sharpest = most(&|(_, [_, second])| *second);
+    let jump = |b: f64| {
+        let step = 1e-9 * reach;
+        (gap.jet(b + step).first - gap.jet(b - step).first).abs() > 1e-6
+    };
+    let corners: Vec<f64> = breaks.iter().copied().filter(|b| breaks.len() < 1000 && jump(*b)).collect();
+    let before = std::iter::once(0.0).chain(corners.iter().copied());
+    let apart = before.zip(&corners).map(|(a, b)| b - a).fold(f64::INFINITY, f64::min);
+    let own = if bend > 1e-9 * slope.abs() { TAU * rise / bend } else { f64::INFINITY };
+    let wave = own.min(2.0 * apart).min(0.25 * reach);
+    [wave, if sharpest > 0.0 { sharpest.recip() } else { reach }]
+}

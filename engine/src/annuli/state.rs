@@ -1,0 +1,418 @@
+//! The state of a disc and rings: pressures, force, energy and edge intensities, as polynomials in the approach.
+
+use super::cholesky;
+use super::contacts::{Contacts, ContactsError};
+use super::ground::{Ground, Under};
+use super::kernel::{self, Moved};
+use super::nodes::Nodes;
+use super::rule::MOST_POINTS;
+use crate::contact::Gap;
+use crate::disc::outside;
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
+use std::sync::Arc;
+use wide::f64x4;
+
+/// The most points on all rings.
+pub const MOST_POINTS_IN_ALL: usize = 2000;
+
+/// The fewest points on a ring.
+const FEWEST_POINTS: f64 = 12.0;
+
+/// What the points of a ring leave: ln of its reciprocal, for 1e-12.
+const TOLERANCE: f64 = 27.63;
+
+/// Why there is no state.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AnnuliError {
+    /// The contacts are none.
+    #[error(transparent)]
+    Contacts(#[from] ContactsError),
+    /// More points than there may be.
+    #[error("the rings take {points} points, more than {most}")]
+    TooManyPoints {
+        /// How many it takes.
+        points: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// An edge beyond what is known of the gap.
+    #[error("an edge at r = {radius} lies beyond r = {known}, up to where the gap is known")]
+    BeyondGap {
+        /// The edge, a length.
+        radius: f64,
+        /// How far the gap is known or tabulated, a length.
+        known: f64,
+    },
+    /// The equations of the rings lost their digits.
+    #[error("the equations of the rings are singular to rounding: the narrowest width is {narrowest}")]
+    Singular {
+        /// The narrowest ring or gap, a length.
+        narrowest: f64,
+    },
+}
+
+/// How much is wanted of a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// Pressures, force, energy, intensities.
+    Values,
+    /// What their derivatives by the edges take as well.
+    Rates,
+}
+
+/// What the derivatives by the edges take.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Kept {
+    /// U of the equations.
+    pub factor: Vec<f64>,
+    /// The blocks on rings, and between them in the order (0, 1), (0, 2), …, (1, 2), …
+    pub own: Vec<Moved>,
+    pub between: Vec<Moved>,
+    /// dF/dr for δ⁰ and δ¹ at the points.
+    pub slopes: [Vec<f64>; 2],
+    /// The weights of N, and 1/√(r² − a²) at its nodes by rows.
+    pub weights: Vec<f64>,
+    pub inverse: Vec<f64>,
+}
+
+/// A disc and rings at any approach δ (E* = 1): what is solved is linear in δ, so all of it is a polynomial in δ.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// Where the bodies touch.
+    pub contacts: Contacts,
+    /// κ of every edge in the order of [`Contacts::edges`]: [κ⁰, κ¹], κ = κ⁰ + κ¹δ; the square root of a stress times a length.
+    pub intensity: Vec<[f64; 2]>,
+    /// P = P⁰ + P¹δ.
+    pub force: [f64; 2],
+    /// The elastic energy at δ = 0; with P its derivative by δ.
+    pub elastic: f64,
+    /// Decimal digits of the intensities that the points leave.
+    pub digits: f64,
+    /// X at the edge of the disc, for δ⁰ and δ¹.
+    pub(super) at_disc: [f64; 2],
+    pub(super) nodes: Vec<Nodes>,
+    /// ∫ p r' f dr' = Σ y f over a ring's points, for δ⁰ and δ¹.
+    pub(super) y: [Vec<f64>; 2],
+    pub(super) kept: Option<Kept>,
+}
+
+/// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts take the same.
+pub fn points(ground: &Ground, contacts: &Contacts) -> Vec<usize> {
+    let wants = |j: usize| {
+        let [a, b] = contacts.rings[j];
+        let half = 0.5 * (b - a);
+        let phase = 2.0 * PI * half / ground.wave;
+        let waves = phase + 8.0 * phase.cbrt() + 8.0;
+        let inner = if j > 0 { contacts.rings[j - 1][1] } else { contacts.disc };
+        let outward = contacts.rings.get(j + 1).map_or(f64::INFINITY, |next| next[0] - b);
+        let z = (a - inner).min(outward) / half;
+        let rho = 1.0 + z + (z * (2.0 + z)).sqrt();
+        FEWEST_POINTS.max(waves).max(TOLERANCE / rho.ln())
+    };
+    let rounded = |n: f64| {
+        // Positive, and 400 at most.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let n = n.min(MOST_POINTS as f64).ceil() as usize;
+        n.next_multiple_of(4)
+    };
+    (0..contacts.rings.len()).map(|j| rounded(wants(j))).collect()
+}
+
+/// The digits that `points` leave of `contacts`.
+fn digits(contacts: &Contacts, nodes: &[Nodes]) -> f64 {
+    let of = |j: usize| {
+        let [a, b] = contacts.rings[j];
+        let inner = if j > 0 { contacts.rings[j - 1][1] } else { contacts.disc };
+        let outward = contacts.rings.get(j + 1).map_or(f64::INFINITY, |next| next[0] - b);
+        let z = (a - inner).min(outward) / (0.5 * (b - a));
+        let rho = 1.0 + z + (z * (2.0 + z)).sqrt();
+        nodes[j].radii.len() as f64 * rho.log10()
+    };
+    (0..nodes.len()).map(of).fold(12.0, f64::min)
+}
+
+/// The points of all rings of a state, with what the disc makes of them.
+struct Points {
+    r: Vec<f64>,
+    /// √(r² − s²).
+    root: Vec<f64>,
+    /// (r − a₁)(r + a₁).
+    base: Vec<f64>,
+}
+
+impl Points {
+    fn new(contacts: &Contacts, nodes: &[Nodes]) -> Self {
+        let count = nodes.iter().map(|nodes| nodes.radii.len()).sum();
+        let [mut r, mut root, mut base] = [0; 3].map(|_| Vec::with_capacity(count));
+        let (s, edge) = (contacts.disc, contacts.rings.first().map_or(0.0, |ring| ring[0]));
+        for (j, nodes) in nodes.iter().enumerate() {
+            for (radius, inward) in nodes.radii.iter().zip(&nodes.from_inner) {
+                let from_edge = if j == 0 { *inward } else { radius - edge };
+                r.push(*radius);
+                root.push((((edge - s) + from_edge) * (radius + s)).sqrt());
+                base.push(from_edge * (radius + edge));
+            }
+        }
+        Self { r, root, base }
+    }
+
+    /// 1/√(r² − a²) at all points for every node, by rows.
+    fn inverse(&self, under: &Under) -> Vec<f64> {
+        let mut out = Vec::with_capacity(under.below.len() * self.r.len());
+        for below in &under.below {
+            out.extend(self.base.iter().map(|base| (base + below).sqrt().recip()));
+        }
+        out
+    }
+}
+
+impl Ground {
+    /// The state of `contacts`, with points of its own choice.
+    ///
+    /// # Errors
+    /// [`AnnuliError`].
+    pub fn state(&self, contacts: &Contacts, wanted: Wanted) -> Result<State, AnnuliError> {
+        self.state_with(contacts, &points(self, contacts), wanted)
+    }
+
+    /// The state of `contacts` with so many points on every ring: to be held while Newton's method runs, so that what it solves is
+    /// smooth.
+    ///
+    /// # Errors
+    /// [`AnnuliError`].
+    pub fn state_with(
+        &self,
+        contacts: &Contacts,
+        points: &[usize],
+        wanted: Wanted,
+    ) -> Result<State, AnnuliError> {
+        contacts.check()?;
+        let (radius, known) = (contacts.outermost(), self.reach());
+        if radius > known {
+            return Err(AnnuliError::BeyondGap { radius, known });
+        }
+        let count: usize = points.iter().sum();
+        if count > MOST_POINTS_IN_ALL {
+            return Err(AnnuliError::TooManyPoints { points: count, most: MOST_POINTS_IN_ALL });
+        }
+        let nodes: Vec<Nodes> = contacts
+            .rings
+            .iter()
+            .zip(points.iter().chain(std::iter::repeat(&12)))
+            .map(|(ring, n)| Nodes::plain(*ring, *n))
+            .collect();
+        self.solved(contacts.clone(), nodes, wanted)
+    }
+
+    fn solved(&self, contacts: Contacts, nodes: Vec<Nodes>, wanted: Wanted) -> Result<State, AnnuliError> {
+        let s = contacts.disc;
+        let mut state = State {
+            contacts,
+            intensity: Vec::new(),
+            force: [0.0; 2],
+            elastic: 0.0,
+            digits: 12.0,
+            at_disc: [0.0; 2],
+            nodes,
+            y: [Vec::new(), Vec::new()],
+            kept: None,
+        };
+        if s > 0.0 {
+            let values = self.panels.values(self.panels.place(s));
+            state.force = [-2.0 * values.area, 2.0 * s];
+            state.elastic = values.square;
+            state.at_disc = [-0.5 * values.value, 0.5];
+        }
+        if !state.nodes.is_empty() {
+            self.solve_rings(&mut state, wanted)?;
+        } else if wanted == Wanted::Rates {
+            state.kept = Some(Kept::default());
+        }
+        if s > 0.0 {
+            let unit = -(FRAC_2_PI / s).sqrt();
+            state.intensity.push(state.at_disc.map(|x| unit * x));
+        }
+        let mut from = 0;
+        for nodes in &state.nodes {
+            let to = from + nodes.radii.len();
+            for edge in 0..2 {
+                let unit = edge_unit(nodes, edge);
+                let end = |y: &[f64]| unit * dot(&nodes.rule.ends[edge], &y[from..to]);
+                state.intensity.push([end(&state.y[0]), end(&state.y[1])]);
+            }
+            from = to;
+        }
+        Ok(state)
+    }
+
+    /// The pressures of the rings.
+    fn solve_rings(&self, state: &mut State, wanted: Wanted) -> Result<(), AnnuliError> {
+        let (contacts, nodes) = (&state.contacts, &state.nodes);
+        let s = contacts.disc;
+        let points = Points::new(contacts, nodes);
+        let n = points.r.len();
+        let rates = wanted == Wanted::Rates;
+        let mut kept = Kept::default();
+        let mut matrix = vec![0.0; n * n];
+        let mut from = 0;
+        for (i, ring) in nodes.iter().enumerate() {
+            let size = ring.radii.len();
+            kept.own.push(Moved::default());
+            let moved = kept.own.last_mut().filter(|_| rates);
+            kernel::own(ring, &mut matrix[from * n + from..], n, moved);
+            let mut column = from + size;
+            for other in &nodes[i + 1..] {
+                kept.between.push(Moved::default());
+                let moved = kept.between.last_mut().filter(|_| rates);
+                kernel::between(ring, other, &mut matrix[from * n + column..], n, moved);
+                column += other.radii.len();
+            }
+            from += size;
+        }
+        if s > 0.0 {
+            let under = Under::even(s, contacts.rings[0][0]);
+            kept.inverse = points.inverse(&under);
+            kept.weights = under.weight;
+            subtract(&mut matrix, n, &kept);
+        }
+        let loads = self.loads(contacts, &points, rates);
+        let mut x: Vec<f64x4> =
+            loads.values[0].iter().zip(&loads.values[1]).map(|(a, b)| f64x4::new([*a, *b, 0.0, 0.0])).collect();
+        if !cholesky::factorize(&mut matrix, n) {
+            let narrowest = contacts.widths().into_iter().fold(f64::INFINITY, f64::min);
+            return Err(AnnuliError::Singular { narrowest });
+        }
+        cholesky::solve(&matrix, n, &mut x);
+        let y = [0, 1].map(|k| x.iter().map(|x| x.as_array()[k]).collect::<Vec<f64>>());
+        for k in 0..2 {
+            let shades = y[k].iter().zip(&loads.shade).map(|(y, shade)| y * shade);
+            state.force[k] += 8.0 * shades.sum::<f64>();
+            if s > 0.0 {
+                state.at_disc[k] -= y[k].iter().zip(&points.root).map(|(y, root)| y / root).sum::<f64>();
+            }
+        }
+        state.elastic += 4.0 * dot(&y[0], &loads.values[0]);
+        state.digits = digits(contacts, nodes);
+        state.y = y;
+        if rates {
+            kept.factor = matrix;
+            kept.slopes = loads.slopes;
+            state.kept = Some(kept);
+        }
+        Ok(())
+    }
+
+    /// F and F' at the points.
+    fn loads(&self, contacts: &Contacts, points: &Points, rates: bool) -> Loads {
+        let s = contacts.disc;
+        let n = points.r.len();
+        let shade: Vec<f64> = if s > 0.0 {
+            points.root.iter().map(|root| 0.5 * root.atan2(s)).collect()
+        } else {
+            vec![FRAC_PI_4; n]
+        };
+        let (mut values, mut slopes) = (vec![0.0; n], Vec::new());
+        let under = (s > 0.0).then(|| self.under(s, contacts.rings[0][0]));
+        if let Some(None) = under {
+            for (value, r) in values.iter_mut().zip(&points.r) {
+                *value = -FRAC_PI_4 * outside::gap_from(&self.panels, s, 0.0, *r);
+            }
+            if rates {
+                slopes = points.r.iter().map(|r| -0.5 * outside::slope_from(&self.panels, s, *r)).collect();
+            }
+        } else {
+            self.gap.values(1.0, &points.r, &mut values);
+            for value in &mut values {
+                *value *= -FRAC_PI_4;
+            }
+            if rates {
+                slopes = vec![0.0; n];
+                let [mut second, mut third] = [vec![0.0; n], vec![0.0; n]];
+                self.gap.derivatives(1.0, &points.r, [&mut slopes, &mut second, &mut third]);
+                for slope in &mut slopes {
+                    *slope *= -FRAC_PI_4;
+                }
+            }
+        }
+        if let Some(Some(under)) = under {
+            for ((radius, below), weight) in under.radius.iter().zip(&under.below).zip(&under.weight) {
+                let factor = 0.5 * weight * self.transform(*radius);
+                let add = |(value, base): (&mut f64, &f64)| *value += factor / (base + below).sqrt();
+                values.iter_mut().zip(&points.base).for_each(add);
+                let add = |(slope, (base, r)): (&mut f64, (&f64, &f64))| {
+                    let square = base + below;
+                    *slope -= factor * r / (square * square.sqrt());
+                };
+                slopes.iter_mut().zip(points.base.iter().zip(&points.r)).for_each(add);
+            }
+        }
+        let shade_slopes: Vec<f64> =
+            points.r.iter().zip(&points.root).map(|(r, root)| if s > 0.0 { 0.5 * s / (r * root) } else { 0.0 }).collect();
+        Loads { values: [values, shade.clone()], slopes: [slopes, shade_slopes], shade }
+    }
+}
+
+/// F = F⁰ + F¹δ and its slope at the points, ½ arccos(s/r).
+struct Loads {
+    values: [Vec<f64>; 2],
+    slopes: [Vec<f64>; 2],
+    shade: Vec<f64>,
+}
+
+/// The sum of products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// κ of an edge over the sum of its rule.
+pub(super) fn edge_unit(nodes: &Nodes, edge: usize) -> f64 {
+    -(PI / (2.0 * nodes.half())).sqrt() / (nodes.ends[edge] * nodes.stretch[edge])
+}
+
+/// Takes N from the upper triangle.
+fn subtract(matrix: &mut [f64], n: usize, kept: &Kept) {
+    let rows: Vec<&[f64]> = kept.inverse.chunks_exact(n).collect();
+    for (i, row) in matrix.chunks_exact_mut(n).enumerate() {
+        for (four, weights) in rows.chunks_exact(4).zip(kept.weights.chunks_exact(4)) {
+            let [a, b, c, d] = std::array::from_fn(|k| weights[k] * four[k][i]);
+            let terms = four[0][i..].iter().zip(&four[1][i..]).zip(&four[2][i..]).zip(&four[3][i..]);
+            for (x, (((p, q), u), v)) in row[i..].iter_mut().zip(terms) {
+                *x -= (a * p + b * q) + (c * u + d * v);
+            }
+        }
+    }
+}
+
+impl State {
+    /// κ at an approach, in the order of [`Contacts::edges`].
+    pub fn intensities(&self, delta: f64) -> Vec<f64> {
+        self.intensity.iter().map(|[at_zero, slope]| at_zero + slope * delta).collect()
+    }
+
+    /// P at an approach.
+    pub fn force_at(&self, delta: f64) -> f64 {
+        self.force[0] + self.force[1] * delta
+    }
+
+    /// U at an approach: the elastic energy less `gamma` for every unit of area.
+    pub fn energy(&self, delta: f64, gamma: f64) -> f64 {
+        self.elastic + delta * (self.force[0] + 0.5 * self.force[1] * delta) - gamma * self.contacts.area()
+    }
+
+    /// The number of points on every ring.
+    pub fn points(&self) -> Vec<usize> {
+        self.nodes.iter().map(|nodes| nodes.radii.len()).collect()
+    }
+}
+
+/// A ground with its gap alone, for tests and for what needs no table of its own.
+impl Ground {
+    /// The gap `gap` with a table up to `reach`.
+    ///
+    /// # Errors
+    /// [`TableError`](crate::disc::TableError).
+    pub fn of(gap: Arc<dyn Gap>, reach: f64) -> Result<Self, crate::disc::TableError> {
+        let table = Arc::new(crate::disc::Table::new(gap, reach, &mut || true)?);
+        Self::new(table, reach, &mut || true)
+    }
+}
