@@ -47,7 +47,7 @@ pub struct Ground {
     /// The wavenumber up to which h is analytic on every disc; none where it is not.
     pub(super) entire: Option<f64>,
     /// The smallest g from the inner end of each panel on, less what samples may miss.
-    least: Vec<f64>,
+    pub(super) least: Vec<f64>,
     /// The radii where h' or a higher derivative jumps, ascending.
     pub breaks: Vec<f64>,
 }

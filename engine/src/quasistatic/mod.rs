@@ -9,6 +9,7 @@
 //! | [`jump`] | where the edge lands when it runs at constant control |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
+//! | [`cycle`] | the whole loop of loading and unloading, with rings of contact |
 //! | [`profile`] | one state across the radius: pressure inside, deformed gap outside |
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
 //! | [`overlap`] | where a curve or a path passes states that are not admissible |
@@ -18,6 +19,7 @@
 
 pub mod admissible;
 pub mod curve;
+pub mod cycle;
 pub mod energy;
 pub mod equilibrium;
 pub mod jump;

@@ -1,0 +1,185 @@
+//! Equilibrium of any number of contacts under a device: κ = √γ at every edge.
+//!
+//! P = P⁰ + P¹δ and κ = κ⁰ + κ¹δ at held edges, so the control value c gives δ, and with f = 0, 1/P¹, 1/(P¹ + k)
+//!
+//! ```text
+//! displacement δ = c       force δ = (c − P⁰)/P¹       spring δ = (kc − P⁰)/(P¹ + k)
+//! J = ∂κ/∂α − f κ¹ (∂P/∂α)ᵀ,    ∂P/∂α_j = 4πe_j κ_j κ¹_j,    ∂κ/∂c = κ¹ (1, 1/P¹, k/(P¹ + k))
+//! ```
+//!
+//! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so that they are real where κ > 0.
+
+use crate::annuli::{AnnuliError, Around, Contacts, Ground, State, Wanted, points};
+use crate::contact::Control;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+
+/// Newton's steps at most, from edges that are near.
+const ITERATIONS: usize = 30;
+
+/// A Newton step that ends the iteration, in waves; where it no longer falls the second is enough.
+pub const CONVERGED: f64 = 1e-12;
+const STALLED: f64 = 1e-9;
+
+/// A Newton step is cut to so many waves and so that no width falls below this share.
+const LONGEST: f64 = 0.1;
+const LEFT: f64 = 0.4;
+
+/// Contacts under a device.
+#[derive(Debug, Clone)]
+pub struct Balance<'a> {
+    /// The gap.
+    pub ground: &'a Ground,
+    /// γ in reduced units.
+    pub work_of_adhesion: f64,
+    /// The device.
+    pub control: Control,
+}
+
+/// Edges at a control value, in equilibrium or not.
+#[derive(Debug, Clone)]
+pub struct Held {
+    /// The contacts with their pressures.
+    pub state: State,
+    /// c.
+    pub control_value: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// κ − √γ of every edge.
+    pub excess: DVector<f64>,
+    /// J at held control, and ∂κ/∂c.
+    pub jacobian: DMatrix<f64>,
+    /// ∂κ/∂c.
+    pub by_control: DVector<f64>,
+}
+
+/// Why Newton's method found no equilibrium.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotFound {
+    /// There is no state on the way.
+    #[error(transparent)]
+    State(#[from] AnnuliError),
+    /// J is singular.
+    #[error("the edges are at a limit point")]
+    Singular,
+    /// The iteration did not end.
+    #[error("Newton's method did not end: its last step was {step} waves")]
+    Unfinished {
+        /// The largest part of the last step, in waves.
+        step: f64,
+    },
+}
+
+impl Balance<'_> {
+    /// The edges of `contacts` at the control value, with so many points on the rings.
+    ///
+    /// # Errors
+    /// [`AnnuliError`].
+    pub fn held(&self, contacts: &Contacts, points: &[usize], value: f64) -> Result<Held, AnnuliError> {
+        let state = self.ground.state_with(contacts, points, Wanted::Rates)?;
+        let [p0, p1] = state.force;
+        let (delta, factor, by_value) = match self.control {
+            Control::Displacement => (value, 0.0, 1.0),
+            Control::Force => ((value - p0) / p1, p1.recip(), p1.recip()),
+            Control::Stiffness(k) => ((k * value - p0) / (p1 + k), (p1 + k).recip(), k / (p1 + k)),
+        };
+        let mut jacobian = state.jacobian(delta, self.ground.slope(contacts.disc));
+        let edges = contacts.edges();
+        let kappa = state.intensities(delta);
+        if factor != 0.0 {
+            for (j, edge) in edges.iter().enumerate() {
+                let force = 4.0 * PI * edge.radius * kappa[j] * state.intensity[j][1];
+                for i in 0..edges.len() {
+                    jacobian[(i, j)] -= factor * state.intensity[i][1] * force;
+                }
+            }
+        }
+        let root = self.work_of_adhesion.sqrt();
+        let excess = DVector::from_iterator(edges.len(), kappa.iter().map(|kappa| kappa - root));
+        let by_control =
+            DVector::from_iterator(edges.len(), state.intensity.iter().map(|[_, slope]| slope * by_value));
+        let force = p0 + p1 * delta;
+        Ok(Held { state, control_value: value, approach: delta, force, excess, jacobian, by_control })
+    }
+
+    /// The equilibrium at the control value with the same contacts, by Newton's method from these edges; they need not be near an
+    /// equilibrium of their own, but nothing is said of what lies between: no landing is claimed.
+    ///
+    /// # Errors
+    /// [`NotFound`].
+    pub fn solve(&self, from: &Contacts, value: f64) -> Result<Held, NotFound> {
+        let points = points(self.ground, from);
+        let mut contacts = from.clone();
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let held = self.held(&contacts, &points, value)?;
+            let step = held.jacobian.clone().lu().solve(&-&held.excess).ok_or(NotFound::Singular)?;
+            let size = step.amax() / self.ground.wave;
+            if !size.is_finite() {
+                return Err(NotFound::Singular);
+            }
+            if size <= CONVERGED || (size <= STALLED && size > 0.3 * last) {
+                return Ok(held);
+            }
+            last = size;
+            let mut share = (LONGEST / size).min(1.0);
+            let next = loop {
+                let next = moved(&contacts, &(&step * share));
+                if keeps_widths(&contacts, &next, LEFT) {
+                    break next;
+                }
+                share *= 0.5;
+                if share < 1e-6 {
+                    return Err(NotFound::Unfinished { step: size });
+                }
+            };
+            contacts = next;
+        }
+        Err(NotFound::Unfinished { step: last })
+    }
+
+    /// Whether, or how nearly, edges are stable when the control is held: the least eigenvalue of J.
+    pub fn least_eigenvalue(held: &Held) -> f64 {
+        let j = &held.jacobian;
+        let n = j.nrows();
+        match n {
+            0 => f64::NAN,
+            1 => j[(0, 0)],
+            _ => {
+                // J_ij J_ji are squares where κ > 0; a pressed edge eases nothing, and stands alone.
+                let off = |i: usize, k: usize| {
+                    let (a, b) = (j[(i, k)], j[(k, i)]);
+                    if a < 0.0 && b < 0.0 { -(a * b).sqrt() } else { 0.0 }
+                };
+                let symmetric =
+                    DMatrix::from_fn(n, n, |i, k| if i == k { j[(i, i)] } else { off(i, k) });
+                if symmetric.iter().all(|x| x.is_finite()) {
+                    symmetric.symmetric_eigenvalues().min()
+                } else {
+                    f64::NAN
+                }
+            }
+        }
+    }
+
+    /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near.
+    pub fn least_gap(&self, held: &Held) -> Option<crate::annuli::Crest> {
+        let to = self.ground.can_touch_up_to(held.approach);
+        let around = Around::new(self.ground, &held.state, held.approach);
+        around.crests(to).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+    }
+}
+
+/// The contacts with every α changed.
+pub fn moved(contacts: &Contacts, by: &DVector<f64>) -> Contacts {
+    let radii: Vec<f64> =
+        contacts.edges().iter().zip(by.iter()).map(|(edge, by)| edge.radius + edge.sign * by).collect();
+    contacts.with_edges(&radii)
+}
+
+/// Whether every width of `next` is at least this share of what it was.
+pub fn keeps_widths(before: &Contacts, next: &Contacts, share: f64) -> bool {
+    next.check().is_ok() && before.widths().iter().zip(next.widths()).all(|(old, new)| new >= share * old)
+}

@@ -1,0 +1,228 @@
+//! Where edges land that run at held control.
+//!
+//! ```text
+//! dα_i/dt = m_i (γ − G_i),  any mobilities m_i > 0;      step (J + μ D⁻¹) Δα = √γ − κ,  D = diag m
+//! ```
+//!
+//! An edge that advances eases every other (∂κ_i/∂α_j < 0 for j ≠ i), so this flow keeps order: begun where all G_i ≤ γ it only grows,
+//! and ends in the least equilibrium that contains its start, whatever the mobilities; begun where all G_i ≥ γ it only shrinks, to the
+//! greatest one inside. On the way contacts merge, touch and vanish.
+
+use super::balance::{Balance, CONVERGED, Held, keeps_widths, moved};
+use super::error::CycleError;
+use super::event::{Passed, PassedKind};
+use crate::annuli::{Contacts, points};
+use nalgebra::DVector;
+
+/// Steps of one run at most.
+const STEPS: usize = 4000;
+
+/// The longest step, and the longest Newton step that may go back, in waves.
+const LONGEST: f64 = 0.03;
+const BACK: f64 = 0.02;
+
+/// What a step leaves of every width.
+const LEFT: f64 = 0.4;
+
+/// The kick at a limit point in waves, and as a share of the narrowest width.
+const KICK: f64 = 2e-3;
+const KICK_OF_WIDTH: f64 = 0.1;
+
+/// Widths that close or vanish: in waves, and in (γρ²)^{1/3}.
+const NARROW: f64 = 0.004;
+const NARROW_BY_ADHESION: f64 = 0.05;
+
+/// How fast edges move at a radius: nothing that lasts depends on it.
+pub type Mobility<'a> = &'a (dyn Fn(f64) -> f64 + Sync);
+
+/// The same for all edges.
+pub const EVEN: Mobility<'static> = &|_| 1.0;
+
+impl Balance<'_> {
+    /// The width below which a gap closes and a contact vanishes on the way.
+    pub fn narrow(&self) -> f64 {
+        let by_adhesion = (self.work_of_adhesion * self.ground.crest * self.ground.crest).cbrt();
+        let most = NARROW * self.ground.wave;
+        if by_adhesion > 0.0 { most.min(NARROW_BY_ADHESION * by_adhesion) } else { most }
+    }
+
+    /// The contacts at a limit point, kicked along the null vector outward (`sense` 1) or inward (−1).
+    pub fn kicked(&self, contacts: &Contacts, null: &DVector<f64>, sense: f64) -> Contacts {
+        let narrowest = contacts.widths().into_iter().fold(f64::INFINITY, f64::min);
+        let kick = (KICK * self.ground.wave).min(KICK_OF_WIDTH * narrowest);
+        let sign = if null.sum() < 0.0 { -sense } else { sense };
+        moved(contacts, &(null * (sign * kick / null.amax())))
+    }
+
+    /// The contacts with a small new one at a crest, whose edges advance.
+    ///
+    /// # Errors
+    /// [`CycleError`] where there is no state.
+    pub fn seeded(&self, contacts: &Contacts, crest: f64, value: f64) -> Result<Contacts, CycleError> {
+        let root = self.work_of_adhesion.sqrt();
+        let mut half = 0.5 * self.narrow();
+        let mut found = contacts.clone();
+        for _ in 0..30 {
+            found = with_seed(contacts, crest, half);
+            let held = self.held(&found, &points(self.ground, &found), value)?;
+            let own = |edge: f64| (edge - crest).abs() <= 1.5 * half;
+            let advances = found
+                .edges()
+                .iter()
+                .zip(held.excess.iter())
+                .all(|(edge, excess)| !own(edge.radius) || excess + root < root);
+            if advances || self.work_of_adhesion == 0.0 {
+                break;
+            }
+            half *= 0.5;
+        }
+        Ok(found)
+    }
+
+    /// Lets the edges of `start` run at the held control value, outward (`sense` 1) or inward (−1), to where they land; `None` where
+    /// nothing is left. What happens on the way is added to `passed`.
+    ///
+    /// # Errors
+    /// [`CycleError`].
+    pub fn run(
+        &self,
+        start: Contacts,
+        value: f64,
+        sense: f64,
+        mobility: Mobility<'_>,
+        passed: &mut Vec<Passed>,
+    ) -> Result<Option<Held>, CycleError> {
+        let wave = self.ground.wave;
+        let mut contacts = start;
+        let mut last = f64::INFINITY;
+        for _ in 0..STEPS {
+            contacts = self.tidied(contacts, sense, passed);
+            if contacts.is_empty() {
+                return Ok(None);
+            }
+            let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
+            let lowest = Self::least_eigenvalue(&held);
+            if lowest > 0.0 {
+                let newton = held.jacobian.clone().lu().solve(&-&held.excess);
+                if let Some(step) = newton.filter(|step| step.iter().all(|x| x.is_finite())) {
+                    let size = step.amax() / wave;
+                    if size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
+                        if sense < 0.0 {
+                            return Ok(Some(held));
+                        }
+                        let Some(touched) = self.touched(&held, value, passed)? else {
+                            return Ok(Some(held));
+                        };
+                        (contacts, last) = (touched, f64::INFINITY);
+                        continue;
+                    }
+                    let next = moved(&contacts, &step);
+                    if size <= BACK && keeps_widths(&contacts, &next, LEFT) {
+                        (contacts, last) = (next, size);
+                        continue;
+                    }
+                }
+            }
+            last = f64::INFINITY;
+            contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
+            if sense > 0.0 {
+                let tidy = self.tidied(contacts, sense, passed);
+                let held = self.held(&tidy, &points(self.ground, &tidy), value)?;
+                contacts = self.touched(&held, value, passed)?.unwrap_or(tidy);
+            }
+        }
+        Err(CycleError::NoLanding { control_value: value, steps: STEPS })
+    }
+
+    /// A step of the flow.
+    fn damped(
+        &self,
+        held: &Held,
+        lowest: f64,
+        sense: f64,
+        mobility: Mobility<'_>,
+    ) -> Result<DVector<f64>, CycleError> {
+        let contacts = &held.state.contacts;
+        let wave = self.ground.wave;
+        let slow: Vec<f64> = contacts.edges().iter().map(|edge| mobility(edge.radius).recip()).collect();
+        let size = held.jacobian.amax();
+        let fastest = slow.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut mu = if lowest > 0.0 { 0.0 } else { 1.3 * lowest.abs() / fastest };
+        let push = -&held.excess;
+        for _ in 0..200 {
+            let mut matrix = held.jacobian.clone();
+            for (i, slow) in slow.iter().enumerate() {
+                matrix[(i, i)] += mu * slow;
+            }
+            let large = mu * fastest > 1e4 * size;
+            if let Some(mut step) = matrix.lu().solve(&push) {
+                if large {
+                    // A fast edge a hair beyond its place.
+                    step.apply(|x| *x = if *x * sense < 0.0 { 0.0 } else { *x });
+                }
+                let right = step.iter().all(|x| x * sense >= 0.0 && x.is_finite());
+                let next = moved(contacts, &step);
+                if right && step.amax() <= LONGEST * wave && keeps_widths(contacts, &next, LEFT) {
+                    return Ok(step);
+                }
+            }
+            mu = if mu > 0.0 { 2.0 * mu } else { 0.05 * size / fastest };
+        }
+        Err(CycleError::NoLanding { control_value: held.control_value, steps: 200 })
+    }
+
+    /// The contacts with a seed where the gap is negative.
+    fn touched(&self, held: &Held, value: f64, passed: &mut Vec<Passed>) -> Result<Option<Contacts>, CycleError> {
+        let Some(crest) = self.least_gap(held).filter(|crest| crest.gap < 0.0) else { return Ok(None) };
+        passed.push(Passed { kind: PassedKind::Touch, radius: crest.radius });
+        self.seeded(&held.state.contacts, crest.radius, value).map(Some)
+    }
+
+    /// The contacts without gaps that are too narrow, and when they shrink without contacts that are.
+    fn tidied(&self, mut contacts: Contacts, sense: f64, passed: &mut Vec<Passed>) -> Contacts {
+        let narrow = self.narrow();
+        let mut k = 0;
+        while k < contacts.rings.len() {
+            let inner = if k > 0 { contacts.rings[k - 1][1] } else { contacts.disc };
+            let [a, b] = contacts.rings[k];
+            let width = if inner > 0.0 { a - inner } else { 0.5 * a };
+            if width >= narrow {
+                k += 1;
+                continue;
+            }
+            passed.push(Passed { kind: PassedKind::Merge, radius: 0.5 * (inner + a) });
+            contacts.rings.remove(k);
+            match k.checked_sub(1) {
+                Some(before) => contacts.rings[before][1] = b,
+                None => contacts.disc = b,
+            }
+        }
+        if sense < 0.0 {
+            contacts.rings.retain(|[a, b]| {
+                let stays = b - a >= narrow;
+                if !stays {
+                    passed.push(Passed { kind: PassedKind::Vanish, radius: 0.5 * (a + b) });
+                }
+                stays
+            });
+            if contacts.has_disc() && contacts.disc < narrow {
+                passed.push(Passed { kind: PassedKind::Vanish, radius: 0.0 });
+                contacts.disc = 0.0;
+            }
+        }
+        contacts
+    }
+}
+
+/// The contacts with one more from `crest` − `half` to `crest` + `half`, a disc at the axis.
+fn with_seed(contacts: &Contacts, crest: f64, half: f64) -> Contacts {
+    let mut found = contacts.clone();
+    if crest <= half {
+        found.disc = found.disc.max(half);
+    } else {
+        found.rings.push([crest - half, crest + half]);
+        found.rings.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
+    found
+}
+

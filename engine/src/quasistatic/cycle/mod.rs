@@ -1,0 +1,37 @@
+//! The whole loop: the approach, the first touch, loading to a turn and back until the bodies are apart, with rings of contact.
+//!
+//! Along stable states, which are followed by arc length in all edges and the control, three things happen: the control has a limit
+//! point and edges run; a crest outside touches and a new contact runs; the turn is reached. Jumps happen at held control
+//! ([`jump`]); each loses the drop of the potential, and as an independent number
+//!
+//! ```text
+//! −∫ Σ 2πe_i (G_i − γ) dα_i  between the edges before and after,     Π(last) = Σ ∫ (dΠ/dc) dc − Σ losses,  dΠ/dc = P, −δ (dead load)
+//! ```
+//!
+//! Contact that merged on loading stays one on unloading: for γ > 0 an interior bears any tension in the limit of Johnson, Kendall and
+//! Roberts. The loop is the memory of that.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`balance`] | equilibrium of given contacts at a control value, stability |
+//! | [`point`] | steps along the equilibria, places on them |
+//! | [`jump`] | where edges land that run at held control |
+//! | [`event`] | events and states |
+//! | [`error`] | why there is none, and what is to be known about one |
+//! | [`path`] | the loop |
+
+pub mod balance;
+pub mod error;
+pub mod event;
+pub mod jump;
+pub mod path;
+pub mod point;
+#[cfg(test)]
+mod tests;
+
+pub use balance::{Balance, Held, NotFound};
+pub use error::{CycleError, Warning};
+pub use event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
+pub use jump::{EVEN, Mobility};
+pub use path::{Areas, Cycle, Setting, Totals, Turn, TurnReached, cycle};
+pub use point::{Point, Step};

@@ -1,0 +1,544 @@
+//! The loop itself.
+
+use super::balance::{Balance, Held};
+use super::error::{CycleError, Warning};
+use super::event::{CycleState, Direction, Event, EventKind, Passed};
+use super::jump::Mobility;
+use super::point::{Point, Step};
+use crate::annuli::ground::gauss;
+use crate::annuli::{Around, Contacts, Crest, Ground};
+use crate::contact::Control;
+use nalgebra::DVector;
+
+/// Steps of a loop at most.
+const STEPS: usize = 200_000;
+
+/// The first step of a stretch, the longest and the shortest, in the units of the arc length.
+const FIRST: f64 = 0.02;
+const LONGEST: f64 = 0.15;
+const SHORTEST: f64 = 1e-9;
+
+/// Nodes of an area on a step.
+const NODES: usize = 9;
+
+/// A gap that is nothing, in waves.
+const ROUNDING: f64 = 1e-11;
+
+/// What the balance of a loop may leave of its losses.
+const BALANCED: f64 = 1e-6;
+
+/// Digits below which a loop warns.
+const DIGITS: f64 = 9.0;
+
+/// Where the control turns round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Turn {
+    /// At the first stable state with at least this approach, a length.
+    Approach(f64),
+    /// With at least this force.
+    Force(f64),
+    /// With an outermost edge of at least this radius, a length.
+    Radius(f64),
+    /// At this control value: an approach, a force, or the way of the device.
+    Control(f64),
+}
+
+impl Turn {
+    /// Its number.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
+        }
+    }
+
+    fn measure(self, held: &Held) -> f64 {
+        match self {
+            Self::Approach(_) => held.approach,
+            Self::Force(_) => held.force,
+            Self::Radius(_) => held.state.contacts.outermost(),
+            Self::Control(_) => held.control_value,
+        }
+    }
+}
+
+/// Whether losses are computed by area as well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Areas {
+    /// By energy alone.
+    No,
+    /// Twice; the balance is checked.
+    Yes,
+}
+
+/// What a loop is asked for.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The device.
+    pub control: Control,
+    /// Where it turns round.
+    pub turn: Turn,
+    /// Whether losses are computed twice.
+    pub areas: Areas,
+    /// How fast edges move at a radius: nothing that lasts depends on it.
+    pub mobility: Mobility<'a>,
+}
+
+/// Where the control turned round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnReached {
+    /// What was asked for.
+    pub asked: Turn,
+    /// What the state there has of it: more than asked for where loading jumped over it.
+    pub reached: f64,
+}
+
+/// The sums of a loop; `None` where a dead load leaves no bound, or what was not asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Totals {
+    /// All losses.
+    pub dissipated: Option<f64>,
+    /// The same by area.
+    pub dissipated_by_area: Option<f64>,
+    /// The losses up to the pull-off, without it.
+    pub dissipated_before_pull_off: f64,
+    /// The work done by the device on the way up, its own elastic energy counted with the bodies.
+    pub work_of_loading: f64,
+    /// The same on the way down.
+    pub work_of_unloading: Option<f64>,
+    /// |Π(last) − Σ areas + Σ losses| over the losses, from the first touch to before the pull-off.
+    pub balance: Option<f64>,
+}
+
+/// A whole loop, in reduced units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// What was controlled.
+    pub control: Control,
+    /// Where it turned.
+    pub turn: TurnReached,
+    /// The events in order.
+    pub events: Vec<Event>,
+    /// Stable states in order, dense enough to be drawn: those before and after events among them.
+    pub states: Vec<CycleState>,
+    /// The sums.
+    pub totals: Totals,
+    /// What is to be known about it.
+    pub warnings: Vec<Warning>,
+}
+
+/// What ends a stretch of stable states.
+#[derive(Debug)]
+enum End {
+    Limit(DVector<f64>),
+    Touch(Crest),
+    Turn,
+}
+
+/// A loop while it runs.
+pub(super) struct Path<'a, 'b> {
+    pub balance: &'a Balance<'b>,
+    pub setting: &'a Setting<'a>,
+    pub go_on: &'a dyn Fn(f64) -> bool,
+    pub events: Vec<Event>,
+    pub states: Vec<CycleState>,
+    pub piece: usize,
+    pub direction: Direction,
+    pub steps: usize,
+    /// Σ ∫ (dΠ/dc) dc.
+    pub area: f64,
+    /// The fewest digits, and where.
+    pub digits: (f64, f64),
+}
+
+/// The loop of a gap with the work of adhesion `gamma` (E* = 1).
+///
+/// `go_on` is asked before each step with the share of the way that is done, 0 to 1, roughly.
+///
+/// # Errors
+/// [`CycleError`].
+pub fn cycle(
+    ground: &Ground,
+    gamma: f64,
+    setting: &Setting<'_>,
+    go_on: &dyn Fn(f64) -> bool,
+) -> Result<Cycle, CycleError> {
+    let balance = Balance { ground, work_of_adhesion: gamma, control: setting.control };
+    let path = Path {
+        balance: &balance,
+        setting,
+        go_on,
+        events: Vec::new(),
+        states: Vec::new(),
+        piece: 0,
+        direction: Direction::Loading,
+        steps: 0,
+        area: 0.0,
+        digits: (f64::INFINITY, f64::NAN),
+    };
+    path.whole()
+}
+
+/// The place of the least gap; the axis where it is one of several.
+pub fn first_crest(ground: &Ground) -> Option<Crest> {
+    const PER_WAVE: f64 = 40.0;
+    let reach = ground.reach();
+    let steps = (reach * PER_WAVE / ground.wave).ceil().clamp(400.0, 100_000.0);
+    let value = |r: f64| ground.gap.jet(r).value;
+    // A hundred thousand at most.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let count = steps as usize;
+    let grid = (0..=count).map(|k| reach * k as f64 / steps);
+    let radii = grid.chain(ground.breaks.iter().copied());
+    let (best, _) = radii
+        .map(|r| (r, value(r)))
+        .filter(|(_, h)| h.is_finite())
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    if best <= 0.0 {
+        return Some(Crest { radius: 0.0, gap: value(0.0) });
+    }
+    // h' changes its sign at a smooth minimum; at a corner the bisection ends on it.
+    let step = reach / steps;
+    let (mut lo, mut hi) = ((best - step).max(0.0), best + step);
+    if hi > reach {
+        return None;
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (lo + hi);
+        if ground.gap.jet(middle).first > 0.0 { hi = middle } else { lo = middle }
+    }
+    let radius = if value(best) < value(hi) { best } else { hi };
+    Some(Crest { radius, gap: value(radius) })
+}
+
+impl Path<'_, '_> {
+    fn state(&self, held: &Held) -> CycleState {
+        CycleState::new(held, self.balance.work_of_adhesion, self.direction, self.piece)
+    }
+
+    fn record(&mut self, held: &Held) {
+        if held.state.digits < self.digits.0 {
+            self.digits = (held.state.digits, held.control_value);
+        }
+        let state = self.state(held);
+        self.states.push(state);
+    }
+
+    fn whole(mut self) -> Result<Cycle, CycleError> {
+        let (balance, setting) = (self.balance, self.setting);
+        let ground = balance.ground;
+        let turn = setting.turn;
+        if !turn.value().is_finite() {
+            return Err(CycleError::BadTurn(turn.value()));
+        }
+        if let Turn::Radius(radius) = turn {
+            if radius > ground.reach() {
+                return Err(CycleError::RadiusBeyondGap { radius, known: ground.reach() });
+            }
+        }
+        let crest = first_crest(ground).ok_or(CycleError::NeverTouches { searched: ground.reach() })?;
+        let first = match setting.control {
+            Control::Force => 0.0,
+            Control::Displacement | Control::Stiffness(_) => crest.gap,
+        };
+        let least = match turn {
+            Turn::Control(_) => first,
+            Turn::Approach(_) if setting.control == Control::Displacement => first,
+            Turn::Force(_) if setting.control == Control::Force => first,
+            _ => f64::NEG_INFINITY,
+        };
+        if turn.value() < least {
+            return Err(if setting.control == Control::Force && balance.work_of_adhesion == 0.0 {
+                CycleError::NoTension { load: turn.value() }
+            } else {
+                CycleError::TurnBeforeTouch { turn: turn.value(), touch: least }
+            });
+        }
+        let mut held = self.first_touch(crest, first)?;
+        self.record(&held);
+        while turn.measure(&held) < turn.value() {
+            let (end, next) = self.stretch(&held)?;
+            held = match end {
+                End::Turn => {
+                    held = next;
+                    break;
+                }
+                End::Limit(null) => {
+                    let start = balance.kicked(&next.state.contacts, &null, 1.0);
+                    self.jump(EventKind::Advance, &next, start, None)?
+                }
+                End::Touch(crest) => {
+                    let start = balance.seeded(&next.state.contacts, crest.radius, next.control_value)?;
+                    self.jump(EventKind::Touch, &next, start, Some(crest.radius))?
+                }
+            }
+            .ok_or(CycleError::Lost { control_value: next.control_value })?;
+        }
+        let reached = turn.measure(&held);
+        let losses_up: f64 = self.events.iter().filter_map(|event| event.dissipated).sum();
+        let at_turn = self.state(&held);
+        let potential = match setting.control {
+            Control::Force => at_turn.energy,
+            _ => at_turn.potential(setting.control),
+        };
+        let work_of_loading = potential + losses_up;
+        self.events.push(Event {
+            kind: EventKind::Turn,
+            direction: Direction::Loading,
+            control_value: held.control_value,
+            radius: None,
+            before: Some(at_turn.clone()),
+            after: Some(at_turn),
+            dissipated: Some(0.0),
+            dissipated_by_area: (setting.areas == Areas::Yes).then_some(0.0),
+            passed: Vec::new(),
+        });
+        self.direction = Direction::Unloading;
+        self.piece += 1;
+        self.record(&held);
+        loop {
+            let (end, next) = self.stretch(&held)?;
+            let End::Limit(null) = end else {
+                return Err(CycleError::Lost { control_value: next.control_value });
+            };
+            let start = balance.kicked(&next.state.contacts, &null, -1.0);
+            match self.jump(EventKind::Recede, &next, start, None)? {
+                Some(landed) => held = landed,
+                None => break,
+            }
+        }
+        Ok(self.finished(TurnReached { asked: turn, reached }, work_of_loading))
+    }
+
+    /// The sums of what has happened.
+    fn finished(self, turn: TurnReached, work_of_loading: f64) -> Cycle {
+        let control = self.setting.control;
+        let losses = |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
+        let areas =
+            |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?));
+        let (before, all) = (&self.events[..self.events.len() - 1], &self.events[..]);
+        let before_pull_off: f64 = losses(before).unwrap_or(f64::NAN);
+        let mut warnings = Vec::new();
+        let last = self.events.last().and_then(|event| event.before.as_ref());
+        let balance = last.filter(|_| self.setting.areas == Areas::Yes).map(|last| {
+            let total = losses(all).unwrap_or(before_pull_off);
+            let error = last.potential(control) - self.area + before_pull_off;
+            error.abs() / total.abs()
+        });
+        if let Some(share) = balance.filter(|share| !(*share <= BALANCED)) {
+            warnings.push(Warning::Balance { share });
+        }
+        if self.digits.0 < DIGITS {
+            warnings.push(Warning::Digits { digits: self.digits.0, control_value: self.digits.1 });
+        }
+        let total = losses(all);
+        let totals = Totals {
+            dissipated: total,
+            dissipated_by_area: areas(all),
+            dissipated_before_pull_off: before_pull_off,
+            work_of_loading,
+            work_of_unloading: total.map(|total| total - work_of_loading),
+            balance,
+        };
+        Cycle { control, turn, events: self.events, states: self.states, totals, warnings }
+    }
+
+    /// The first touch and what it jumps to.
+    fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, CycleError> {
+        let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
+        let mut passed = Vec::new();
+        let held = self
+            .balance
+            .run(start, value, 1.0, self.setting.mobility, &mut passed)?
+            .ok_or(CycleError::Lost { control_value: value })?;
+        let after = self.state(&held);
+        let loss = match self.setting.control {
+            // The bodies apart hold nothing at P = 0.
+            Control::Force => -after.energy,
+            control => -after.potential(control),
+        };
+        self.events.push(Event {
+            kind: EventKind::FirstTouch,
+            direction: Direction::Loading,
+            control_value: value,
+            radius: Some(crest.radius),
+            before: None,
+            after: Some(after),
+            dissipated: Some(loss),
+            dissipated_by_area: None,
+            passed,
+        });
+        Ok(held)
+    }
+
+    /// A jump and its event; `None` where the bodies came apart.
+    fn jump(
+        &mut self,
+        kind: EventKind,
+        before: &Held,
+        start: Contacts,
+        radius: Option<f64>,
+    ) -> Result<Option<Held>, CycleError> {
+        let control = self.setting.control;
+        let mut passed: Vec<Passed> = Vec::new();
+        let value = before.control_value;
+        let landed =
+            self.balance.run(start, value, self.direction.sense(), self.setting.mobility, &mut passed)?;
+        let old = self.state(before);
+        self.piece += 1;
+        let after = landed.as_ref().map(|held| self.state(held));
+        self.events.push(Event {
+            kind: if after.is_some() { kind } else { EventKind::PullOff },
+            direction: self.direction,
+            control_value: value,
+            radius,
+            dissipated: old.loss(control, after.as_ref()),
+            dissipated_by_area: None,
+            before: Some(old),
+            after,
+            passed,
+        });
+        if let Some(held) = &landed {
+            self.record(held);
+        }
+        Ok(landed)
+    }
+
+    /// Follows stable states from `held` to what ends them.
+    fn stretch(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
+        let sense = self.direction.sense();
+        let lost = CycleError::Lost { control_value: held.control_value };
+        let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
+        let mut length = FIRST;
+        loop {
+            self.steps += 1;
+            if self.steps > STEPS {
+                let control_value = point.held.control_value;
+                return Err(CycleError::TooLong { steps: STEPS, control_value });
+            }
+            if !(self.go_on)(self.progress(&point.held)) {
+                return Err(CycleError::Cancelled);
+            }
+            let step = Step::new(self.balance, &point);
+            let Some(next) = step.taken(length) else {
+                length *= 0.5;
+                if length < SHORTEST {
+                    return Err(self.stopped(&point.held));
+                }
+                continue;
+            };
+            let (length_taken, next, end) = self.ended(&step, &point, length, next)?;
+            if self.setting.areas == Areas::Yes {
+                self.area += self.area_of(&step, length_taken, &next);
+            }
+            self.record(&next.held);
+            if let Some(end) = end {
+                return Ok((end, next.held));
+            }
+            point = next;
+            length = (1.5 * length).min(LONGEST);
+        }
+    }
+
+    /// Why no further step could be taken.
+    fn stopped(&self, held: &Held) -> CycleError {
+        let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
+        if known - radius < 1e-3 * self.balance.ground.wave {
+            CycleError::BeyondGap { radius: known, approach: held.approach, force: held.force }
+        } else {
+            CycleError::Lost { control_value: held.control_value }
+        }
+    }
+
+    /// How much of the loop is done, roughly.
+    fn progress(&self, held: &Held) -> f64 {
+        let turn = self.setting.turn;
+        let share = turn.measure(held) / turn.value();
+        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
+        match self.direction {
+            Direction::Loading => 0.5 * share,
+            Direction::Unloading => 1.0 - 0.5 * share,
+        }
+    }
+
+    /// The first event on a step, which then ends there.
+    fn ended(
+        &self,
+        step: &Step<'_, '_>,
+        from: &Point,
+        mut length: f64,
+        mut next: Point,
+    ) -> Result<(f64, Point, Option<End>), CycleError> {
+        let sense = self.direction.sense();
+        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let mut end = None;
+        if next.along_control() * sense <= 0.0 {
+            let mut slope = |point: &Point| Some(point.along_control() * sense);
+            (length, next) =
+                step.located((length, &next), from.along_control() * sense, &mut slope).ok_or_else(lost)?;
+            let edges = next.held.excess.len();
+            end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
+        }
+        if self.direction == Direction::Unloading {
+            return Ok((length, next, end));
+        }
+        let ground = self.balance.ground;
+        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
+        let mut overlap = 0.0;
+        for _ in 0..8 {
+            let crest = self.balance.least_gap(&next.held).filter(|crest| crest.gap < overlap);
+            let Some(crest) = crest else { break };
+            overlap = -ROUNDING * ground.wave;
+            let mut at = crest;
+            let mut reach = ground.wave / 14.0;
+            let mut gap = |point: &Point| {
+                let around = Around::new(ground, &point.held.state, point.held.approach);
+                at = if crest.radius > 0.0 {
+                    around.minimum([(at.radius - reach).max(0.0), at.radius + reach])
+                } else {
+                    Crest { radius: 0.0, gap: around.gap(0.0) }
+                };
+                reach = ground.wave / 28.0;
+                Some(at.gap)
+            };
+            let at_start = gap(from).unwrap_or(f64::NAN);
+            if !(at_start > 0.0) {
+                // Rounding: the start of the step touches.
+                let crest = at;
+                return Ok((0.0, from.clone(), Some(End::Touch(crest))));
+            }
+            (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
+            end = Some(End::Touch(at));
+        }
+        let turn = self.setting.turn;
+        if turn.measure(&next.held) >= turn.value() {
+            let mut left = |point: &Point| Some(turn.measure(&point.held) - turn.value());
+            let at_start = turn.measure(&from.held) - turn.value();
+            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
+            end = Some(End::Turn);
+        }
+        Ok((length, next, end))
+    }
+
+    /// ∫ (dΠ/dc) dc over a step.
+    fn area_of(&self, step: &Step<'_, '_>, length: f64, next: &Point) -> f64 {
+        if length <= 0.0 {
+            return 0.0;
+        }
+        let offset = step.offset(next);
+        let line = step.tangent() * length;
+        let curve = &offset - &line;
+        let n = offset.len() - 1;
+        let mut sum = 0.0;
+        for [x, weight] in gauss(NODES) {
+            let share = 0.5 * (1.0 + x);
+            let guess = &line * share + &curve * (share * share);
+            let Some((point, rate)) = step.to(length * share, &guess) else { return f64::NAN };
+            let slope = match self.setting.control {
+                Control::Force => -point.held.approach,
+                Control::Displacement | Control::Stiffness(_) => point.held.force,
+            };
+            sum += 0.5 * length * weight * slope * rate[n] * self.balance.unit();
+        }
+        sum
+    }
+}

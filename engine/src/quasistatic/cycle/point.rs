@@ -1,0 +1,220 @@
+//! Points of an equilibrium curve with rings, and steps along it by arc length in all edges and the control.
+
+use super::balance::{Balance, Held, keeps_widths, moved};
+use crate::annuli::{Contacts, points};
+use crate::contact::Control;
+use nalgebra::{DMatrix, DVector};
+
+/// Newton's steps of one correction at most.
+const ITERATIONS: usize = 10;
+
+/// A step of Newton's method that ends a correction, in the units of the arc length, and one at which it may stall.
+const CONVERGED: f64 = 1e-12;
+const STALLED: f64 = 1e-9;
+
+/// Bounds of a step: the cosine of the turn of its tangent, the motion of an edge in waves, the share that widths keep.
+const TURN: f64 = 0.970_3;
+const LONGEST: f64 = 0.2;
+const LEFT: f64 = 0.4;
+
+/// A point of a curve.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// The edges, in equilibrium.
+    pub held: Held,
+    /// The unit tangent by (α/λ, c/c₀).
+    pub tangent: DVector<f64>,
+}
+
+impl Point {
+    /// The part of the tangent that is the control's.
+    pub fn along_control(&self) -> f64 {
+        self.tangent[self.tangent.len() - 1]
+    }
+
+    /// The contacts.
+    pub fn contacts(&self) -> &Contacts {
+        &self.held.state.contacts
+    }
+}
+
+/// A step from a point: its points on the rings are held.
+#[derive(Debug)]
+pub struct Step<'a, 'b> {
+    balance: &'a Balance<'b>,
+    from: &'a Point,
+    points: Vec<usize>,
+}
+
+impl Balance<'_> {
+    /// The unit of the control in the arc length.
+    pub fn unit(&self) -> f64 {
+        match self.control {
+            Control::Displacement | Control::Stiffness(_) => 0.2 * self.ground.wave,
+            Control::Force => 0.1 * self.ground.wave,
+        }
+    }
+
+    /// The point of edges in equilibrium, its tangent such that the control goes up (`sense` 1) or down (−1).
+    pub fn point(&self, held: Held, sense: f64) -> Option<Point> {
+        let n = held.excess.len();
+        let mut along = DVector::zeros(n + 1);
+        along[n] = sense;
+        let tangent = self.direction(&held, &along)?;
+        Some(Point { held, tangent })
+    }
+
+    /// The unit tangent at `held` on the side of `along`.
+    fn direction(&self, held: &Held, along: &DVector<f64>) -> Option<DVector<f64>> {
+        let n = held.excess.len();
+        let mut right = DVector::zeros(n + 1);
+        right[n] = 1.0;
+        let found = self.bordered(held, along).lu().solve(&right)?;
+        let norm = found.norm();
+        (norm.is_finite() && norm > 0.0).then(|| found / norm)
+    }
+
+    /// J and ∂κ/∂c in the units of the arc length over the row `along`.
+    fn bordered(&self, held: &Held, along: &DVector<f64>) -> DMatrix<f64> {
+        let n = held.excess.len();
+        let (wave, unit) = (self.ground.wave, self.unit());
+        DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
+            (true, true) => held.jacobian[(i, j)] * wave,
+            (true, false) => held.by_control[i] * unit,
+            (false, _) => along[j],
+        })
+    }
+}
+
+impl<'a, 'b> Step<'a, 'b> {
+    /// Steps from `from`.
+    pub fn new(balance: &'a Balance<'b>, from: &'a Point) -> Self {
+        Self { balance, from, points: points(balance.ground, from.contacts()) }
+    }
+
+    /// The tangent at the start.
+    pub fn tangent(&self) -> &DVector<f64> {
+        &self.from.tangent
+    }
+
+    /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
+    /// the arc length; with the tangent scaled to 1 along that of the start, times which dℓ is.
+    pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(Point, DVector<f64>)> {
+        let (balance, from) = (self.balance, self.from);
+        let n = from.held.excess.len();
+        let (wave, unit) = (balance.ground.wave, balance.unit());
+        let mut offset = guess.clone();
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let contacts = moved(from.contacts(), &(offset.rows(0, n) * wave));
+            if !keeps_widths(from.contacts(), &contacts, 0.5 * LEFT) {
+                return None;
+            }
+            let value = from.held.control_value + unit * offset[n];
+            let held = balance.held(&contacts, &self.points, value).ok()?;
+            let mut right = DVector::zeros(n + 1);
+            right.rows_mut(0, n).copy_from(&-&held.excess);
+            right[n] = length - from.tangent.dot(&offset);
+            let lu = balance.bordered(&held, &from.tangent).lu();
+            let step = lu.solve(&right)?;
+            let size = step.amax();
+            if !size.is_finite() {
+                return None;
+            }
+            if size <= CONVERGED || (size <= STALLED && size > 0.3 * last) {
+                let mut unit = DVector::zeros(n + 1);
+                unit[n] = 1.0;
+                let rate = lu.solve(&unit)?;
+                return Some((Point { held, tangent: &rate / rate.norm() }, rate));
+            }
+            if size > 2.0 * last.max(1e-3) {
+                return None;
+            }
+            last = size;
+            offset += step;
+        }
+        None
+    }
+
+    /// The point at the distance `length`, from the tangent; `None` where the step is too long for its rules.
+    pub fn taken(&self, length: f64) -> Option<Point> {
+        let (point, _) = self.to(length, &(&self.from.tangent * length))?;
+        self.allowed(&point).then_some(point)
+    }
+
+    fn allowed(&self, point: &Point) -> bool {
+        let (before, after) = (self.from.contacts(), point.contacts());
+        let edges = before.edges().into_iter().zip(after.edges());
+        let longest = edges.fold(0.0, |most: f64, (a, b)| most.max((a.radius - b.radius).abs()));
+        self.from.tangent.dot(&point.tangent) > TURN
+            && longest <= LONGEST * self.balance.ground.wave
+            && keeps_widths(before, after, LEFT)
+    }
+
+    /// The offset of a point from the start, in the units of the arc length.
+    pub fn offset(&self, point: &Point) -> DVector<f64> {
+        let n = point.held.excess.len();
+        let (wave, unit) = (self.balance.ground.wave, self.balance.unit());
+        let edges: Vec<_> = self.from.contacts().edges().into_iter().zip(point.contacts().edges()).collect();
+        DVector::from_fn(n + 1, |i, _| match edges.get(i) {
+            Some((a, b)) => a.sign * (b.radius - a.radius) / wave,
+            None => (point.held.control_value - self.from.held.control_value) / unit,
+        })
+    }
+
+    /// The place between the start and `end`, at the distance `length`, where `measure` vanishes: it is `at_start` at the start and of
+    /// the other sign at the end.
+    pub fn located(
+        &self,
+        end: (f64, &Point),
+        at_start: f64,
+        measure: &mut dyn FnMut(&Point) -> Option<f64>,
+    ) -> Option<(f64, Point)> {
+        const ROUNDING: f64 = 1e-14;
+        let (mut lo, mut f_lo) = (0.0, at_start);
+        let (mut hi, mut f_hi) = (end.0, measure(end.1)?);
+        let mut best = (end.0, end.1.clone());
+        if (f_lo > 0.0) == (f_hi > 0.0) {
+            return Some(best);
+        }
+        let mut side = 0;
+        let curve = self.offset(end.1) - &self.from.tangent * end.0;
+        for _ in 0..80 {
+            if (hi - lo).abs() <= ROUNDING * end.0.max(1e-3) {
+                break;
+            }
+            // The Illinois rule, kept off the ends of its bracket.
+            let mut length = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+            if !(length > lo && length < hi) {
+                length = 0.5 * (lo + hi);
+            }
+            let share = length / end.0;
+            let guess = if (best.0 - length).abs() < 1e-3 * end.0 {
+                self.offset(&best.1) + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.from.tangent))
+            } else {
+                &self.from.tangent * length + &curve * (share * share)
+            };
+            let (point, _) = self.to(length, &guess)?;
+            let f = measure(&point)?;
+            let moved = (length - best.0).abs();
+            best = (length, point);
+            if f == 0.0 || moved <= ROUNDING * end.0 {
+                break;
+            }
+            if (f > 0.0) == (f_hi > 0.0) {
+                (hi, f_hi) = (length, f);
+                if side == 1 {
+                    f_lo *= 0.5;
+                }
+                side = 1;
+            } else {
+                (lo, f_lo) = (length, f);
+                if side == -1 {
+                    f_hi *= 0.5;
+                }
+                side = -1;
+            }
+        }
+        Some(best)
+    }
+}
