@@ -70,7 +70,11 @@ impl Mend for io::Error {
 impl Mend for CaseError {
     /// A start or an end that cannot be is a value; what is computed from them may fail.
     fn can_be_mended(&self) -> bool {
-        !matches!(self, Self::Cancelled)
+        match self {
+            Self::Cancelled => false,
+            Self::Cycle { error, .. } => error.is_of_values(),
+            _ => true,
+        }
     }
 }
 

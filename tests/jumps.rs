@@ -21,7 +21,7 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
         material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Exact,
-        path: PathSpec { start: Start::ContactRadius(START), control, end_contact_radius: None },
+        path: PathSpec { start: Start::ContactRadius(START), control, end_contact_radius: None, turn: None },
     }
 }
 

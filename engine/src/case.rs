@@ -3,6 +3,7 @@
 //! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
 //! they all see the same numbers.
 
+use crate::annuli::Ground;
 use crate::continuation::Branch;
 use crate::disc::table::Kept;
 use crate::disc::{Basis, Exact, Table, TableError};
@@ -13,6 +14,7 @@ use crate::preset::{BasisSpec, Material, Preset};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
 use crate::quasistatic::admissible::{Judge, falls};
+use crate::quasistatic::cycle::{Areas, Cycle, CycleError, EVEN, Setting, Turn, cycle};
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
 use crate::quasistatic::unload::{UnloadError, unload_while};
@@ -44,6 +46,8 @@ pub struct Case {
     pub start: f64,
     /// The contact radius at the end, reduced.
     pub end: f64,
+    /// Where a loop turns round, reduced; none leaves it to the start.
+    pub turn: Option<Turn>,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
     /// How numbers are shown to the user.
@@ -90,6 +94,16 @@ pub enum CaseError {
     Unload {
         /// Why, in the user's units.
         error: UnloadError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+    /// There is no loop of loading and unloading.
+    #[error("{}", words_of_cycle(error, *.control, shown))]
+    Cycle {
+        /// Why, in the user's units.
+        error: Box<CycleError>,
+        /// What was controlled.
+        control: Control,
         /// How numbers are shown.
         shown: Box<UnitSystem>,
     },
@@ -147,7 +161,8 @@ impl Case {
         }
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
-        Ok(Self { problem, reduced, basis, table, control, start, end, tabor, shown })
+        let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
+        Ok(Self { problem, reduced, basis, table, control, start, end, turn, tabor, shown })
     }
 
     /// The factors to the user's units.
@@ -227,6 +242,53 @@ impl Case {
                 CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
             }
         })
+    }
+
+    /// The whole loop under `control`, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the
+    /// start of its unloading, where none is given) and down until the bodies are apart. `go_on` is asked before each step with
+    /// the share of the way that is done, roughly.
+    ///
+    /// # Errors
+    /// [`CaseError::Cycle`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn cycle(
+        &self,
+        control: Control,
+        turn: Option<Turn>,
+        areas: Areas,
+        go_on: &dyn Fn(f64) -> bool,
+    ) -> Result<Cycle, CaseError> {
+        let failed = |error: CycleError| match error {
+            CycleError::Cancelled => CaseError::Cancelled,
+            error => CaseError::Cycle {
+                error: Box::new(error.in_units(control, self.units())),
+                control,
+                shown: Box::new(self.shown.clone()),
+            },
+        };
+        let gamma = self.reduced.work_of_adhesion;
+        let turn = turn.or(self.turn).unwrap_or(Turn::Radius(self.start));
+        let adhesive = 4.0 * gamma.cbrt();
+        let contact = match turn {
+            Turn::Radius(radius) => radius,
+            Turn::Force(force) | Turn::Control(force) if control == Control::Force => force.abs().cbrt(),
+            Turn::Force(force) => force.abs().cbrt(),
+            Turn::Approach(x) | Turn::Control(x) => (2.0 * x.abs()).sqrt(),
+        };
+        let most = self.reduced.largest_contact();
+        // The next crest may touch far outside the contact; where this is not far enough it is done again.
+        let mut reach = (2.0 * contact.max(adhesive)).max(self.start).min(most);
+        for _ in 0..MOST_REACHES {
+            let ground = Ground::new(Arc::clone(&self.table), reach, &mut || go_on(0.0))
+                .map_err(|error| failed(error.into()))?;
+            let setting = Setting { control, turn, areas, mobility: EVEN };
+            match cycle(&ground, gamma, &setting, go_on) {
+                Err(CycleError::BeyondGap { .. } | CycleError::RadiusBeyondGap { .. }) if reach < most => {
+                    reach = (2.0 * reach).min(most);
+                }
+                done => return done.map_err(failed),
+            }
+        }
+        Err(failed(CycleError::NeverTouches { searched: reach }))
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
@@ -347,6 +409,13 @@ fn table(
             CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
     })
+}
+
+/// How often the gap is looked at further out, twice as far each time.
+const MOST_REACHES: usize = 12;
+
+fn words_of_cycle(error: &CycleError, control: Control, shown: &UnitSystem) -> String {
+    error.words(control, shown)
 }
 
 fn words_of_table(error: &TableError, shown: &UnitSystem) -> String {

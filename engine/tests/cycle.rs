@@ -2,9 +2,7 @@
 
 use pulloff_engine::annuli::Ground;
 use pulloff_engine::contact::{Control, Gap, Problem, Shape};
-use pulloff_engine::quasistatic::cycle::{
-    Areas, Cycle, CycleState, EVEN, EventKind, Setting, Turn, cycle,
-};
+use pulloff_engine::quasistatic::cycle::{Areas, Cycle, CycleState, EVEN, EventKind, Setting, Turn, cycle};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -74,7 +72,10 @@ fn agrees(found: &Cycle, reference: &Value, tolerance: f64, losses: f64) {
         let error = (event.dissipated.unwrap() - lost).abs();
         worst[3] = worst[3].max(if lost == 0.0 { error } else { error / lost });
     }
-    println!("worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}", worst[0], worst[1], worst[2], worst[3]);
+    println!(
+        "worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}",
+        worst[0], worst[1], worst[2], worst[3]
+    );
     assert!(worst[..3].iter().all(|error| *error < tolerance) && worst[3] < losses, "{worst:?}");
     let sum = reference["checks"]["sum_of_losses"].as_f64().unwrap();
     assert!((found.totals.dissipated.unwrap() / sum - 1.0).abs() < losses);

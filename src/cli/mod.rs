@@ -14,6 +14,7 @@
 mod assigned;
 mod completions;
 mod console;
+mod cycle;
 mod explore;
 mod failure;
 mod figures;
@@ -65,6 +66,8 @@ enum Command {
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
     Unload(unload::Arguments),
+    /// Load from the first touch to a turn and back until the bodies are apart, with rings of contact
+    Cycle(cycle::Arguments),
     /// Draw a view as a figure for print
     Plot(plot::Arguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
@@ -108,6 +111,7 @@ pub fn run() -> ExitCode {
         None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
+        Some(Command::Cycle(arguments)) => cycle::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),
         Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

@@ -4,7 +4,7 @@ use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::rows::parameter;
-use pulloff_engine::preset::schema::START_KEYS;
+use pulloff_engine::preset::schema::rivals;
 use pulloff_engine::preset::{Invalid, Preset, Value, groups, model};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::exact;
@@ -230,10 +230,10 @@ pub(super) fn overrides(axis: &str, key: &str) -> bool {
         || groups::changed(key) == [axis]
 }
 
-/// The key of `before` that sets what `key` sets: itself, or another start, of which only the later would be left.
+/// The key of `before` that sets what `key` sets: itself, or another start or turn, of which only the
+/// later would be left.
 pub(super) fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let is_start = |key: &str| START_KEYS.contains(&key);
-    before.into_iter().find(|other| *other == key || (is_start(other) && is_start(key)))
+    before.into_iter().find(|other| *other == key || rivals(key).contains(other))
 }
 
 /// Reads the values of one key.

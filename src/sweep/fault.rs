@@ -18,8 +18,16 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 7] =
-    ["refused value", "no basis", "no start", "unstable start", "incomplete", "small start", "panic"];
+pub const REASONS: [&str; 8] = [
+    "refused value",
+    "no basis",
+    "no start",
+    "unstable start",
+    "incomplete",
+    "small start",
+    "panic",
+    "no loop",
+];
 
 impl Fault {
     fn new(reason: &'static str, text: &str) -> Self {
@@ -39,6 +47,7 @@ impl Fault {
             CaseError::Basis(_) | CaseError::Table { .. } => REASONS[1],
             CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
             CaseError::Unload { .. } => REASONS[3],
+            CaseError::Cycle { .. } => REASONS[7],
             CaseError::Cancelled => REASONS[4],
         };
         Self::new(reason, &error.to_string())

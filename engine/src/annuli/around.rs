@@ -181,7 +181,8 @@ impl<'a> Around<'a> {
                 found.push(self.minimum([at(k - 1), at(k + 1)]));
             }
         }
-        let corners = self.ground.breaks.iter().filter(|b| self.ground.breaks.len() < 100 && **b > from && **b < to);
+        let corners =
+            self.ground.breaks.iter().filter(|b| self.ground.breaks.len() < 100 && **b > from && **b < to);
         for corner in corners {
             let gap = self.gap(*corner);
             let beside = 1e-4 * self.ground.wave;

@@ -79,12 +79,10 @@ mod tests {
     #[test]
     fn a_positive_definite_system_is_solved_and_another_refused() {
         for n in [4, 12, 28] {
-            let entry = |i: usize, j: usize| {
-                1.0 / (1.0 + i.abs_diff(j) as f64) + if i == j { 2.0 } else { 0.0 }
-            };
+            let entry =
+                |i: usize, j: usize| 1.0 / (1.0 + i.abs_diff(j) as f64) + if i == j { 2.0 } else { 0.0 };
             let mut a: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
-            let exact: Vec<f64x4> =
-                (0..n).map(|k| f64x4::new([k as f64, 1.0, -(k as f64), 0.5])).collect();
+            let exact: Vec<f64x4> = (0..n).map(|k| f64x4::new([k as f64, 1.0, -(k as f64), 0.5])).collect();
             let mut x: Vec<f64x4> = (0..n)
                 .map(|i| (0..n).fold(f64x4::ZERO, |sum, j| sum + exact[j] * f64x4::splat(entry(i, j))))
                 .collect();

@@ -76,9 +76,10 @@ impl Contacts {
     /// The edges from the axis outward: s, a₁, b₁, a₂, …
     pub fn edges(&self) -> Vec<Edge> {
         let disc = self.has_disc().then_some(Edge { radius: self.disc, sign: 1.0 });
-        let rings = self.rings.iter().flat_map(|[a, b]| {
-            [Edge { radius: *a, sign: -1.0 }, Edge { radius: *b, sign: 1.0 }]
-        });
+        let rings = self
+            .rings
+            .iter()
+            .flat_map(|[a, b]| [Edge { radius: *a, sign: -1.0 }, Edge { radius: *b, sign: 1.0 }]);
         disc.into_iter().chain(rings).collect()
     }
 

@@ -89,7 +89,8 @@ impl Under {
         let end = artanh(s, edge);
         let beta = PI / end;
         let phase = 0.5 * wavenumber * edge * end.min(4.0);
-        let n = up(DIGITS / (2.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0 + phase + 4.0 * phase.cbrt());
+        let n =
+            up(DIGITS / (2.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0 + phase + 4.0 * phase.cbrt());
         let mut nodes = Self::default();
         for [x, weight] in gauss(n) {
             nodes.push(edge, 0.5 * end * (1.0 + x), 0.5 * end * weight);
@@ -132,16 +133,7 @@ impl Ground {
         let least = least(&panels);
         let [standin, crest] = lengths(&*gap, reach, &breaks);
         let wave = gap.feature_length().unwrap_or(standin);
-        Ok(Self {
-            gap,
-            table,
-            panels,
-            wave,
-            crest,
-            entire,
-            least,
-            breaks,
-        })
+        Ok(Self { gap, table, panels, wave, crest, entire, least, breaks })
     }
 
     /// The largest radius that is tabulated.

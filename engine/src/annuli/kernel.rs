@@ -101,7 +101,13 @@ pub fn own(nodes: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&m
 }
 
 /// The block between a ring and another further out, into the rows of `block`, `stride` apart.
-pub fn between(inner: &Nodes, outer: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&mut Moved>) {
+pub fn between(
+    inner: &Nodes,
+    outer: &Nodes,
+    block: &mut [f64],
+    stride: usize,
+    mut moved: Option<&mut Moved>,
+) {
     let (rows, columns) = (inner.radii.len(), outer.radii.len());
     let least = (outer.ends[0] - inner.ends[1]) / (outer.ends[0] + inner.ends[1]);
     let means = elliptic::means(least);

@@ -39,9 +39,8 @@ pub struct Graded {
 impl Graded {
     /// |r − r'| and the lift of row `i` in the columns from `k` on.
     pub fn pair(&self, i: usize, k: usize) -> (f64x4, f64x4) {
-        let at = |of: &[f64]| {
-            of[i * self.n + k..].first_chunk::<4>().map_or(f64x4::ONE, |four| f64x4::new(*four))
-        };
+        let at =
+            |of: &[f64]| of[i * self.n + k..].first_chunk::<4>().map_or(f64x4::ONE, |four| f64x4::new(*four));
         (at(&self.apart), at(&self.lift))
     }
 }

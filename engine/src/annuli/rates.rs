@@ -26,10 +26,8 @@ fn add_product(out: &mut [f64], a: &[f64], x: &[f64], transposed: bool) {
         for (out, row) in out.iter_mut().zip(a.chunks_exact(x.len())) {
             let (fours, _) = row.as_chunks::<4>();
             let (xs, _) = x.as_chunks::<4>();
-            let sum = fours
-                .iter()
-                .zip(xs)
-                .fold(f64x4::ZERO, |sum, (a, x)| sum + f64x4::new(*a) * f64x4::new(*x));
+            let sum =
+                fours.iter().zip(xs).fold(f64x4::ZERO, |sum, (a, x)| sum + f64x4::new(*a) * f64x4::new(*x));
             *out += sum.reduce_add();
         }
     }
@@ -67,7 +65,8 @@ impl State {
             }
         }
         let n = y.len();
-        let sums = if n > 0 { kept.inverse.chunks_exact(n).map(|x| dot(x, &y)).collect() } else { Vec::new() };
+        let sums =
+            if n > 0 { kept.inverse.chunks_exact(n).map(|x| dot(x, &y)).collect() } else { Vec::new() };
         Rates { state: self, kept, n, y, root, starts, sums }.jacobian(delta, slope_at_disc)
     }
 }
@@ -108,7 +107,9 @@ impl Rates<'_> {
             *out = at_zero[i] + delta * slope[i] - *out;
         }
         let r = &self.state.nodes[ring].radii;
-        for ((x, weight), sum) in self.kept.inverse.chunks_exact(self.n).zip(&self.kept.weights).zip(&self.sums) {
+        for ((x, weight), sum) in
+            self.kept.inverse.chunks_exact(self.n).zip(&self.kept.weights).zip(&self.sums)
+        {
             let factor = weight * sum;
             for ((out, x), r) in out.iter_mut().zip(&x[range.clone()]).zip(r) {
                 *out -= factor * r * (x * x * x);

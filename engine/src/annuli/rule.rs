@@ -54,7 +54,8 @@ impl Rule {
         let log_sums = (0..=2 * n).map(|j| 2.0 * sum(j) + std::f64::consts::LN_2).collect();
         let alternating = |k: usize| if k.is_multiple_of(2) { 1.0 / PI } else { -1.0 / PI };
         let inner = angles.iter().enumerate().map(|(k, t)| alternating(k) / (0.5 * t).tan()).collect();
-        let outer = angles.iter().enumerate().map(|(k, t)| alternating(n - 1 - k) * (0.5 * t).tan()).collect();
+        let outer =
+            angles.iter().enumerate().map(|(k, t)| alternating(n - 1 - k) * (0.5 * t).tan()).collect();
         Self { halves: [inward, outward], angles, sines, log_sums, ends: [inner, outer] }
     }
 }
@@ -73,7 +74,9 @@ mod tests {
             for i in [0_usize, 3, 11] {
                 // ∫₀^π ln|cos t − cos t'| cos(mt') dt' = −(π/m) cos(mt), −π ln 2 for m = 0.
                 let sum: f64 = (0..n)
-                    .map(|k| 0.5 * (rule.log_sums[i.abs_diff(k)] + rule.log_sums[i + k + 1]) * f(rule.angles[k]))
+                    .map(|k| {
+                        0.5 * (rule.log_sums[i.abs_diff(k)] + rule.log_sums[i + k + 1]) * f(rule.angles[k])
+                    })
                     .sum();
                 let m = degree as f64;
                 let exact = if degree == 0 { std::f64::consts::LN_2 } else { f(rule.angles[i]) / m };

@@ -276,8 +276,11 @@ impl Ground {
             subtract(&mut matrix, n, &kept);
         }
         let loads = self.loads(contacts, &points, rates);
-        let mut x: Vec<f64x4> =
-            loads.values[0].iter().zip(&loads.values[1]).map(|(a, b)| f64x4::new([*a, *b, 0.0, 0.0])).collect();
+        let mut x: Vec<f64x4> = loads.values[0]
+            .iter()
+            .zip(&loads.values[1])
+            .map(|(a, b)| f64x4::new([*a, *b, 0.0, 0.0]))
+            .collect();
         if !cholesky::factorize(&mut matrix, n) {
             let narrowest = contacts.widths().into_iter().fold(f64::INFINITY, f64::min);
             return Err(AnnuliError::Singular { narrowest });
@@ -346,8 +349,12 @@ impl Ground {
                 slopes.iter_mut().zip(points.base.iter().zip(&points.r)).for_each(add);
             }
         }
-        let shade_slopes: Vec<f64> =
-            points.r.iter().zip(&points.root).map(|(r, root)| if s > 0.0 { 0.5 * s / (r * root) } else { 0.0 }).collect();
+        let shade_slopes: Vec<f64> = points
+            .r
+            .iter()
+            .zip(&points.root)
+            .map(|(r, root)| if s > 0.0 { 0.5 * s / (r * root) } else { 0.0 })
+            .collect();
         Loads { values: [values, shade.clone()], slopes: [slopes, shade_slopes], shade }
     }
 }

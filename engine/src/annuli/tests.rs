@@ -37,7 +37,9 @@ fn a_single_disc_is_the_closed_form() {
 
 #[test]
 fn a_rigid_flat_annulus_carries_what_is_known() {
-    let flat: Arc<dyn Gap> = Arc::new(Harmonics::new(1e12, vec![Harmonic { amplitude: 0.0, wavelength: 10.0, phase: 0.0 }]).unwrap());
+    let flat: Arc<dyn Gap> = Arc::new(
+        Harmonics::new(1e12, vec![Harmonic { amplitude: 0.0, wavelength: 10.0, phase: 0.0 }]).unwrap(),
+    );
     let ground = Ground::of(flat, 2.0).unwrap();
     for (ratio, exact) in [
         (0.1, 0.999_864_355_578),
@@ -94,7 +96,11 @@ fn check_derivatives(ground: &Ground, contacts: &Contacts, delta: f64, gamma: f6
         }
         // ∂U/∂α = 2πe(G − γ), ∂P/∂α = 4πeκ ∂κ/∂δ.
         let energy = std::f64::consts::TAU * edge.radius * (kappa[j].powi(2) - gamma);
-        assert!((found[edges.len()] - energy).abs() < 1e-7 * energy.abs().max(1e-4), "{j} {} {energy}", found[edges.len()]);
+        assert!(
+            (found[edges.len()] - energy).abs() < 1e-7 * energy.abs().max(1e-4),
+            "{j} {} {energy}",
+            found[edges.len()]
+        );
         let force = 2.0 * std::f64::consts::TAU * edge.radius * kappa[j] * state.intensity[j][1];
         assert!((found[edges.len() + 1] - force).abs() < 1e-7 * force.abs().max(1e-3), "{j}");
     }

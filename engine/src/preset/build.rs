@@ -7,11 +7,12 @@ use super::invalid::Invalid;
 use super::measured::Files;
 use super::model::{BasisSpec, Material, PathSpec, Preset};
 use super::resolve::{resolved, shown, system};
-use super::schema::{RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE};
+use super::schema::{RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE, TURN_KEYS};
 use super::shape;
 use super::values::Values;
 use crate::gap::Gap;
 use crate::problem::Start;
+use crate::quasistatic::cycle::Turn;
 use crate::units::Quantity;
 
 /// The preset these values make.
@@ -25,10 +26,14 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
     let mut given = Given { values, units: units.clone(), files, faults };
     given.check_each();
     given.check_choices();
-    let starts: Vec<_> = START_KEYS.into_iter().filter(|key| values.contains_key(*key)).collect();
-    if let [first, second, ..] = starts[..] {
-        given.faults.push(Invalid::Starts { first: first.into(), second: second.into() });
-    }
+    let mut given_of = |keys: [&'static str; 3], does| {
+        let those: Vec<_> = keys.into_iter().filter(|key| values.contains_key(*key)).collect();
+        if let [first, second, ..] = those[..] {
+            given.faults.push(Invalid::Rivals { first: first.into(), second: second.into(), does });
+        }
+        those
+    };
+    let (starts, turns) = (given_of(START_KEYS, "starts"), given_of(TURN_KEYS, "turns round"));
     let gap = given.shape(starts.first().copied());
     let start = match starts.first() {
         Some(&key) if key == START_KEYS[1] => Start::Approach(given.number(key)),
@@ -39,6 +44,14 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             None => given.required(START_KEYS[0]),
         }),
     };
+    let turn = turns.first().map(|&key| {
+        let value = given.number(key);
+        match key {
+            key if key == TURN_KEYS[0] => Turn::Approach(value),
+            key if key == TURN_KEYS[1] => Turn::Force(value),
+            _ => Turn::Radius(value),
+        }
+    });
     let (end, range) = ("path.end_contact_radius", "material.range_of_action");
     let preset = Preset {
         title: given.text("title"),
@@ -54,6 +67,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             control: given.control("path.control"),
             start,
             end_contact_radius: values.contains_key(end).then(|| given.number(end)),
+            turn,
         },
         files,
     };
@@ -86,7 +100,11 @@ fn across(preset: &Preset) -> Vec<Invalid> {
         Start::ContactRadius(s) => Some(s),
         Start::Approach(_) | Start::Force(_) => None,
     };
-    for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end)] {
+    let turn = match preset.path.turn {
+        Some(Turn::Radius(radius)) => Some(radius),
+        _ => None,
+    };
+    for (key, value) in [(START_KEYS[0], start), ("path.end_contact_radius", end), (TURN_KEYS[2], turn)] {
         let Some(value) = value else { continue };
         if let Some(radius) = radius.filter(|radius| value > RADIUS_OVER_CURVATURE * radius) {
             let (value, radius) = (length(value), length(radius));

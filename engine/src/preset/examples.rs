@@ -27,6 +27,7 @@ pub fn wavy() -> Preset {
             control: Control::Displacement,
             start: Start::ContactRadius(0.5),
             end_contact_radius: Some(0.002),
+            turn: None,
         },
         files: FILES,
     }
@@ -70,7 +71,12 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                 material: Material { effective_modulus: e, work_of_adhesion: gamma, range_of_action: None },
                 gap,
                 basis,
-                path: PathSpec { control, start, end_contact_radius: end.map(|f| f * over * radius) },
+                path: PathSpec {
+                    control,
+                    start,
+                    end_contact_radius: end.map(|f| f * over * radius),
+                    turn: None,
+                },
                 files: FILES,
             }
         })

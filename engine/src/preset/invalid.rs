@@ -141,13 +141,15 @@ pub enum Invalid {
         /// The key.
         key: Key,
     },
-    /// More than one start.
-    #[error("{second} and {first} both say where the path starts: give exactly one")]
-    Starts {
-        /// One start.
+    /// More than one start, or more than one turn.
+    #[error("{second} and {first} both say where the path {does}: give exactly one")]
+    Rivals {
+        /// One of them.
         first: Key,
         /// Another.
         second: Key,
+        /// `starts` or `turns round`.
+        does: &'static str,
     },
     /// A path that would end at or beyond its start.
     #[error("{key} = {end} is not below path.start_contact_radius = {start}")]
@@ -237,7 +239,7 @@ impl Invalid {
             | Self::Missing { key, .. }
             | Self::OtherChoice { key, .. }
             | Self::NoUnits { key }
-            | Self::Starts { second: key, .. }
+            | Self::Rivals { second: key, .. }
             | Self::EndBeyondStart { key, .. }
             | Self::Rings { key, .. }
             | Self::Units { key, .. }

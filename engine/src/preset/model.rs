@@ -13,10 +13,11 @@ pub use keys::is_of_units;
 pub(super) use keys::unknown_key;
 
 use super::measured::{self, Files};
-use super::schema::{END_OVER_START, START_KEYS};
+use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
 use crate::gap::shapes::Measured;
 use crate::problem::{Control, Problem, Reduced, Start};
+use crate::quasistatic::cycle::Turn;
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use std::path::Path;
@@ -79,6 +80,8 @@ pub struct PathSpec {
     /// The contact radius at which the path ends; `None` leaves it to follow the start
     /// (see [`Preset::end_contact_radius`]).
     pub end_contact_radius: Option<f64>,
+    /// Where a loop turns round; `None` leaves it to the contact radius at the start of the unloading.
+    pub turn: Option<Turn>,
 }
 
 /// The key that says a start.
@@ -88,6 +91,17 @@ pub fn start_key(start: Start) -> &'static str {
         Start::ContactRadius(_) => START_KEYS[0],
         Start::Approach(_) => START_KEYS[1],
         Start::Force(_) => START_KEYS[2],
+    }
+}
+
+/// The key that says a turn; none says a control value.
+#[must_use]
+pub fn turn_key(turn: Turn) -> Option<&'static str> {
+    match turn {
+        Turn::Approach(_) => Some(TURN_KEYS[0]),
+        Turn::Force(_) => Some(TURN_KEYS[1]),
+        Turn::Radius(_) => Some(TURN_KEYS[2]),
+        Turn::Control(_) => None,
     }
 }
 
@@ -102,7 +116,7 @@ impl Preset {
             material,
             gap,
             basis: BasisSpec::Exact,
-            path: PathSpec { start, control: Control::Displacement, end_contact_radius: None },
+            path: PathSpec { start, control: Control::Displacement, end_contact_radius: None, turn: None },
             files: Files::NONE,
         }
     }

@@ -25,6 +25,8 @@ pub const END_OVER_START: f64 = 0.004;
 pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
 /// The three ways to say where a path starts; a preset has exactly one.
 pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
+/// The three ways to say where a loop turns round; a preset has at most one.
+pub const TURN_KEYS: [&str; 3] = ["path.turn_approach", "path.turn_force", "path.turn_contact_radius"];
 
 /// The word that leaves a value to the program.
 pub const AUTO: &str = "auto";
@@ -146,6 +148,12 @@ pub const DISPLAY: [(&str, Quantity); 6] = [
     ("display.energy", Quantity::Energy),
     ("display.stiffness", Quantity::ForcePerLength),
 ];
+
+/// The keys that say the same thing as this one in other ways, itself among them: of them a preset keeps the last one given.
+#[must_use]
+pub fn rivals(key: &str) -> &'static [&'static str] {
+    [&START_KEYS, &TURN_KEYS].into_iter().find(|keys| keys.contains(&key)).map_or(&[], |keys| &keys[..])
+}
 
 /// The table that a dotted key stands in, if any.
 #[must_use]

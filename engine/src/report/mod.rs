@@ -7,14 +7,18 @@
 //! | [`overlap`] | the states that are not admissible, as part of a document |
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`unload`] | the unloading as a document |
+//! | [`cycle`] | the loop of loading and unloading as a document |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
+//! | [`cycle_table`] | a loop as text for a terminal |
 //! | [`table`] | an unloading and a verification as text for a terminal |
 //!
 //! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
 //! read the same documents.
 
 pub mod columns;
+pub mod cycle;
+pub mod cycle_table;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
@@ -24,6 +28,7 @@ pub mod unload;
 pub mod verify;
 
 pub use crate::units::number;
+pub use cycle::CycleReport;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;

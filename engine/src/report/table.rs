@@ -8,7 +8,7 @@ use crate::units::{Quantity, UnitSystem};
 use std::fmt::Write;
 
 /// Aligns cells in columns, the first `left` of them left and the others right; a line for each row.
-fn aligned(rows: &[Vec<String>], left: usize) -> String {
+pub(super) fn aligned(rows: &[Vec<String>], left: usize) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width =
         |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();
@@ -49,12 +49,7 @@ pub fn unload(report: &UnloadReport) -> String {
 fn opening(report: &UnloadReport) -> String {
     let title = report.problem.preset.get("title").and_then(|t| t.as_str()).unwrap_or("");
     let units = &report.problem.units.shown;
-    let control = match report.control {
-        Control::Stiffness(k) => {
-            format!("stiffness={}", ascii_unit(units, Quantity::ForcePerLength, k, |k| k.to_string()))
-        }
-        other => other.to_string(),
-    };
+    let control = control(units, report.control);
     let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 6));
     let start = &report.start;
     let mut text = format!(
@@ -72,10 +67,7 @@ fn opening(report: &UnloadReport) -> String {
 /// The events as a table, and what is wrong with those that cannot be.
 fn events(report: &UnloadReport) -> String {
     let units = &report.problem.units.shown;
-    let head = |name: &str, quantity| match units.unit(quantity) {
-        Some(unit) => format!("{name} [{}]", unit.ascii()),
-        None => name.to_owned(),
-    };
+    let head = |name, quantity| head(units, name, quantity);
     let mut rows = vec![vec![
         "#".to_owned(),
         "event".to_owned(),
@@ -131,13 +123,36 @@ fn outcome(report: &UnloadReport) -> String {
     text
 }
 
+/// The head of a column, with the unit of its numbers.
+pub(super) fn head(units: &UnitSystem, name: &str, quantity: Quantity) -> String {
+    match units.unit(quantity) {
+        Some(unit) => format!("{name} [{}]", unit.ascii()),
+        None => name.to_owned(),
+    }
+}
+
+/// A control as it is typed.
+pub(super) fn control(units: &UnitSystem, control: Control) -> String {
+    match control {
+        Control::Stiffness(k) => {
+            format!("stiffness={}", ascii_unit(units, Quantity::ForcePerLength, k, |k| k.to_string()))
+        }
+        other => other.to_string(),
+    }
+}
+
 fn ratio(force: f64, critical: Option<f64>) -> String {
     let critical = critical.filter(|critical| *critical > 0.0);
     critical.map_or_else(String::new, |critical| format!(" = {} P_c", short(force / critical, 6)))
 }
 
 /// A number with its unit in ASCII: a table may go anywhere.
-fn ascii_unit(units: &UnitSystem, quantity: Quantity, x: f64, number: impl Fn(f64) -> String) -> String {
+pub(super) fn ascii_unit(
+    units: &UnitSystem,
+    quantity: Quantity,
+    x: f64,
+    number: impl Fn(f64) -> String,
+) -> String {
     with_unit(units, quantity, x, true, number)
 }
 

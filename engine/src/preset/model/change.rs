@@ -9,7 +9,7 @@ use crate::preset::invalid::Invalid;
 use crate::preset::measured;
 use crate::preset::resolve::{count_in_own_units, in_units};
 use crate::preset::rows::parameter;
-use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, START_KEYS, SYSTEMS};
+use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, SYSTEMS, rivals};
 use crate::preset::shape;
 use crate::preset::value::Value;
 use crate::preset::values::Values;
@@ -20,7 +20,7 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 impl Preset {
     /// Gives a key another value.
     ///
-    /// A start replaces another start; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
+    /// A start replaces another start, a turn another turn; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
     /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
     /// parameters it has in common with the old one, its others begin with the value of an old one of a like name, or with 1; a `basis.kind` drops the keys of the old
     /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. The rows of a
@@ -84,8 +84,10 @@ impl Preset {
             key if key == CHOOSERS[2] && value.to_string() != SYSTEMS[1] => {
                 values.retain(|key, _| !family::is_unit(key));
             }
-            key if START_KEYS.contains(&key) => values.retain(|key, _| !START_KEYS.contains(&&**key)),
-            _ => {}
+            key => {
+                let rivals = rivals(key);
+                values.retain(|key, _| !rivals.contains(&&**key));
+            }
         }
         put(values, row, value);
         if row.key == "gap.formula" {

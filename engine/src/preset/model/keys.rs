@@ -1,6 +1,6 @@
 //! The preset by dotted key: its values and its rows.
 
-use super::{BasisSpec, Preset, start_key};
+use super::{BasisSpec, Preset, start_key, turn_key};
 use crate::preset::family;
 use crate::preset::former;
 use crate::preset::groups;
@@ -56,6 +56,7 @@ impl Preset {
                 Control::Displacement | Control::Force => return None,
             },
             "path.end_contact_radius" => path.end_contact_radius?.into(),
+            key if path.turn.and_then(turn_key) == Some(key) => path.turn?.value().into(),
             key if key == start_key(path.start) => path.start.value().into(),
             _ => return None,
         })

@@ -43,7 +43,7 @@ fn the_table_is_total() {
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
     }
-    let PathSpec { control: _, start: _, end_contact_radius: _ } = path;
+    let PathSpec { control: _, start: _, end_contact_radius: _, turn: _ } = path;
     match gap {
         Shape::Sphere { radius_of_curvature: _ }
         | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ }

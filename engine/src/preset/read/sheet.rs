@@ -6,7 +6,7 @@ use crate::preset::invalid::Invalid;
 use crate::preset::measured::Files;
 use crate::preset::model::put;
 use crate::preset::rows::parameter;
-use crate::preset::schema::{CHOOSERS, Key, Parameter, START_KEYS};
+use crate::preset::schema::{CHOOSERS, Key, Parameter, rivals};
 use crate::preset::value::Value;
 use crate::preset::values::Values;
 use crate::text::quote;
@@ -63,9 +63,8 @@ impl Sheet {
     pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: Origin) {
         if matches!(origin, Origin::Assignment(_)) {
             self.refit = self.refit || row.key == "gap.formula";
-            if START_KEYS.contains(&&*row.key) {
-                self.entries.retain(|key, _| !START_KEYS.contains(&&**key));
-            }
+            let rivals = rivals(&row.key);
+            self.entries.retain(|key, _| !rivals.contains(&&**key));
             if let (Ok(word), true) = (&value, CHOOSERS.contains(&&*row.key)) {
                 let word = word.to_string();
                 self.entries.retain(|key, entry| {

@@ -2,10 +2,13 @@
 
 use super::{
     Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
-    SYSTEMS,
+    SYSTEMS, TURN_KEYS,
 };
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
+
+/// Where a loop turns when no key says it.
+const TURN: &str = "at the contact radius at which the unloading starts";
 
 /// The row of a pure number, a count, a text or a choice: required, in every preset.
 pub(in crate::preset) const fn row(
@@ -225,6 +228,23 @@ pub static PARAMETERS: &[Parameter] = &[
     .or(Fallback::Described("none: another start is used")),
     length("path.end_contact_radius", "s end", "contact radius at which the path ends", Kind::Positive)
         .or(Fallback::Described("0.004 x the contact radius at the start")),
+    length(
+        TURN_KEYS[0],
+        "delta turn",
+        "approach at which a loop of loading and unloading turns round",
+        Kind::Finite,
+    )
+    .or(Fallback::Described(TURN)),
+    measured(
+        TURN_KEYS[1],
+        "P turn",
+        "force at which it turns round",
+        Kind::Finite,
+        ("force", Quantity::Force),
+    )
+    .or(Fallback::Described(TURN)),
+    length(TURN_KEYS[2], "s turn", "outermost radius of contact at which it turns round", Kind::Positive)
+        .or(Fallback::Described(TURN)),
     display(0, "lengths", "unit in which lengths are shown", "um"),
     display(1, "forces", "unit in which forces are shown", "uN"),
     display(2, "stresses", "unit in which stresses are shown", "kPa"),

@@ -153,8 +153,7 @@ impl Balance<'_> {
                     let (a, b) = (j[(i, k)], j[(k, i)]);
                     if a < 0.0 && b < 0.0 { -(a * b).sqrt() } else { 0.0 }
                 };
-                let symmetric =
-                    DMatrix::from_fn(n, n, |i, k| if i == k { j[(i, i)] } else { off(i, k) });
+                let symmetric = DMatrix::from_fn(n, n, |i, k| if i == k { j[(i, i)] } else { off(i, k) });
                 if symmetric.iter().all(|x| x.is_finite()) {
                     symmetric.symmetric_eigenvalues().min()
                 } else {

@@ -123,10 +123,16 @@ impl std::fmt::Display for Warning {
                 write!(f, "energies and areas differ by {share:.1e} of the losses")
             }
             Self::Area { event, share } => {
-                write!(f, "the loss of event {event} by area differs by {share:.1e} of it from that by energy")
+                write!(
+                    f,
+                    "the loss of event {event} by area differs by {share:.1e} of it from that by energy"
+                )
             }
             Self::Breaks { breaks, digits } => {
-                write!(f, "{breaks} breaks of the gap lie inside a ring: its edges are known to {digits:.1} digits")
+                write!(
+                    f,
+                    "{breaks} breaks of the gap lie inside a ring: its edges are known to {digits:.1} digits"
+                )
             }
         }
     }

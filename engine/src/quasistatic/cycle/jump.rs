@@ -172,7 +172,12 @@ impl Balance<'_> {
     }
 
     /// The contacts with a seed where the gap is negative.
-    fn touched(&self, held: &Held, value: f64, passed: &mut Vec<Passed>) -> Result<Option<Contacts>, CycleError> {
+    fn touched(
+        &self,
+        held: &Held,
+        value: f64,
+        passed: &mut Vec<Passed>,
+    ) -> Result<Option<Contacts>, CycleError> {
         let Some(crest) = self.least_gap(held).filter(|crest| crest.gap < 0.0) else { return Ok(None) };
         passed.push(Passed { kind: PassedKind::Touch, radius: crest.radius });
         self.seeded(&held.state.contacts, crest.radius, value).map(Some)
@@ -225,4 +230,3 @@ fn with_seed(contacts: &Contacts, crest: f64, half: f64) -> Contacts {
     }
     found
 }
-

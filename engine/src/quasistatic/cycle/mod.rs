@@ -18,9 +18,11 @@
 //! | [`jump`] | where edges land that run at held control |
 //! | [`event`] | events and states |
 //! | [`error`] | why there is none, and what is to be known about one |
+//! | `describe` | both in the user's units, in words |
 //! | [`path`] | the loop |
 
 pub mod balance;
+mod describe;
 pub mod error;
 pub mod event;
 pub mod jump;

@@ -189,10 +189,8 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
     let count = steps as usize;
     let grid = (0..=count).map(|k| reach * k as f64 / steps);
     let radii = grid.chain(ground.breaks.iter().copied());
-    let (best, _) = radii
-        .map(|r| (r, value(r)))
-        .filter(|(_, h)| h.is_finite())
-        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (best, _) =
+        radii.map(|r| (r, value(r))).filter(|(_, h)| h.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?;
     if best <= 0.0 {
         return Some(Crest { radius: 0.0, gap: value(0.0) });
     }
@@ -312,9 +310,11 @@ impl Path<'_, '_> {
     /// The sums of what has happened.
     fn finished(self, turn: TurnReached, work_of_loading: f64) -> Cycle {
         let control = self.setting.control;
-        let losses = |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
-        let areas =
-            |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?));
+        let losses =
+            |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
+        let areas = |events: &[Event]| {
+            events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?))
+        };
         let (before, all) = (&self.events[..self.events.len() - 1], &self.events[..]);
         let before_pull_off: f64 = losses(before).unwrap_or(f64::NAN);
         let mut warnings = Vec::new();

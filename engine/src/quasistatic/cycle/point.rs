@@ -190,7 +190,8 @@ impl<'a, 'b> Step<'a, 'b> {
             }
             let share = length / end.0;
             let guess = if (best.0 - length).abs() < 1e-3 * end.0 {
-                self.offset(&best.1) + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.from.tangent))
+                self.offset(&best.1)
+                    + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.from.tangent))
             } else {
                 &self.from.tangent * length + &curve * (share * share)
             };

@@ -1,0 +1,137 @@
+//! Errors and warnings of a loop in the user's units and in words.
+
+use super::error::{CycleError, Warning};
+use super::path::Turn;
+use crate::problem::{Control, Units};
+use crate::units::number::said;
+use crate::units::{Quantity, UnitSystem};
+
+/// What a control value measures: a spring's other end is moved.
+fn quantity(control: Control) -> Quantity {
+    if control == Control::Force { Quantity::Force } else { Quantity::Length }
+}
+
+fn of_control(control: Control, units: &Units) -> f64 {
+    if control == Control::Force { units.force } else { units.length }
+}
+
+impl Turn {
+    /// The same turn where lengths are `length` times and forces `force` times as large.
+    #[must_use]
+    pub fn in_units(self, length: f64, force: f64, control: Control) -> Self {
+        match self {
+            Self::Approach(x) => Self::Approach(x * length),
+            Self::Force(x) => Self::Force(x * force),
+            Self::Radius(x) => Self::Radius(x * length),
+            Self::Control(x) => Self::Control(x * if control == Control::Force { force } else { length }),
+        }
+    }
+}
+
+impl CycleError {
+    /// Whether another value would do, of the turn, the load or the gap; else the computation itself failed.
+    #[must_use]
+    pub fn is_of_values(&self) -> bool {
+        !matches!(
+            self,
+            Self::State(_)
+                | Self::NoLanding { .. }
+                | Self::Lost { .. }
+                | Self::TooLong { .. }
+                | Self::Cancelled
+        )
+    }
+
+    /// The same error with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, control: Control, units: &Units) -> Self {
+        let (value, length) = (of_control(control, units), units.length);
+        match self {
+            Self::TurnBeforeTouch { turn, touch } => {
+                Self::TurnBeforeTouch { turn: turn * value, touch: touch * value }
+            }
+            Self::NoTension { load } => Self::NoTension { load: load * units.force },
+            Self::BeyondGap { radius, approach, force } => Self::BeyondGap {
+                radius: radius * length,
+                approach: approach * length,
+                force: force * units.force,
+            },
+            Self::RadiusBeyondGap { radius, known } => {
+                Self::RadiusBeyondGap { radius: radius * length, known: known * length }
+            }
+            Self::NeverTouches { searched } => Self::NeverTouches { searched: searched * length },
+            Self::NoLanding { control_value, steps } => {
+                Self::NoLanding { control_value: control_value * value, steps }
+            }
+            Self::Lost { control_value } => Self::Lost { control_value: control_value * value },
+            Self::TooLong { steps, control_value } => {
+                Self::TooLong { steps, control_value: control_value * value }
+            }
+            other => other,
+        }
+    }
+
+    /// What is wrong, with the numbers, which are in the user's units, as `shown` has them.
+    #[must_use]
+    pub fn words(&self, control: Control, shown: &UnitSystem) -> String {
+        let at = |x| said(shown, quantity(control), x);
+        let length = |x| said(shown, Quantity::Length, x);
+        let force = |x| said(shown, Quantity::Force, x);
+        match *self {
+            Self::TurnBeforeTouch { turn, touch } => {
+                format!(
+                    "the loop would turn at {}, before the bodies touch: turn above {}",
+                    at(turn),
+                    at(touch)
+                )
+            }
+            Self::NoTension { load } => format!(
+                "without adhesion a dead load of {} carries no contact: turn at a force above {}",
+                force(load),
+                force(0.0)
+            ),
+            Self::BeyondGap { radius, approach, force: load } => format!(
+                "the contact grew to r = {}, up to where the gap is known, at the approach {} and the force {}: turn before",
+                length(radius),
+                length(approach),
+                force(load)
+            ),
+            Self::RadiusBeyondGap { radius, known } => format!(
+                "a turn at the radius {} lies beyond the gap, which is known up to r = {}: turn below that",
+                length(radius),
+                length(known)
+            ),
+            Self::NeverTouches { searched } => {
+                format!("the gap has no least value up to r = {}: the bodies never touch", length(searched))
+            }
+            Self::NoLanding { control_value, steps } => {
+                format!(
+                    "at the control value {} the edges did not land after {steps} steps",
+                    at(control_value)
+                )
+            }
+            Self::Lost { control_value } => {
+                format!("the equilibria could not be followed beyond the control value {}", at(control_value))
+            }
+            Self::TooLong { steps, control_value } => format!(
+                "the loop takes more than {steps} steps: it reached the control value {}; turn earlier",
+                at(control_value)
+            ),
+            ref other => other.to_string(),
+        }
+    }
+}
+
+impl Warning {
+    /// The warning, of a loop in reduced units, with its numbers in the user's.
+    #[must_use]
+    pub fn words(&self, control: Control, units: &Units, shown: &UnitSystem) -> String {
+        match *self {
+            Self::Digits { digits, control_value } => {
+                let value = said(shown, quantity(control), control_value * of_control(control, units));
+                format!("at the control value {value} edges are known to {digits:.1} digits only")
+            }
+            ref other => other.to_string(),
+        }
+    }
+}

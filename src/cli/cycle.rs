@@ -1,0 +1,139 @@
+//! `pulloff cycle`: the whole loop of loading and unloading, with rings of contact.
+
+use super::console::{note, warn};
+use super::problem::Problem;
+use super::{Failure, output};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pulloff_engine::case::Case;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::schema::TURN_KEYS;
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::cycle::{Areas, Turn};
+use pulloff_engine::report::cycle::COLUMNS;
+use pulloff_engine::report::{CycleReport, columns, cycle_table, json};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// The arguments of `pulloff cycle`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
+    #[arg(long, value_name = "CONTROL")]
+    control: Option<String>,
+    #[command(flatten)]
+    turn: TurnArguments,
+    /// Compute losses by energy alone: faster, and without the balance of energy and areas
+    #[arg(long)]
+    no_area: bool,
+    /// table is for reading; csv has one row per contact of each state; json has everything [default: by the ending of the
+    /// file, else table]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Exit with status 3 where the result carries a warning
+    #[arg(long)]
+    strict: bool,
+    /// Write to this file instead of standard output, which is -
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Where the loop turns round; instead of what the preset says.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+struct TurnArguments {
+    /// Turn round at the first stable state with at least this approach
+    #[arg(long, value_name = "APPROACH", allow_hyphen_values = true)]
+    to_approach: Option<String>,
+    /// Turn round at the first stable state with at least this force
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
+    to_force: Option<String>,
+    /// Turn round at the first stable state whose outermost edge is at least this far out
+    #[arg(long, value_name = "RADIUS")]
+    to_radius: Option<String>,
+    /// Turn round at this value of what is controlled: an approach, a force, or the way of the spring's other end
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    to_control: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum Format {
+    Table,
+    Csv,
+    Json,
+}
+
+impl TurnArguments {
+    /// Gives the preset the turn, where one is given; a control value is none of its keys.
+    fn lay(&self, preset: &mut Preset) -> Result<Option<Turn>, Failure> {
+        let given = [
+            ("--to-approach", TURN_KEYS[0], &self.to_approach),
+            ("--to-force", TURN_KEYS[1], &self.to_force),
+            ("--to-radius", TURN_KEYS[2], &self.to_radius),
+        ];
+        for (flag, key, text) in given {
+            if let Some(text) = text {
+                preset.assign(key, text).map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
+            }
+        }
+        let Some(text) = &self.to_control else { return Ok(None) };
+        // It is typed as an approach or a force is.
+        let key = TURN_KEYS[usize::from(preset.path.control == Control::Force)];
+        let value = preset.row(key).map(|row| preset.number(&row, text)).transpose();
+        let value = value.map_err(|invalid| Failure::Usage(format!("--to-control: {invalid}")))?;
+        Ok(value.map(Turn::Control))
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let file = arguments.output.as_deref();
+    let format = output::format(arguments.format, file, Format::Table)?;
+    let loaded = arguments.problem.load()?;
+    output::spares(file, "-o", &loaded)?;
+    let mut preset = loaded.preset;
+    if let Some(control) = &arguments.control {
+        preset
+            .assign("path.control", control)
+            .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+    }
+    let turn = arguments.turn.lay(&mut preset)?;
+    let case = Case::new(&preset)?;
+    let units = case.units();
+    let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
+    let areas = if arguments.no_area { Areas::No } else { Areas::Yes };
+    let bar = bar();
+    let cycle = case.cycle(case.control, turn, areas, &|share| {
+        bar.set_position((share * 100.0) as u64);
+        true
+    });
+    bar.finish_and_clear();
+    let report = CycleReport::new(&preset, &case, &cycle?);
+    warn(&report.warnings);
+    let text = match format {
+        Format::Table => cycle_table::cycle(&report),
+        Format::Csv => {
+            note(columns::units(COLUMNS, report.control, &preset.units).as_deref());
+            report.csv()?
+        }
+        Format::Json => json(&report)?,
+    };
+    output::write(&text, file)?;
+    if arguments.strict && !report.warnings.is_empty() {
+        let text = "the result was written, but carries a warning, which --strict forbids";
+        return Err(Failure::Inadmissible(text.to_owned()));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Shown on a terminal, once it takes longer than a moment.
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_secs(1));
+    bar
+}
