@@ -1,8 +1,12 @@
 //! Whole loops against those of another program, and what holds for every loop.
 
 use pulloff_engine::annuli::Ground;
+use pulloff_engine::contact::shapes::random_waves::RandomWaves;
+use pulloff_engine::contact::shapes::{Harmonic, Harmonics};
 use pulloff_engine::contact::{Control, Gap, Problem, Shape};
-use pulloff_engine::quasistatic::cycle::{Areas, Cycle, CycleState, EVEN, EventKind, Setting, Turn, cycle};
+use pulloff_engine::quasistatic::cycle::{
+    Areas, Cycle, CycleError, CycleState, EVEN, EventKind, Setting, Turn, Warning, cycle,
+};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -72,10 +76,7 @@ fn agrees(found: &Cycle, reference: &Value, tolerance: f64, losses: f64) {
         let error = (event.dissipated.unwrap() - lost).abs();
         worst[3] = worst[3].max(if lost == 0.0 { error } else { error / lost });
     }
-    println!(
-        "worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}",
-        worst[0], worst[1], worst[2], worst[3]
-    );
+    println!("worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}", worst[0], worst[1], worst[2], worst[3]);
     assert!(worst[..3].iter().all(|error| *error < tolerance) && worst[3] < losses, "{worst:?}");
     let sum = reference["checks"]["sum_of_losses"].as_f64().unwrap();
     assert!((found.totals.dissipated.unwrap() / sum - 1.0).abs() < losses);
@@ -99,4 +100,237 @@ fn weak_adhesion_takes_the_rings_of_another_program() {
     assert!(found.totals.balance.unwrap() < 1e-8 && found.warnings.is_empty(), "{:?}", found.totals);
     let rings = found.states.iter().map(|state: &CycleState| state.contacts.len()).max();
     assert_eq!(rings, Some(2));
+}
+
+#[test]
+fn figure_8_touches_once_and_snaps_once() {
+    let gamma = 0.05 / TAU;
+    let found = looped(wavy(0.001, 0.1), gamma, Control::Displacement, Turn::Approach(0.25), Areas::Yes);
+    let kinds: Vec<EventKind> = found.events.iter().map(|event| event.kind).collect();
+    assert_eq!(kinds, [EventKind::FirstTouch, EventKind::Turn, EventKind::Recede, EventKind::PullOff]);
+    let landed = found.events[0].after.as_ref().unwrap();
+    assert!((landed.contact_radius - 0.373_502_9).abs() < 1e-7 && (landed.force + 0.035_632_181_2).abs() < 1e-10);
+    assert!((found.events[0].dissipated.unwrap() / 1.976_571_4e-3 - 1.0).abs() < 1e-7);
+    let reference = reference("fig8");
+    let unloading = reference["control"]["displacement"]["unloading"].as_array().or_else(|| {
+        let controls = reference["controls"].as_array()?;
+        controls.iter().find(|of| of["control"] == "displacement")?["unloading"].as_array()
+    });
+    if let Some(events) = unloading {
+        for (event, expected) in found.events[2..].iter().zip(events) {
+            let number = |keys: [&str; 2]| expected[keys[0]][keys[1]].as_f64().or(expected[keys[0]].as_f64());
+            if let Some(s) = number(["before", "s"]) {
+                assert!((event.before.as_ref().unwrap().contact_radius - s).abs() < 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn without_adhesion_the_loop_is_that_of_the_table() {
+    let found = looped(wavy(0.0025, 0.05), 0.0, Control::Displacement, Turn::Approach(0.1), Areas::Yes);
+    let expected = [
+        ("touch", 0.048_792_8, 0.001_283_086_94, 0.000_009_797_7, 0.005_795_5),
+        ("touch", 0.098_054_6, 0.006_747_625_40, 0.000_537_020_6, 0.010_248_1),
+        ("touch", 0.147_522_7, 0.017_055_500_40, 0.002_552_256_4, 0.013_855_6),
+        ("touch", 0.197_099_4, 0.032_358_291_69, 0.007_090_533_8, 0.017_336_6),
+        ("touch", 0.246_742_0, 0.052_700_045_61, 0.015_189_096_2, 0.021_657_0),
+        ("merge", 0.026_302_5, 0.063_172_127_64, 0.020_299_472_4, 0.071_637_5),
+        ("merge", 0.075_502_0, 0.069_930_361_28, 0.023_701_383_3, 0.120_577_4),
+        ("touch", 0.296_428_9, 0.078_094_923_22, 0.027_880_887_1, 0.123_522_3),
+        ("merge", 0.125_386_6, 0.079_783_254_20, 0.028_848_303_5, 0.169_422_3),
+        ("merge", 0.175_369_5, 0.095_343_532_88, 0.038_109_438_6, 0.218_373_5),
+    ];
+    for event in &found.events {
+        println!(
+            "{} {:?} {:.11} {:?}",
+            event.kind.name(),
+            event.radius,
+            event.control_value,
+            event.after.as_ref().map(|state| (state.force, &state.contacts))
+        );
+    }
+    let up: Vec<_> = found.events.iter().take_while(|event| event.kind != EventKind::Turn).skip(1).collect();
+    assert_eq!(up.len(), expected.len());
+    for (event, (kind, radius, delta, force, disc)) in up.iter().zip(expected) {
+        assert_eq!(event.kind.name(), kind);
+        let after = event.after.as_ref().unwrap();
+        assert!((event.radius.unwrap() - radius).abs() < 2e-7, "{radius}");
+        assert!((after.approach - delta).abs() < 1e-10 * 0.1 + 5e-12, "{kind} {delta} {}", after.approach);
+        assert!((after.force - force).abs() < 6e-11, "{kind} {delta}");
+        assert!((after.contacts[0][1] - disc).abs() < 6e-8, "{kind} {delta}");
+    }
+    let turn = &found.events[up.len() + 1];
+    let at = turn.after.as_ref().unwrap();
+    assert!((at.force - 0.040_940_284_4).abs() < 6e-11 && (at.energy - 1.612_489_038e-3).abs() < 6e-13);
+    // The way back.
+    let down: Vec<_> = found.events[up.len() + 2..].iter().map(|event| event.kind.name()).collect();
+    let mirrored: Vec<_> = up
+        .iter()
+        .rev()
+        .map(|event| if event.kind == EventKind::Merge { "split" } else { "vanish" })
+        .chain(["pull-off"])
+        .collect();
+    assert_eq!(down, mirrored);
+}
+
+/// What holds for every loop.
+fn check(found: &Cycle, name: &str, identity: f64) {
+    for event in &found.events {
+        if let Some(lost) = event.dissipated {
+            assert!(lost >= 0.0, "{name}: {event:?}");
+        }
+    }
+    assert_eq!(found.events.last().map(|event| event.kind), Some(EventKind::PullOff), "{name}");
+    if let Some(balance) = found.totals.balance {
+        println!("{name}: balance {balance:.1e}, {} events, {:?}", found.events.len(), found.warnings);
+        assert!(balance < identity, "{name}: {balance}");
+    }
+}
+
+#[test]
+fn very_weak_adhesion_has_three_rings() {
+    let found = looped(wavy(0.0025, 0.05), 1e-5, Control::Displacement, Turn::Approach(0.06), Areas::No);
+    let most = found.states.iter().map(|state| state.contacts.len()).max().unwrap();
+    assert_eq!(most, 4);
+    check(&found, "1e-5", 1e-7);
+}
+
+#[test]
+fn forces_and_springs_close_their_loops() {
+    for (control, gamma) in [
+        (Control::Force, 1e-4),
+        (Control::Stiffness(0.15), 1e-4),
+        (Control::Force, 0.025 / TAU),
+        (Control::Stiffness(0.15), 0.025 / TAU),
+        (Control::Stiffness(100.0), 1e-4),
+    ] {
+        let found = looped(wavy(0.0025, 0.05), gamma, control, Turn::Approach(0.1), Areas::Yes);
+        check(&found, &format!("{control} {gamma}"), 1e-7);
+        for event in &found.events {
+            if let (Some(a), Some(b)) = (event.dissipated, event.dissipated_by_area) {
+                assert!((a - b).abs() <= 1e-7 * a, "{control} {:?} {a} {b}", event.kind);
+            }
+        }
+        assert_eq!(found.totals.dissipated.is_none(), control == Control::Force);
+    }
+}
+
+/// A random gap of one wave with a phase, two, or many.
+fn random_gap(random: &mut fastrand::Rng) -> (Arc<dyn Gap>, String) {
+    let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
+    let kind = random.usize(0..4);
+    if kind == 3 {
+        let spectrum = RandomWaves {
+            radius_of_curvature: 1.0,
+            rms: between(random, 3e-4, 2e-3),
+            longest: 0.2,
+            shortest: 0.05,
+            hurst: 0.8,
+            count: 6,
+            seed: random.u64(..),
+        };
+        return (Arc::new(Shape::random_waves(spectrum).unwrap()), format!("{spectrum:?}"));
+    }
+    let waves: Vec<Harmonic> = (0..=usize::from(kind > 0))
+        .map(|_| {
+            let wavelength = between(random, 0.04, 0.15);
+            // λ²/A from 0.7 to 15: from rough to hardly wavy.
+            let amplitude = wavelength * wavelength / between(random, 0.7, 15.0);
+            let phase = if random.bool() { 0.0 } else { TAU * random.f64() };
+            Harmonic { amplitude, wavelength, phase }
+        })
+        .collect();
+    let name = format!("{waves:?}");
+    (Arc::new(Harmonics::new(1.0, waves).unwrap()), name)
+}
+
+fn random_loop(number: u64, areas: Areas) -> Result<(Cycle, String), String> {
+    let mut random = fastrand::Rng::with_seed(number);
+    let (gap, name) = random_gap(&mut random);
+    let gamma = 1e-5 * 500.0_f64.powf(random.f64());
+    let control = [Control::Displacement, Control::Force, Control::Stiffness(0.03 * 100.0_f64.powf(random.f64()))]
+        [random.usize(0..3)];
+    let approach = 0.01 + 0.07 * random.f64();
+    let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
+    let ground = Ground::of(gap, 0.8).unwrap();
+    let setting = Setting { control, turn: Turn::Approach(approach), areas, mobility: EVEN };
+    let started = std::time::Instant::now();
+    let found = cycle(&ground, gamma, &setting, &|_| true).map_err(|error| format!("{name}: {error}"))?;
+    println!("{:.0} ms", started.elapsed().as_secs_f64() * 1e3);
+    Ok((found, name))
+}
+
+fn random_loops(numbers: std::ops::Range<u64>, areas: Areas) {
+    let mut failures = Vec::new();
+    for number in numbers {
+        match random_loop(number, areas) {
+            Ok((found, name)) => {
+                let gains = found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-18));
+                let off = found.totals.balance.is_some_and(|balance| !(balance < 1e-7));
+                let lines = found.warnings.iter().any(|warning| matches!(warning, Warning::Area { .. }));
+                let apart = found.events.last().map(|event| event.kind) == Some(EventKind::PullOff);
+                if gains || off || lines || !apart {
+                    failures.push(format!("{name}: gains {gains} {:?} {:?}", found.totals, found.warnings));
+                }
+            }
+            Err(error) => failures.push(error),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn some_random_loops_close() {
+    random_loops(0..8, Areas::Yes);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn sixty_random_loops_close() {
+    random_loops(0..60, Areas::Yes);
+}
+
+#[test]
+fn mobilities_decide_nothing_that_lasts() {
+    let gap = wavy(0.0025, 0.05);
+    let ground = Ground::of(gap, 0.7).unwrap();
+    let run = |mobility: &(dyn Fn(f64) -> f64 + Sync)| {
+        let turn = Turn::Approach(0.04);
+        let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility };
+        cycle(&ground, 1e-4, &setting, &|_| true).unwrap()
+    };
+    let even = run(EVEN);
+    for seed in 0..3_u64 {
+        // Two decades, by radius.
+        let spread = run(&|r| 10.0_f64.powf((1e4 * r + f64::from(u8::try_from(seed).unwrap())).sin()));
+        assert_eq!(spread.events.len(), even.events.len());
+        for (a, b) in spread.events.iter().zip(&even.events) {
+            let (Some(a), Some(b)) = (&a.after, &b.after) else { continue };
+            assert_eq!(a.contacts.len(), b.contacts.len());
+            for (a, b) in a.contacts.iter().flatten().zip(b.contacts.iter().flatten()) {
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_turns_are_refused_with_the_number_that_would_do() {
+    let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
+    let fails = |gamma: f64, control: Control, turn: Turn| {
+        let setting = Setting { control, turn, areas: Areas::No, mobility: EVEN };
+        cycle(&ground, gamma, &setting, &|_| true).unwrap_err()
+    };
+    let before = fails(1e-4, Control::Displacement, Turn::Control(-0.01));
+    assert_eq!(before, CycleError::TurnBeforeTouch { turn: -0.01, touch: 0.0 });
+    assert_eq!(fails(0.0, Control::Force, Turn::Force(-0.1)), CycleError::NoTension { load: -0.1 });
+    let beyond = fails(1e-4, Control::Displacement, Turn::Radius(2.0));
+    assert!(matches!(beyond, CycleError::RadiusBeyondGap { radius: 2.0, .. }));
+    assert!(matches!(fails(1e-4, Control::Force, Turn::Approach(f64::NAN)), CycleError::BadTurn(_)));
+    let never = fails(1e-4, Control::Displacement, Turn::Force(50.0));
+    assert!(matches!(never, CycleError::BeyondGap { .. }), "{never:?}");
+    let setting =
+        Setting { control: Control::Force, turn: Turn::Force(0.01), areas: Areas::No, mobility: EVEN };
+    assert_eq!(cycle(&ground, 1e-4, &setting, &|_| false).unwrap_err(), CycleError::Cancelled);
 }

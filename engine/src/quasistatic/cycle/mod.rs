@@ -20,7 +20,10 @@
 //! | [`error`] | why there is none, and what is to be known about one |
 //! | `describe` | both in the user's units, in words |
 //! | [`path`] | the loop |
+//! | `area` | losses a second time |
+//! | `zero` | the loop without adhesion |
 
+mod area;
 pub mod balance;
 mod describe;
 pub mod error;
@@ -28,8 +31,7 @@ pub mod event;
 pub mod jump;
 pub mod path;
 pub mod point;
-#[cfg(test)]
-mod tests;
+mod zero;
 
 pub use balance::{Balance, Held, NotFound};
 pub use error::{CycleError, Warning};

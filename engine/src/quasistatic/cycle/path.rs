@@ -2,7 +2,7 @@
 
 use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
-use super::event::{CycleState, Direction, Event, EventKind, Passed};
+use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 use super::jump::Mobility;
 use super::point::{Point, Step};
 use crate::annuli::ground::gauss;
@@ -26,6 +26,9 @@ const ROUNDING: f64 = 1e-11;
 
 /// What the balance of a loop may leave of its losses.
 const BALANCED: f64 = 1e-6;
+
+/// The share of a loss by which energy and area may differ.
+const AGREE: f64 = 1e-6;
 
 /// Digits below which a loop warns.
 const DIGITS: f64 = 9.0;
@@ -51,12 +54,12 @@ impl Turn {
         }
     }
 
-    fn measure(self, held: &Held) -> f64 {
+    fn measure(self, held: &Held, control: Control) -> f64 {
         match self {
             Self::Approach(_) => held.approach,
             Self::Force(_) => held.force,
             Self::Radius(_) => held.state.contacts.outermost(),
-            Self::Control(_) => held.control_value,
+            Self::Control(_) => control.value(held.approach, held.force),
         }
     }
 }
@@ -162,7 +165,9 @@ pub fn cycle(
     setting: &Setting<'_>,
     go_on: &dyn Fn(f64) -> bool,
 ) -> Result<Cycle, CycleError> {
-    let balance = Balance { ground, work_of_adhesion: gamma, control: setting.control };
+    // Without adhesion all controls rise together, and the approach is the one that is stepped.
+    let stepped = if gamma > 0.0 { setting.control } else { Control::Displacement };
+    let balance = Balance { ground, work_of_adhesion: gamma, control: stepped };
     let path = Path {
         balance: &balance,
         setting,
@@ -209,11 +214,23 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
 }
 
 impl Path<'_, '_> {
-    fn state(&self, held: &Held) -> CycleState {
-        CycleState::new(held, self.balance.work_of_adhesion, self.direction, self.piece)
+    pub(super) fn state(&self, held: &Held) -> CycleState {
+        let state = CycleState::new(held, self.balance.work_of_adhesion, self.direction, self.piece);
+        if self.balance.control == self.setting.control {
+            return state;
+        }
+        CycleState { control_value: self.setting.control.value(held.approach, held.force), ..state }
     }
 
-    fn record(&mut self, held: &Held) {
+    /// What the turn is measured by.
+    pub(super) fn measure(&self, held: &Held) -> f64 {
+        if self.balance.control == self.setting.control && matches!(self.setting.turn, Turn::Control(_)) {
+            return held.control_value;
+        }
+        self.setting.turn.measure(held, self.setting.control)
+    }
+
+    pub(super) fn record(&mut self, held: &Held) {
         if held.state.digits < self.digits.0 {
             self.digits = (held.state.digits, held.control_value);
         }
@@ -251,9 +268,12 @@ impl Path<'_, '_> {
                 CycleError::TurnBeforeTouch { turn: turn.value(), touch: least }
             });
         }
+        if balance.work_of_adhesion == 0.0 {
+            return self.without_adhesion(crest);
+        }
         let mut held = self.first_touch(crest, first)?;
         self.record(&held);
-        while turn.measure(&held) < turn.value() {
+        while self.measure(&held) < turn.value() {
             let (end, next) = self.stretch(&held)?;
             held = match end {
                 End::Turn => {
@@ -271,7 +291,7 @@ impl Path<'_, '_> {
             }
             .ok_or(CycleError::Lost { control_value: next.control_value })?;
         }
-        let reached = turn.measure(&held);
+        let reached = self.measure(&held);
         let losses_up: f64 = self.events.iter().filter_map(|event| event.dissipated).sum();
         let at_turn = self.state(&held);
         let potential = match setting.control {
@@ -317,19 +337,13 @@ impl Path<'_, '_> {
         };
         let (before, all) = (&self.events[..self.events.len() - 1], &self.events[..]);
         let before_pull_off: f64 = losses(before).unwrap_or(f64::NAN);
-        let mut warnings = Vec::new();
         let last = self.events.last().and_then(|event| event.before.as_ref());
         let balance = last.filter(|_| self.setting.areas == Areas::Yes).map(|last| {
             let total = losses(all).unwrap_or(before_pull_off);
             let error = last.potential(control) - self.area + before_pull_off;
             error.abs() / total.abs()
         });
-        if let Some(share) = balance.filter(|share| !(*share <= BALANCED)) {
-            warnings.push(Warning::Balance { share });
-        }
-        if self.digits.0 < DIGITS {
-            warnings.push(Warning::Digits { digits: self.digits.0, control_value: self.digits.1 });
-        }
+        let warnings = self.warnings(balance);
         let total = losses(all);
         let totals = Totals {
             dissipated: total,
@@ -342,10 +356,51 @@ impl Path<'_, '_> {
         Cycle { control, turn, events: self.events, states: self.states, totals, warnings }
     }
 
+    /// What is to be known about it.
+    pub(super) fn warnings(&self, balance: Option<f64>) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        // Written so that what is no number warns.
+        if let Some(share) = balance.filter(|share| !matches!(share.total_cmp(&BALANCED), std::cmp::Ordering::Less)) {
+            warnings.push(Warning::Balance { share });
+        }
+        if self.digits.0 < DIGITS {
+            warnings.push(Warning::Digits { digits: self.digits.0, control_value: self.digits.1 });
+        }
+        for (event, of) in self.events.iter().enumerate() {
+            if let (Some(energy), Some(area)) = (of.dissipated, of.dissipated_by_area) {
+                let share = (energy - area).abs() / energy.abs().max(f64::MIN_POSITIVE);
+                if share > AGREE && energy != area {
+                    warnings.push(Warning::Area { event, share });
+                }
+            }
+        }
+        warnings
+    }
+
+    /// The loss of a jump by area, where it is asked for.
+    fn by_area(
+        &self,
+        before: Option<&CycleState>,
+        after: Option<&CycleState>,
+        value: f64,
+        passed: &[Passed],
+    ) -> Option<f64> {
+        if self.setting.areas == Areas::No {
+            return None;
+        }
+        // Bodies apart hold nothing; a dead load has no bound.
+        if after.is_none() && self.setting.control == Control::Force {
+            return None;
+        }
+        let touches = passed.iter().filter(|passed| passed.kind == PassedKind::Touch);
+        let crests: Vec<f64> = touches.map(|passed| passed.radius).collect();
+        self.balance.area_between(before, after, value, &crests)
+    }
+
     /// The first touch and what it jumps to.
     fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, CycleError> {
         let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
-        let mut passed = Vec::new();
+        let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
         let held = self
             .balance
             .run(start, value, 1.0, self.setting.mobility, &mut passed)?
@@ -362,9 +417,9 @@ impl Path<'_, '_> {
             control_value: value,
             radius: Some(crest.radius),
             before: None,
-            after: Some(after),
             dissipated: Some(loss),
-            dissipated_by_area: None,
+            dissipated_by_area: self.by_area(None, Some(&after), value, &passed),
+            after: Some(after),
             passed,
         });
         Ok(held)
@@ -379,7 +434,8 @@ impl Path<'_, '_> {
         radius: Option<f64>,
     ) -> Result<Option<Held>, CycleError> {
         let control = self.setting.control;
-        let mut passed: Vec<Passed> = Vec::new();
+        let mut passed: Vec<Passed> =
+            radius.iter().map(|radius| Passed { kind: PassedKind::Touch, radius: *radius }).collect();
         let value = before.control_value;
         let landed =
             self.balance.run(start, value, self.direction.sense(), self.setting.mobility, &mut passed)?;
@@ -392,7 +448,7 @@ impl Path<'_, '_> {
             control_value: value,
             radius,
             dissipated: old.loss(control, after.as_ref()),
-            dissipated_by_area: None,
+            dissipated_by_area: self.by_area(Some(&old), after.as_ref(), value, &passed),
             before: Some(old),
             after,
             passed,
@@ -410,14 +466,7 @@ impl Path<'_, '_> {
         let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
         let mut length = FIRST;
         loop {
-            self.steps += 1;
-            if self.steps > STEPS {
-                let control_value = point.held.control_value;
-                return Err(CycleError::TooLong { steps: STEPS, control_value });
-            }
-            if !(self.go_on)(self.progress(&point.held)) {
-                return Err(CycleError::Cancelled);
-            }
+            self.counted(&point.held)?;
             let step = Step::new(self.balance, &point);
             let Some(next) = step.taken(length) else {
                 length *= 0.5;
@@ -439,8 +488,17 @@ impl Path<'_, '_> {
         }
     }
 
+    /// Counts a step, and asks whether to go on.
+    pub(super) fn counted(&mut self, held: &Held) -> Result<(), CycleError> {
+        self.steps += 1;
+        if self.steps > STEPS {
+            return Err(CycleError::TooLong { steps: STEPS, control_value: held.control_value });
+        }
+        if (self.go_on)(self.progress(held)) { Ok(()) } else { Err(CycleError::Cancelled) }
+    }
+
     /// Why no further step could be taken.
-    fn stopped(&self, held: &Held) -> CycleError {
+    pub(super) fn stopped(&self, held: &Held) -> CycleError {
         let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
         if known - radius < 1e-3 * self.balance.ground.wave {
             CycleError::BeyondGap { radius: known, approach: held.approach, force: held.force }
@@ -452,7 +510,7 @@ impl Path<'_, '_> {
     /// How much of the loop is done, roughly.
     fn progress(&self, held: &Held) -> f64 {
         let turn = self.setting.turn;
-        let share = turn.measure(held) / turn.value();
+        let share = self.measure(held) / turn.value();
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
         match self.direction {
             Direction::Loading => 0.5 * share,
@@ -481,6 +539,29 @@ impl Path<'_, '_> {
         if self.direction == Direction::Unloading {
             return Ok((length, next, end));
         }
+        let crest;
+        (length, next, crest) = self.touching(step, from, length, next)?;
+        end = crest.map(End::Touch).or(end);
+        let turn = self.setting.turn;
+        if self.measure(&next.held) >= turn.value() {
+            let mut left = |point: &Point| Some(self.measure(&point.held) - turn.value());
+            let at_start = self.measure(&from.held) - turn.value();
+            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
+            end = Some(End::Turn);
+        }
+        Ok((length, next, end))
+    }
+
+    /// The first crest that touches on a step, which then ends there.
+    pub(super) fn touching(
+        &self,
+        step: &Step<'_, '_>,
+        from: &Point,
+        mut length: f64,
+        mut next: Point,
+    ) -> Result<(f64, Point, Option<Crest>), CycleError> {
+        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let mut touched = None;
         let ground = self.balance.ground;
         // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
         let mut overlap = 0.0;
@@ -504,19 +585,12 @@ impl Path<'_, '_> {
             if !(at_start > 0.0) {
                 // Rounding: the start of the step touches.
                 let crest = at;
-                return Ok((0.0, from.clone(), Some(End::Touch(crest))));
+                return Ok((0.0, from.clone(), Some(crest)));
             }
             (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
-            end = Some(End::Touch(at));
+            touched = Some(at);
         }
-        let turn = self.setting.turn;
-        if turn.measure(&next.held) >= turn.value() {
-            let mut left = |point: &Point| Some(turn.measure(&point.held) - turn.value());
-            let at_start = turn.measure(&from.held) - turn.value();
-            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
-            end = Some(End::Turn);
-        }
-        Ok((length, next, end))
+        Ok((length, next, touched))
     }
 
     /// ∫ (dΠ/dc) dc over a step.

@@ -1,0 +1,158 @@
+//! What a jump loses, by the work that its edges leave over.
+//!
+//! ```text
+//! −∫ Σ 2πe_i (G_i − γ) dα_i      at held control, along straight lines from the edges before to those after
+//! ```
+//!
+//! The potential knows no way, so any will do: a new contact opens from a point, a gap closes to its middle, by t = ½(1 − cos πu) with
+//! Gauss's nodes in u. A stretched ring that vanishes holds an energy like 1/ln(1/width), and is integrated in that variable; of the rest
+//!
+//! ```text
+//! dU/dw = U/(w ln(32c/w))      c its radius, w → 0
+//! ```
+
+use super::balance::Balance;
+use super::event::CycleState;
+use crate::annuli::ground::gauss;
+use crate::annuli::{Contacts, points};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Nodes of one way, and more for each wave that an edge passes.
+const NODES: usize = 32;
+const NODES_PER_WAVE: f64 = 24.0;
+
+/// Where the rest of a vanishing ring takes over, as a share of its width.
+const REST: f64 = 1e-7;
+
+/// A way of edges: from where it is small, to where it is large.
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    /// On a straight line.
+    Line([f64; 2], [f64; 2]),
+    /// A ring from nothing at a radius.
+    Open(f64, [f64; 2]),
+}
+
+impl Balance<'_> {
+    /// What is lost between two states at one control value, one within the other; `None` where a state on the way is none. A contact
+    /// between them that is new opens from one of the crests, a length each.
+    pub fn area_between(
+        &self,
+        before: Option<&CycleState>,
+        after: Option<&CycleState>,
+        value: f64,
+        crests: &[f64],
+    ) -> Option<f64> {
+        let intervals = |state: Option<&CycleState>| state.map_or(Vec::new(), |state| state.contacts.clone());
+        let (old, new) = (intervals(before), intervals(after));
+        let grows = length(&new) >= length(&old);
+        let (small, large) = if grows { (&old, &new) } else { (&new, &old) };
+        let lost = -self.opened(small, large, value, grows.then_some(crests))?;
+        Some(if grows { lost } else { -lost })
+    }
+
+    /// ∫ Σ 2πe (G − γ) dα from the small contacts to the large ones.
+    fn opened(&self, small: &[[f64; 2]], large: &[[f64; 2]], value: f64, crests: Option<&[f64]>) -> Option<f64> {
+        let (mut ways, mut vanishing) = (Vec::new(), Vec::new());
+        for &[lo, hi] in large {
+            let inside: Vec<[f64; 2]> =
+                small.iter().copied().filter(|[a, b]| *b > lo && *a < hi).collect();
+            let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
+                let crest = crests.and_then(|crests| crests.iter().find(|r| **r > lo && **r < hi));
+                match crest {
+                    _ if lo <= 0.0 => ways.push(Way::Open(0.0, [lo, hi])),
+                    Some(crest) => ways.push(Way::Open(*crest, [lo, hi])),
+                    None => vanishing.push([lo, hi]),
+                }
+                continue;
+            };
+            // Its own pieces, and the gaps between them that close.
+            let middles: Vec<f64> = inside.windows(2).map(|pair| 0.5 * (pair[0][1] + pair[1][0])).collect();
+            for (k, piece) in inside.iter().enumerate() {
+                let inner = if k == 0 { lo } else { middles[k - 1] };
+                let outer = if k + 1 == inside.len() { hi } else { middles[k] };
+                ways.push(Way::Line(*piece, [inner, outer]));
+            }
+            debug_assert!(first[0] <= last[1]);
+        }
+        // First what stays moves, beside whole rings that are about to go; then these go, one after the other.
+        let farthest = ways
+            .iter()
+            .flat_map(|way| match way {
+                Way::Line(from, to) => [from[0] - to[0], to[1] - from[1]],
+                Way::Open(point, to) => [point - to[0], to[1] - point],
+            })
+            .fold(0.0, f64::max);
+        // Some hundred at most.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let more = (NODES_PER_WAVE * farthest / self.ground.wave).min(480.0) as usize;
+        let mut sum = 0.0;
+        for [x, weight] in gauss(NODES + more) {
+            let u = 0.5 * (1.0 + x);
+            let t = (FRAC_PI_2 * u).sin().powi(2);
+            let speed = 0.5 * PI * (PI * u).sin();
+            let at = |way: &Way| match way {
+                Way::Line(from, to) => [0, 1].map(|k| [from[k] + t * (to[k] - from[k]), to[k] - from[k]]),
+                Way::Open(point, to) => [0, 1].map(|k| [point + t * (to[k] - point), to[k] - point]),
+            };
+            let mut edges: Vec<[[f64; 2]; 2]> = ways.iter().map(at).collect();
+            edges.extend(vanishing.iter().map(|ring| ring.map(|edge| [edge, 0.0])));
+            if edges.iter().flatten().all(|[_, rate]| *rate == 0.0) {
+                continue;
+            }
+            sum += 0.5 * weight * speed * self.rate(edges, value)?;
+        }
+        let mut stays: Vec<[f64; 2]> = small.to_vec();
+        for ring in &vanishing {
+            sum += self.vanished(&stays, *ring, value)?;
+            stays.push(*ring);
+        }
+        Some(sum)
+    }
+
+    /// Σ 2πe (G − γ) de/dt for edges [radius, rate] of contacts, in any order.
+    fn rate(&self, mut edges: Vec<[[f64; 2]; 2]>, value: f64) -> Option<f64> {
+        edges.sort_by(|a, b| a[0][0].total_cmp(&b[0][0]));
+        type Moving = Vec<[[f64; 2]; 2]>;
+        let (disc, rings): (Moving, Moving) = edges.into_iter().partition(|[inner, _]| inner[0] <= 0.0);
+        let contacts = Contacts {
+            disc: disc.first().map_or(0.0, |[_, outer]| outer[0]),
+            rings: rings.iter().map(|[inner, outer]| [inner[0], outer[0]]).collect(),
+        };
+        let held = self.held(&contacts, &points(self.ground, &contacts), value).ok()?;
+        let root = self.work_of_adhesion.sqrt();
+        let rates = disc.iter().map(|[_, outer]| outer[1]).chain(rings.iter().flatten().map(|edge| edge[1]));
+        let terms = contacts.edges().into_iter().zip(held.excess.iter()).zip(rates);
+        Some(
+            terms
+                .map(|((edge, excess), rate)| {
+                    2.0 * PI * edge.radius * excess * (excess + 2.0 * root) * edge.sign * rate
+                })
+                .sum(),
+        )
+    }
+
+    /// The same for a stretched ring from nothing, beside others.
+    fn vanished(&self, others: &[[f64; 2]], [a, b]: [f64; 2], value: f64) -> Option<f64> {
+        let (middle, width) = (0.5 * (a + b), b - a);
+        let of = |w: f64| {
+            let mut edges: Vec<[[f64; 2]; 2]> = others.iter().map(|ring| ring.map(|edge| [edge, 0.0])).collect();
+            edges.push([[middle - 0.5 * w, -0.5], [middle + 0.5 * w, 0.5]]);
+            self.rate(edges, value)
+        };
+        let log = |w: f64| (32.0 * middle / w).ln();
+        let (from, to) = (log(REST * width).recip(), log(width).recip());
+        let mut sum = 0.0;
+        for [x, weight] in gauss(NODES) {
+            let u = 0.5 * (from + to) + 0.5 * (to - from) * x;
+            let w = 32.0 * middle * (-u.recip()).exp();
+            sum += 0.5 * (to - from) * weight * of(w)? * w / (u * u);
+        }
+        let w = REST * width;
+        Some(sum + of(w)? * w * log(w))
+    }
+}
+
+fn length(intervals: &[[f64; 2]]) -> f64 {
+    intervals.iter().map(|[a, b]| b * b - a * a).sum()
+}

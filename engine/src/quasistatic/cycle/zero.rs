@@ -1,0 +1,300 @@
+//! The loop without adhesion: one solution for every approach, no jumps, no losses; unloading is loading reversed.
+//!
+//! κ = 0 at every edge, with J diagonal and positive. Events are continuous: a crest touches and its contact grows from nothing; a gap
+//! narrows until two contacts are one. The second is found on the contact that is already one: where its pressure at the closing point
+//! is 0; before that it pulls there. All controls rise together, so the approach is the one that is stepped.
+
+use super::balance::Held;
+use super::error::CycleError;
+use super::event::{CycleState, Direction, Event, EventKind};
+use super::path::{Cycle, Path, Totals, Turn, TurnReached};
+use super::point::Step;
+use crate::annuli::{Around, Contacts, Crest};
+use crate::disc::chebyshev;
+
+/// A gap below so many waves may be about to close.
+const CLOSING: f64 = 0.02;
+
+/// A new contact begins at an approach further by this share of λ²/ρ.
+const LIFT: f64 = 1e-3;
+
+/// Points by which a least pressure is found.
+const POINTS: usize = 15;
+
+impl Path<'_, '_> {
+    fn lift(&self) -> f64 {
+        LIFT * self.balance.ground.wave.powi(2) / self.balance.ground.crest
+    }
+
+    /// The loop of bodies that do not adhere, from the first touch of `crest`; the balance is that of a held approach.
+    pub(super) fn without_adhesion(mut self, crest: Crest) -> Result<Cycle, CycleError> {
+        let turn = self.setting.turn;
+        let apart = CycleState {
+            contact_radius: crest.radius,
+            approach: crest.gap,
+            force: 0.0,
+            energy: 0.0,
+            contacts: Vec::new(),
+            contact_area: 0.0,
+            control_value: self.setting.control.value(crest.gap, 0.0),
+            direction: Direction::Loading,
+            piece: 0,
+        };
+        self.continuous(EventKind::FirstTouch, Some(crest.radius), None, Some(apart));
+        let mut held = self.begun(&Contacts::default(), crest.radius, crest.gap)?;
+        while self.measure(&held) < turn.value() {
+            held = self.risen(&held)?;
+        }
+        let reached = self.measure(&held);
+        let at_turn = self.state(&held);
+        let work = match self.setting.control {
+            crate::contact::Control::Force => at_turn.energy,
+            control => at_turn.potential(control),
+        };
+        let up = self.events.clone();
+        self.continuous(EventKind::Turn, None, Some(at_turn.clone()), Some(at_turn));
+        self.reversed(&up);
+        let totals = Totals {
+            dissipated: Some(0.0),
+            dissipated_by_area: Some(0.0),
+            dissipated_before_pull_off: 0.0,
+            work_of_loading: work,
+            work_of_unloading: Some(-work),
+            balance: None,
+        };
+        let turn = TurnReached { asked: turn, reached };
+        let warnings = self.warnings(None);
+        Ok(Cycle {
+            control: self.setting.control,
+            turn,
+            events: self.events,
+            states: self.states,
+            totals,
+            warnings,
+        })
+    }
+
+    /// The way back: what happened on the way up, the other way round.
+    fn reversed(&mut self, up: &[Event]) {
+        let last_piece = self.piece;
+        let turned = |state: &CycleState| CycleState {
+            direction: Direction::Unloading,
+            piece: 2 * last_piece + 1 - state.piece,
+            ..state.clone()
+        };
+        let back: Vec<CycleState> = self.states.iter().rev().map(turned).collect();
+        self.states.extend(back);
+        for event in up.iter().rev() {
+            let kind = match event.kind {
+                EventKind::FirstTouch => EventKind::PullOff,
+                EventKind::Touch => EventKind::Vanish,
+                EventKind::Merge => EventKind::Split,
+                other => other,
+            };
+            let (before, after) = (event.after.as_ref().map(turned), event.before.as_ref().map(turned));
+            self.events.push(Event { kind, direction: Direction::Unloading, before, after, ..event.clone() });
+        }
+        self.direction = Direction::Unloading;
+    }
+
+    /// Adds an event at which nothing is lost.
+    fn continuous(
+        &mut self,
+        kind: EventKind,
+        radius: Option<f64>,
+        before: Option<CycleState>,
+        after: Option<CycleState>,
+    ) {
+        let control_value = after.as_ref().or(before.as_ref()).map_or(f64::NAN, |state| state.control_value);
+        self.events.push(Event {
+            kind,
+            direction: self.direction,
+            control_value,
+            radius,
+            before,
+            after,
+            dissipated: Some(0.0),
+            dissipated_by_area: Some(0.0),
+            passed: Vec::new(),
+        });
+    }
+
+    /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
+    fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, CycleError> {
+        let mut delta = delta + self.lift();
+        match self.setting.turn {
+            Turn::Approach(turn) => delta = delta.min(turn),
+            Turn::Control(turn) if self.setting.control == crate::contact::Control::Displacement => {
+                delta = delta.min(turn);
+            }
+            _ => {}
+        }
+        let start = self.balance.seeded(contacts, crest, delta)?;
+        let mut passed = Vec::new();
+        let held = self
+            .balance
+            .run(start, delta, 1.0, self.setting.mobility, &mut passed)?
+            .ok_or(CycleError::Lost { control_value: delta })?;
+        self.record(&held);
+        Ok(held)
+    }
+
+    /// Follows the contacts up to the next event, which is passed.
+    fn risen(&mut self, from: &Held) -> Result<Held, CycleError> {
+        const FIRST: f64 = 0.02;
+        const LONGEST: f64 = 0.15;
+        const SHORTEST: f64 = 1e-10;
+        let lost = |held: &Held| CycleError::Lost { control_value: held.control_value };
+        let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
+        let mut length = FIRST;
+        loop {
+            self.counted(&point.held)?;
+            let step = Step::new(self.balance, &point);
+            let Some(next) = step.taken(length) else {
+                length *= 0.5;
+                if length < SHORTEST {
+                    return Err(self.stopped(&point.held));
+                }
+                continue;
+            };
+            let (_, next, crest) = self.touching(&step, &point, length, next)?;
+            // A gap that closes does so before that touch, or is looked at again after it.
+            if let Some((gap, merged)) = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach)) {
+                let turn = self.setting.turn;
+                if self.measure(&merged) < turn.value() {
+                    let after = self.state(&merged);
+                    let mut before = after.clone();
+                    split_at(&mut before.contacts, gap);
+                    self.piece += 1;
+                    self.continuous(EventKind::Merge, Some(gap), Some(before), Some(after));
+                    self.record(&merged);
+                    return Ok(merged);
+                }
+            }
+            let turn = self.setting.turn;
+            if self.measure(&next.held) >= turn.value() {
+                let mut left =
+                    |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
+                let at_start = self.measure(&point.held) - turn.value();
+                let offset = step.offset(&next);
+                let length = step.tangent().dot(&offset);
+                let (_, end) =
+                    step.located((length, &next), at_start, &mut left).ok_or_else(|| lost(&point.held))?;
+                self.record(&end.held);
+                // Reached to rounding, whatever its last digit.
+                return Ok(end.held);
+            }
+            self.record(&next.held);
+            if let Some(crest) = crest {
+                let at = self.state(&next.held);
+                self.continuous(EventKind::Touch, Some(crest.radius), Some(at.clone()), Some(at));
+                self.piece += 1;
+                let (contacts, delta) = (next.contacts().clone(), next.held.approach);
+                return self.begun(&contacts, crest.radius, delta);
+            }
+            point = next;
+            length = (1.5 * length).min(LONGEST);
+        }
+    }
+
+    /// The merged contact at the approach at which a narrow gap closes, and where, if nothing touches before; up to `before`.
+    fn closing(&self, held: &Held, before: Option<f64>) -> Option<(f64, Held)> {
+        let contacts = &held.state.contacts;
+        let gaps = contacts.gaps();
+        let (k, [lo, hi]) =
+            gaps.into_iter().enumerate().min_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))?;
+        let wave = self.balance.ground.wave;
+        if hi - lo > CLOSING * wave {
+            return None;
+        }
+        let mut merged = contacts.clone();
+        let [_, outer] = merged.rings.remove(k);
+        match k.checked_sub(1) {
+            Some(before) => merged.rings[before][1] = outer,
+            None => merged.disc = outer,
+        }
+        let width = hi - lo;
+        let range = [(lo - width).max(0.0), hi + width];
+        let least = |delta: f64, from: &Contacts| -> Option<(Held, Crest)> {
+            let held = self.balance.solve(from, delta).ok()?;
+            let around = Around::new(self.balance.ground, &held.state, delta);
+            let least = least_pressure(&around, range);
+            Some((held, least))
+        };
+        let (start, first) = least(held.approach, &merged)?;
+        if first.gap >= 0.0 {
+            return Some((first.radius, start));
+        }
+        // Outward until it presses there.
+        let (mut lo, mut f_lo) = (held.approach, first.gap);
+        let mut step = 1e-4 * wave;
+        let mut high = None;
+        for _ in 0..40 {
+            let (next, p) = least(lo + step, &merged)?;
+            if p.gap >= 0.0 {
+                high = Some((lo + step, p.gap, next, p.radius));
+                break;
+            }
+            (lo, f_lo) = (lo + step, p.gap);
+            merged = next.state.contacts;
+            step *= 1.5;
+            if step > wave || before.is_some_and(|before| lo > before) {
+                return None;
+            }
+        }
+        let (mut hi, mut f_hi, mut best, mut radius) = high?;
+        let mut side = 0;
+        for _ in 0..60 {
+            let mut delta = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+            if !(delta > lo && delta < hi) {
+                delta = 0.5 * (lo + hi);
+            }
+            if hi - lo <= 1e-15 * hi.abs().max(1e-3 * wave) {
+                break;
+            }
+            let (next, p) = least(delta, &best.state.contacts)?;
+            let moved = (delta - best.approach).abs();
+            (best, radius) = (next, p.radius);
+            if p.gap >= 0.0 {
+                (hi, f_hi) = (delta, p.gap);
+                if side == 1 {
+                    f_lo *= 0.5;
+                }
+                side = 1;
+            } else {
+                (lo, f_lo) = (delta, p.gap);
+                if side == -1 {
+                    f_hi *= 0.5;
+                }
+                side = -1;
+            }
+            if moved <= 1e-15 * wave {
+                break;
+            }
+        }
+        let touches = self.balance.least_gap(&best).is_some_and(|crest| crest.gap < 0.0);
+        (!touches && before.is_none_or(|before| best.approach <= before)).then_some((radius, best))
+    }
+}
+
+/// Divides the contact around a radius there.
+fn split_at(contacts: &mut Vec<[f64; 2]>, radius: f64) {
+    if let Some(at) = contacts.iter().position(|[lo, hi]| *lo <= radius && radius < *hi) {
+        let [lo, hi] = contacts[at];
+        contacts[at] = [radius, hi];
+        if radius > lo {
+            contacts.insert(at, [lo, radius]);
+        }
+    }
+}
+
+/// The least pressure between two radii, in the place of the gap of a crest.
+fn least_pressure(around: &Around<'_>, [lo, hi]: [f64; 2]) -> Crest {
+    let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+    let series = chebyshev::Rule::of(POINTS).series(|x| around.pressure(middle + half * x));
+    let roots = chebyshev::roots(&chebyshev::derivative(&series), 0.0);
+    let value = |x: f64| chebyshev::sum(&series, x);
+    let best = roots.into_iter().chain([-1.0, 1.0]).min_by(|a, b| value(*a).total_cmp(&value(*b)));
+    let x = best.unwrap_or(0.0);
+    Crest { radius: middle + half * x, gap: value(x) }
+}
