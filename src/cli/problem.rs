@@ -9,9 +9,10 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// The names of the subcommands, which no preset can have.
-pub(super) const SUBCOMMANDS: [&str; 12] = [
+pub(super) const SUBCOMMANDS: [&str; 13] = [
     "trace",
     "unload",
+    "cycle",
     "plot",
     "figures",
     "sweep",

@@ -98,7 +98,7 @@ mod tests {
                     row.key
                 );
             }
-            // Of the rows that mean something here, two of three starts, the stiffness and the range of action may be
+            // Of the rows that mean something here, two of three starts, the turns, the stiffness and the range of action may be
             // missing.
             let kind = preset.get("basis.kind").unwrap().to_string();
             let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
@@ -109,7 +109,7 @@ mod tests {
                 .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
                 .count();
             assert_eq!(
-                preset.values().len() + 4,
+                preset.values().len() + 7,
                 ranges(&preset) + preset.knobs().filter(fits).count() + units
             );
         }
