@@ -67,18 +67,14 @@ pub struct Mistake {
     pub what: String,
 }
 
-/// Why there are no settings.
+/// Why there are no settings. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum ConfigError {
     #[error(transparent)]
     File(#[from] FileError),
     /// Lines of it are wrong; at least one.
     #[error("{name}:{}", Listed(.mistakes))]
-    Mistakes {
-        /// The file, safe to show.
-        name: String,
-        mistakes: Vec<Mistake>,
-    },
+    Mistakes { name: String, mistakes: Vec<Mistake> },
 }
 
 /// The first mistake, and how many more there are.
@@ -114,7 +110,6 @@ pub fn path() -> Option<PathBuf> {
 }
 
 /// The settings of a file.
-/// Errors: It cannot be read, or lines of it are wrong.
 pub fn load(path: &Path) -> Result<Config, ConfigError> {
     let (text, _) = read_text(path, LARGEST)?;
     read(&show_path(path), &text)

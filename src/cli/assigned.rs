@@ -47,7 +47,6 @@ fn changed(before: &Preset, after: &Preset) -> String {
     if named.is_empty() { "nothing".to_owned() } else { named.join(", ") }
 }
 
-/// A number as it is shown.
 fn describe(preset: &Preset, key: &str) -> Option<String> {
     let row = preset.row(key)?;
     let Some(Value::Number(x)) = preset.get(key) else { return None };

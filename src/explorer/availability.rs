@@ -26,7 +26,6 @@ pub fn is_available(model: &Model, id: Id) -> bool {
     }
 }
 
-/// Why a command cannot be done now.
 pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
     let apart = model.history.current().is_some_and(Node::is_apart);
     match id {

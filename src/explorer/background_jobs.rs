@@ -7,16 +7,16 @@ use super::model::{Checking, Level, Model};
 /// Work beside the curve and the walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BackgroundJob {
-    /// The curves of so many pins of a resumed session are computed.
+    /// So many pinned curves of a resumed session are computed.
     Pins(usize),
-    /// Which states of the curve are admissible is found out.
+    /// The admissibility of the curve's states is checked.
     Check,
-    /// The inside of the walker's state is computed; it ends soon, and the next state takes its place.
+    /// The profile of the walker's state is computed; it is short and cannot be cancelled.
     Inside,
 }
 
 impl BackgroundJob {
-    /// What is under way, the longest first.
+    /// The job under way; of several, the longest.
     pub fn of(model: &Model) -> Option<Self> {
         let pins = model.pins.awaited().len();
         let is_inside_old = model
@@ -43,7 +43,7 @@ impl BackgroundJob {
     }
 }
 
-/// Gives up what is under way, if that can be.
+/// Cancels the job under way, if it can be cancelled.
 pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
     match (BackgroundJob::of(model), model.checking) {
         (Some(BackgroundJob::Pins(count)), _) => {

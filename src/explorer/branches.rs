@@ -4,18 +4,15 @@ use super::history::History;
 use super::node::Node;
 use super::prune::{children, is_repeated};
 
-/// Most branches drawn and listed, the newest of them.
+/// At most so many branches are drawn and listed: the newest.
 pub const MOST: usize = 40;
 
 /// A branch.
 #[derive(Debug, Clone)]
 pub struct Branch<'a> {
-    /// The number of its last node.
     pub end: usize,
-    /// Whether the walker stands on it.
     pub is_here: bool,
-    /// Its states: from the one in which it parts from the walk of now, which may be missing where it begins anew, to its
-    /// end. Those of the walk of now are the whole of it.
+    /// Its states from the fork to its end; of the current branch, all.
     pub nodes: Vec<&'a Node>,
 }
 

@@ -13,80 +13,55 @@ use super::view::{Overlay, Panel, View};
 use pulloff_engine::preset::Key;
 use std::path::PathBuf;
 
-/// A command's identity.
+/// A command's identity; its row in the table says what it does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
     Step,
-    /// Run until something happens, or pause.
     Run,
-    /// Run to the next limit point of the control.
     NextLimit,
-    /// Run to the previous limit point of the control.
     PreviousLimit,
-    /// Let the edge run at constant control.
     Jump,
-    /// The state of a contact radius.
     MoveTo,
     Reverse,
     Halve,
     Double,
-    /// The step length as a number.
     StepLength,
-    /// Back to the node before.
     Undo,
-    /// Back to where the last command began.
     UndoCommand,
     Redo,
-    /// The branches of the walk, to go to.
     Branches,
     Restart,
     Control,
-    /// The value of the selected parameter, a little less.
     Less,
     More,
     MuchLess,
     MuchMore,
-    /// Other values for some keys, as one change.
     Assign,
-    /// Type the value of the selected parameter, or go to the selected event.
     Edit,
-    /// The walker to an event by its number.
     SelectEvent,
-    /// The parameter, event or line above.
     Up,
     Down,
-    /// The panel to the left, or the chart moved.
     Left,
-    /// The panel to the right, or the chart moved.
     Right,
-    /// The panel before.
     PreviousPanel,
     NextPanel,
     NextView,
-    /// The view before.
     PreviousView,
     ZoomIn,
     ZoomOut,
     Fit,
     CrossHair,
-    /// Dimensionless or raw axes.
     Axes,
-    /// Events on the curve, or walked.
     Events,
-    /// The line of the loading device through the walker.
     Device,
     Overlays,
-    /// Keep the curve to compare the next ones with.
     Pin,
-    /// The pinned curves, to take away.
     Pins,
     Open,
     Save,
     SaveAs,
-    /// Write the curve, the walk, the events or a script to a file.
     Export,
     Copy,
-    /// Take the mouse, or leave it to the terminal.
     Mouse,
     CommandLine,
     Help,
@@ -98,13 +73,9 @@ pub enum Id {
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
     pub id: Id,
-    /// Its name in scripts and key bindings.
     pub name: &'static str,
-    /// The section of the help it stands in.
     pub section: &'static str,
-    /// One line that says what it does.
     pub help: &'static str,
-    /// A word or two for the footer.
     pub short: &'static str,
     pub argument: Option<&'static str>,
     /// What must be there before it can be done.
@@ -116,13 +87,12 @@ pub struct Row {
 pub enum Needs {
     Nothing,
     Walker,
-    /// A state of the walk, or no curve on its way.
+    /// A state of the walk, or no curve being computed.
     WalkerOrNoCurve,
     /// A state in which the edge can run.
     Jump,
     /// A state or a value to go back to.
     Undo,
-    /// A state to go forward to.
     Redo,
     /// A second branch of the walk.
     Branches,
@@ -159,7 +129,6 @@ pub enum Command {
     SelectEvent(usize),
     /// Other values for some keys, as one change; as on a command line a bare number is SI in an SI preset.
     Assign(Vec<Assignment>),
-    /// Another value for a key, as typed.
     Set {
         key: Key,
         text: String,
@@ -173,7 +142,6 @@ pub enum Command {
     TakeBack,
     /// List the profiles in this folder; without one, in that of the preset's own profile.
     Browse(Option<PathBuf>),
-    /// Select a panel, and a line of it.
     Pick {
         panel: Panel,
         line: Option<usize>,
@@ -189,9 +157,9 @@ pub enum Command {
     },
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
-    /// Stand on the last state walked with these δ, P and s, reduced, bit for bit.
+    /// Go to the last state walked with exactly these δ, P and s (reduced).
     GoToState([f64; 3]),
-    /// Stand on this node of the walk, by its number in this numbering.
+    /// Go to this node of the walk.
     GoTo {
         node: usize,
         /// [`History::numbering`](super::History::numbering) when it was asked for.
@@ -199,12 +167,10 @@ pub enum Command {
     },
     /// Take away the pinned curve of this number, or all.
     Unpin(Option<usize>),
-    /// Open this preset, by name or path.
     Open(String),
     /// Open this preset with other values for some keys.
     OpenWith {
         name: String,
-        /// The values, as on a command line.
         assignments: Vec<Assignment>,
     },
     /// Delete the person's own preset of this name, for good.

@@ -50,18 +50,17 @@ pub struct ProblemCurve {
     pub case: Case,
     /// The curve between start and end, reduced. It holds the limit points of `SHOWN`.
     pub curve: Curve,
-    /// The theory over the same radii.
     pub theory: Theory,
     pub groups: Groups,
     /// Decimal digits the basis can be trusted for at the start.
     pub digits: f64,
-    /// How force and area answer to the approach at the start, reduced; `None` for an empty curve.
+    /// dP/dδ and dA/dδ at the start, reduced; `None` for an empty curve.
     pub stiffness: Option<Stiffness>,
     /// `P_c`; 0 without adhesion.
     pub critical_force: f64,
     /// The admissibility of the start; `None` for an empty curve.
     pub start: Option<Admissibility>,
-    /// Where the curve is not admissible, from the start inward; `None` until that has been looked at.
+    /// Where the curve is not admissible, from the start inward; `None` until checked.
     pub inadmissible: Option<Vec<Inadmissible>>,
     pub warnings: Vec<String>,
     pub notes: Vec<String>,
@@ -72,12 +71,10 @@ pub struct ProblemCurve {
 pub struct CurveData {
     /// What belongs to the problem, shared with the curves of the same problem under other controls.
     pub base: Arc<ProblemCurve>,
-    /// The problem made ready, with the control.
     pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
     pub setting: Arc<Setting>,
-    /// The curve in the user's units, with its stability under the chosen control: that of the problem, and before it
-    /// the part from which a path begins whose start is unstable.
+    /// The curve in the user's units, with the part before it on which the path of an unstable start begins.
     pub points: Vec<CurvePoint>,
     /// The limit points under the chosen control, reduced, from the start inward.
     pub limits: Vec<Limit>,
@@ -89,9 +86,7 @@ pub struct CurveData {
 }
 
 impl ProblemCurve {
-    /// Computes the curve of `preset`; `go_on` is told how far it is and asked between the blocks of a basis and
-    /// between points.
-    /// Errors: [`CaseError`], [`CaseError::Cancelled`] among them.
+    /// Computes the curve of `preset`. `go_on` hears of the progress and says whether to go on.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &mut |share| go_on(Progress::Basis(share)))?;
         let mut asked = 0;
@@ -144,8 +139,7 @@ impl ProblemCurve {
 }
 
 impl CurveData {
-    /// Computes `preset` whole; `go_on` is told how far it is and asked between points.
-    /// Errors: [`CaseError`], [`CaseError::Cancelled`] among them.
+    /// Computes the curve of `preset` and what belongs to its control.
     pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
         Self::under(Arc::new(ProblemCurve::compute(preset, &mut go_on)?), preset, go_on)
     }
@@ -153,7 +147,6 @@ impl CurveData {
     /// The curve `base` under the control of `preset`, whose problem must be the same: no equilibrium is computed again.
     ///
     /// `go_on` is asked between events.
-    /// Errors: [`CaseError::Cancelled`] when `go_on` said no.
     pub fn under(
         base: Arc<ProblemCurve>,
         preset: &Preset,
@@ -190,7 +183,7 @@ impl CurveData {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };
-        // Where the path of an unstable start begins further out, the curve drawn reaches to there.
+        // If the path of an unstable start begins further out, the curve is drawn up to there.
         let start = unloading.as_ref().map_or(0.0, |path| path.start.contact_radius);
         let outward = if start > curve.outermost() * (1.0 + 1e-12) {
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
@@ -215,14 +208,13 @@ impl CurveData {
         self.limits.iter().map(shown).collect()
     }
 
-    /// Whether it is known which of its states, and of its path's, are admissible.
+    /// Whether the admissibility of its states and of its path has been checked.
     pub fn is_checked(&self) -> bool {
         let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());
         self.base.inadmissible.is_some() && path
     }
 
-    /// The same curve with its inadmissible states and those of its path; `go_on` is asked before each state, `None`
-    /// when it said no.
+    /// The same curve with the inadmissible states of it and of its path; `None` if `go_on` said no.
     #[must_use]
     pub fn checked(&self, go_on: &mut dyn FnMut() -> bool) -> Option<Self> {
         let mut base = Arc::clone(&self.base);

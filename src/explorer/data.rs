@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The endings of files that may hold a profile.
 pub const ENDINGS: [&str; 3] = ["csv", "txt", "dat"];
-/// So many entries are looked at.
+/// At most so many entries of a folder are read.
 const MOST: usize = 10_000;
 
 /// What there is to choose from in a folder.
@@ -14,7 +14,7 @@ const MOST: usize = 10_000;
 pub struct Folder {
     /// Its path, absolute.
     pub path: PathBuf,
-    /// Whether names are relative to this folder.
+    /// Whether file names in the preset are relative to this folder.
     pub is_own: bool,
     /// The folders in it by their names, sorted.
     pub folders: Vec<String>,
@@ -50,7 +50,7 @@ pub fn list(folder: Option<&Path>, own: Option<&Path>) -> Result<Folder, String>
         if name.starts_with('.') || name.chars().any(is_unsafe) {
             continue;
         }
-        // What a link leads to, and not the link.
+        // Follows links.
         let Ok(metadata) = fs::metadata(entry.path()) else { continue };
         if metadata.is_dir() {
             folders.push(name);

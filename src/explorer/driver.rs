@@ -95,10 +95,9 @@ fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
     }
 }
 
-/// A curve that has been computed this long is finished although a newer one waits, so that a held key
-/// shows curves and not only the last one.
+/// A curve computed this long is finished though a newer one waits, so that a held key shows curves.
 const PATIENCE: Duration = Duration::from_millis(50);
-/// States of a run are sent together at most this often: a frame each.
+/// The states of a run are sent in batches, one per frame.
 const CHUNK: Duration = Duration::from_millis(30);
 
 /// Runs effects on threads of their own; replies go to one function.
@@ -109,7 +108,7 @@ pub struct Workers {
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
-    /// How often the curves of pins were given up: those asked for before are not computed.
+    /// Counts cancellations: pins asked for before the last one are not computed.
     pins_given_up: Arc<AtomicU64>,
     stopped: Arc<AtomicU64>,
     given_up: Arc<AtomicU64>,
@@ -122,7 +121,7 @@ enum Task {
     Check(Check),
 }
 
-/// One place for the newest wish.
+/// Holds the newest request only.
 #[derive(Debug)]
 struct Slot<T> {
     wish: Mutex<Option<T>>,
@@ -181,7 +180,7 @@ impl Workers {
                     continue;
                 }
                 let answer = pinned(number, &preset, is_wanted);
-                // Given up meanwhile, it would answer for another pin of that number.
+                // If cancelled meanwhile, another pin may have this number now.
                 if is_wanted() {
                     send(answer);
                 }
@@ -202,7 +201,7 @@ impl Workers {
 
     /// Hands an effect to its lane.
     pub fn submit(&self, effect: Effect) {
-        // A lane that has ended took the process with it: there is nobody to tell.
+        // A lane ends only with the process, so a send cannot fail.
         match effect {
             Effect::Curve(wish) => self.curve.put(Task::Curve(wish)),
             Effect::Check(check) => self.curve.put(Task::Check(check)),
@@ -229,7 +228,7 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
                 wish
             }
             Task::Check(check) => {
-                // Without patience: a knob that is turned further is not slowed.
+                // Ends at once when another curve is wanted.
                 let is_wanted =
                     || !slot.waiting.load(Ordering::Acquire) && given_up.load(Ordering::Acquire) < check.id;
                 if let Some(answer) = check.run(is_wanted) {

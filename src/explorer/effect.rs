@@ -9,14 +9,14 @@ use crate::mend::Reason;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
 
-/// What the model wants done.
+/// Work that the model asks for.
 #[derive(Debug, Clone)]
 pub enum Effect {
     /// Compute the curve of a preset; an older one still waiting is forgotten.
     Curve(Box<Wish>),
     /// Give up the curves and checks up to this number.
     StopCurve(u64),
-    /// Find which states of a curve are admissible; given up as soon as another curve is wanted.
+    /// Check which states of a curve are admissible; dropped when another curve is wanted.
     Check(Check),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
@@ -25,7 +25,7 @@ pub enum Effect {
     StopWalk(u64),
     /// Compute the curve of a pin of a resumed session, by its number.
     Pin(usize, Box<Preset>),
-    /// Give up the curves of pins that are still on their way.
+    /// Cancel the curves of pins that are still to be computed.
     StopPins,
     File(Box<Job>),
 }
@@ -49,19 +49,16 @@ pub struct Check {
 /// What came of it.
 #[derive(Debug, Clone)]
 pub enum Reply {
-    /// A curve, or why there is none.
     Curve {
         id: u64,
         result: Result<Arc<CurveData>, Reason>,
     },
-    /// How far a curve is that takes long.
     Progress {
         id: u64,
         progress: Progress,
     },
     /// The same curve with what is not admissible on it.
     Checked {
-        /// The number it was asked for under.
         id: u64,
         curve: Arc<CurveData>,
     },
@@ -74,7 +71,7 @@ pub enum Reply {
     },
     /// The curve of a pin, by its number, or `None` where there is none any more.
     Pinned(usize, Option<Arc<CurveData>>),
-    /// Something about the session that a person should know.
+    /// A message about the session for the person.
     Notice(String),
     File(Box<Done>),
 }

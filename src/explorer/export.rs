@@ -5,12 +5,9 @@ use std::path::Path;
 /// What can be exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportKind {
-    /// The points of the background curve.
     Curve,
     Walk,
-    /// The instabilities, of the source shown.
     Events,
-    /// What was done, as a script.
     Script,
 }
 

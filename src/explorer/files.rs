@@ -89,7 +89,7 @@ pub fn run(store: &Store, job: Job) -> Done {
     }
 }
 
-/// Saves under a name, the data of a profile beside it where they are to be.
+/// Saves under a name, with the data of a profile if wanted.
 fn save_as(
     store: &Store,
     name: String,
@@ -114,7 +114,6 @@ fn save_as(
     }
 }
 
-/// Writes a document.
 fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done {
     let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let text = match content {
@@ -167,7 +166,7 @@ struct Walked<'a, R> {
     events: &'a [EventReport],
 }
 
-/// A session as a script: the preset it began with, as the file of that name is now with what was otherwise, and its
+/// A session as a script: opens the preset it began with, with the values that differ from its file, and follows its
 /// lines.
 fn script_text(store: &Store, start: &Start, lines: &[String]) -> Result<String, String> {
     let name = match &start.source {

@@ -4,7 +4,7 @@ use super::node::Node;
 use super::prune;
 use std::sync::Arc;
 
-/// Nodes that share one piece of memory: a snapshot of the tree shares all pieces but the last with the tree itself.
+/// Nodes per chunk. A snapshot of the tree shares all chunks but the last with the tree itself.
 const CHUNK: usize = 256;
 
 /// A node with its place in the tree.
@@ -30,13 +30,12 @@ pub struct History {
     revision: u64,
     /// How often nodes were forgotten and the others numbered anew.
     numbering: u64,
-    /// Nodes are looked through for what may be forgotten when there are so many.
+    /// The tree is pruned when it has so many nodes.
     prune_at: usize,
 }
 
 impl History {
-    /// The tree of these nodes, each with the child last gone to, and the walker on `cursor`; `None` where they make no
-    /// tree.
+    /// The tree of these nodes, each with the child last visited; `None` if they form no tree.
     pub fn of(nodes: Vec<(Node, Option<usize>)>, cursor: Option<usize>) -> Option<Self> {
         let count = nodes.len();
         let parents: Vec<Option<usize>> = nodes.iter().map(|(node, _)| node.parent).collect();
@@ -106,12 +105,12 @@ impl History {
         Self { revision: self.revision, ..Self::default() }
     }
 
-    /// Another number whenever anything in it changes.
+    /// Changes whenever anything in the tree changes.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Another number whenever the nodes are numbered anew, since older ones were forgotten.
+    /// Changes whenever nodes were pruned and the others renumbered.
     pub fn numbering(&self) -> u64 {
         self.numbering
     }
@@ -168,7 +167,7 @@ impl History {
         let nodes: Vec<&Node> = self.nodes().collect();
         let stays = prune::staying(&nodes, self.cursor);
         let mut tree = Self { revision: self.revision + 1, numbering: self.numbering + 1, ..Self::default() };
-        // Where each node went: itself, or the one before it that stays.
+        // The new number of each node, or of the last one before it that stays.
         let mut place: Vec<usize> = Vec::with_capacity(nodes.len());
         for (at, node) in nodes.iter().enumerate() {
             let parent = node.parent.map(|parent| place[parent]);
@@ -181,7 +180,7 @@ impl History {
             }
         }
         for at in 0..nodes.len() {
-            // Through those forgotten, which have one child each, to the next that stays.
+            // Skips the pruned nodes, which have one child each.
             let mut child = self.forward(at).filter(|_| stays[at]);
             while let Some(gone) = child.filter(|child| !stays[*child]) {
                 child = self.forward(gone);
@@ -191,7 +190,7 @@ impl History {
             }
         }
         tree.cursor = self.cursor.map(|cursor| place[cursor]);
-        // Where little could be forgotten it is not tried at every step.
+        // Not at every step where little could be pruned.
         tree.prune_at = tree.len() + tree.len() / 4;
         *self = tree;
     }

@@ -20,7 +20,6 @@ pub enum Content {
     Curve(Arc<CurveData>),
     /// The nodes walked, from where the walk began to the walker, and the curve.
     Walk(Arc<CurveData>, Vec<Node>),
-    /// The events shown, and the curve.
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
     Script(Box<Start>, Vec<String>),
@@ -45,17 +44,14 @@ pub enum Job {
     Names,
     Open {
         name: String,
-        /// Other values for some of its keys.
         assignments: Vec<Assignment>,
     },
-    /// Delete a preset of the person's own.
     Delete(String),
     /// Give some keys other values, that of a file among them.
     Assign {
         preset: Box<Preset>,
         assignments: Vec<Assignment>,
     },
-    /// List the profiles of a folder.
     Browse {
         /// The folder; without one, the profile's own.
         folder: Option<PathBuf>,
@@ -67,7 +63,6 @@ pub enum Job {
         folder: Option<PathBuf>,
         name: String,
     },
-    /// Save back to the file it came from.
     Save {
         source: Source,
         preset: Box<Preset>,
@@ -85,14 +80,11 @@ pub enum Job {
     Write {
         page: Page,
         path: String,
-        /// Whether a file there may be replaced.
         replace: bool,
     },
     Export {
-        /// Which, and what is in it.
         content: Content,
         path: String,
-        /// Whether a file there may be replaced.
         replace: bool,
     },
 }
@@ -118,9 +110,7 @@ pub enum Done {
     /// A preset of this name exists: not saved; whether its data were to be copied.
     NameTaken(String, bool),
     Exported(String),
-    /// A file of this name exists: not written.
     FileExists(ExportKind, String),
-    /// The same of this page, at this path.
     PageExists(Page, String),
     Failed(Reason),
 }

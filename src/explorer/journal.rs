@@ -27,10 +27,10 @@ pub struct Journal {
     bytes: usize,
     start: Option<Box<Start>>,
     replay: Option<Box<Replay>>,
-    /// The steps of the last line, where more of them would be the same walk.
+    /// The steps of the last line, if further steps can be added to it.
     steps: Option<usize>,
     walking: Option<Walking>,
-    /// Why the lines do not lead here any more.
+    /// Why the lines no longer lead to the current state.
     broken: Option<String>,
 }
 
@@ -38,7 +38,6 @@ pub struct Journal {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
     pub source: Source,
-    /// The preset of the first state.
     pub preset: Preset,
 }
 
@@ -46,7 +45,6 @@ pub struct Start {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
     pub preset: Preset,
-    /// Whether steps shrink the contact.
     pub inward: bool,
     pub length: f64,
 }
@@ -66,11 +64,8 @@ struct Walking {
 pub struct Kept {
     pub lines: Arc<Vec<String>>,
     pub start: Option<Start>,
-    /// What a replay of the lines has at their end.
     pub replay: Option<Replay>,
-    /// The steps of the last line, where more of them would be the same walk.
     pub steps: Option<usize>,
-    /// Why the lines do not lead here any more.
     pub broken: Option<String>,
 }
 
@@ -109,31 +104,28 @@ impl Journal {
         journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
     }
 
-    /// The first state is there.
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
         let replay = Replay { preset: preset.clone(), inward: true, length: FIRST_LENGTH };
         let (start, replay) = (Some(Box::new(Start { source, preset })), Some(Box::new(replay)));
         *self = Self { start, replay, ..Self::default() };
     }
 
-    /// A walk was asked for.
     pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
         self.walking = Some(Walking { action, curve, inward, length, made: 0 });
     }
 
-    /// It made so many states.
     pub(super) fn made(&mut self, states: usize) {
         if let Some(walking) = &mut self.walking {
             walking.made += states;
         }
     }
 
-    /// It is over; nobody waits for what it might still make.
+    /// The walk is abandoned: its further states are ignored.
     pub(super) fn abandoned(&mut self) {
         self.ended(&Outcome::Paused, false);
     }
 
-    /// It is over; `is_stale` where it leaves the state marked as not solved.
+    /// The walk is over; `is_stale` if it leaves the state marked as not solved.
     pub(super) fn ended(&mut self, outcome: &Outcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
         let preset = &walking.curve.setting.preset;
@@ -179,7 +171,7 @@ impl Journal {
         }
     }
 
-    /// The walker stands on `node` after an undo, a redo or a change of branch, with the values of its state.
+    /// An undo, redo or change of branch led to `node` and its values.
     pub(super) fn travelled(&mut self, command: &Command, node: Option<&Node>) {
         self.write(command);
         let (Some(replay), Some(node)) = (&mut self.replay, node) else { return };
@@ -197,7 +189,7 @@ impl Journal {
         }
     }
 
-    /// Sets what a replay has otherwise: the values, and the way and length of steps.
+    /// Writes what a replay needs set before the next line: values, direction, step length.
     fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
         let Some(mut replay) = self.replay.take() else { return };
         if replay.preset != *preset {

@@ -39,21 +39,19 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
     }
 }
 
-/// The whole of the first view.
 pub(super) fn fit(model: &mut Model) {
     model.windows[model.view as usize] = Window::WHOLE;
 }
 
-/// The cross-hair on, in the middle, or off.
 pub(super) fn cross_hair(model: &mut Model) {
     model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };
     if model.cross.is_some() {
-        // There the arrows move it.
+        // In this panel the arrow keys move it.
         model.panel = Panel::Charts;
     }
 }
 
-/// An arrow in Charts: the cross-hair moves, and takes the window along at its edge; without it the window moves.
+/// An arrow key in Charts moves the cross-hair, or without one the window.
 pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     let window = model.window(model.view);
     let Some((x, y)) = model.cross else {
@@ -66,7 +64,7 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     model.cross = Some((x.clamp(0.0, 1.0), y.clamp(0.0, 1.0)));
 }
 
-/// Draws an overlay or no longer; one that does not exist here is said to be missing.
+/// Toggles an overlay, and says so if this problem has none.
 pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     model.overlays.toggle(overlay);
     let missing = model.curve.as_ref().is_some_and(|curve| curve.base.theory.envelope.is_none());
@@ -75,7 +73,6 @@ pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     }
 }
 
-/// Pins the curve on the screen.
 pub(super) fn pin(model: &mut Model) {
     let Some(curve) = model.curve.clone() else { return };
     match model.pins.add(&curve) {
@@ -89,14 +86,13 @@ pub(super) fn pin(model: &mut Model) {
     }
 }
 
-/// Takes away one pinned curve or all.
 pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
     if !model.pins.remove(number) {
         model.tell(Level::Error, "no curve is pinned under that number");
     }
 }
 
-/// The views and what belongs to them go on in another session; so do the pinned curves.
+/// Carries views, overlays and pins over to another session.
 pub(super) fn carry_on(from: &Model, to: &mut Model) {
     (to.axes, to.overlays, to.view, to.views) = (from.axes, from.overlays, from.view, from.views);
     (to.panel, to.events) = (from.panel, from.events);
@@ -109,7 +105,7 @@ pub fn make_room(model: &mut Model, views: usize) -> Vec<Effect> {
     want_profile(model).into_iter().collect()
 }
 
-/// Asks for the inside of the walker's state where a view shows it and it is not on its way.
+/// Asks for the profile of the walker's state if a view shows it and it was not asked for yet.
 pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
     let wanted = model.shown_views().into_iter().any(View::is_state);
     let node = model.walker().filter(|node| wanted && !node.is_apart());
@@ -133,7 +129,7 @@ pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
     Some(Effect::Profile(ask))
 }
 
-/// The inside of a state has come; a run shows what it passes, so it need not be the newest that was asked for.
+/// Takes a profile, even if a newer one was asked for: a run shows the states it passes.
 pub(super) fn profile_came(model: &mut Model, profile: Arc<Inside>) {
     let newer = model.profile.as_ref().is_none_or(|shown| shown.id < profile.id);
     if model.profile_wanted.is_some() && newer {

@@ -39,17 +39,13 @@ impl CurveError {
 /// What a job on files leaves for the person to choose or to answer.
 #[derive(Debug, Clone)]
 pub enum Question {
-    /// Which of these presets to open.
     Preset(Box<Listing>),
-    /// Which profile of this folder to read.
     Profile(Box<Folder>),
-    /// Save although somebody else changed the file.
     SaveAnyway,
     /// Replace the preset of this name; whether with the data of its profile.
     ReplacePreset(String, bool),
     /// Replace the file of this path by this document.
     ReplaceFile(super::export::ExportKind, String),
-    /// Replace the file by this page; its path.
     ReplacePage(super::export::Page, String),
 }
 
@@ -62,12 +58,12 @@ pub struct Walking {
     pub wanted: Option<usize>,
 }
 
-/// What became of the question which states of the curve are admissible.
+/// The admissibility check of the curve on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Checking {
     /// It was asked under this number.
     Asked(u64),
-    /// The person did not want to wait: it is not asked again on this curve.
+    /// The person cancelled it: it is not asked for again on this curve.
     GivenUp,
 }
 
@@ -77,7 +73,7 @@ pub enum Level {
     Info,
     /// Something could not be done as it was asked for.
     Error,
-    /// Something failed that other words do not mend: the computation, or the system.
+    /// The computation or the system failed: no other input helps.
     Failure,
 }
 
@@ -98,25 +94,22 @@ impl Level {
 pub struct Model {
     /// Which session of the program it is: another after a preset was opened.
     pub session: u64,
-    /// The preset as it is now.
     pub preset: Preset,
     /// The preset as loaded or last saved: what differs is unsaved.
     pub saved: Preset,
-    /// What was before the value that is being typed, where such values are tried.
+    /// The state before the value that is being typed and tried.
     pub untried: Option<Box<Untried>>,
-    /// Where it came from or went to.
     pub source: Source,
-    /// How its file was when last seen.
     pub fingerprint: Option<Fingerprint>,
     /// The curve on the screen; it can be older than the preset while a new one is computed.
     pub curve: Option<Arc<CurveData>>,
-    /// That the preset as it is now has no curve, and why, in words.
+    /// Why the preset as it is has no curve.
     pub curve_error: Option<CurveError>,
     /// The number of the newest curve asked for.
     pub curve_wanted: u64,
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
-    /// How far the curve is that is being computed, once that takes long.
+    /// Progress of the curve being computed, once that takes long.
     pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<Checking>,
@@ -125,24 +118,20 @@ pub struct Model {
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
     pub device: Option<bool>,
     pub history: History,
-    /// What was done, to do it again.
     pub journal: Journal,
-    /// Whether steps shrink the contact.
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
-    /// That the first curve is the one on which the walk of a resumed session has been tried already.
+    /// Whether the walk of a resumed session has been tried on its first curve already.
     pub is_tried: bool,
-    /// The walk request that is running.
     pub walking: Option<Walking>,
-    /// What was asked of the walk meanwhile, in order.
+    /// Commands that wait for the walk or the curve, in order.
     pub queue: VecDeque<Command>,
     pub panel: Panel,
     pub parameter: usize,
     pub event: usize,
     /// The view shown where only one fits, and the first where more do.
     pub view: View,
-    /// So many views fit on the screen.
     pub views: usize,
     /// The part of each view that is shown, in the order of [`View::ALL`].
     pub windows: [Window; View::ALL.len()],
@@ -153,14 +142,12 @@ pub struct Model {
     /// The theory drawn over the curve.
     pub overlays: Overlays,
     pub pins: Pins,
-    /// The inside of the walker's state, for the views that show it; it can be that of the state before.
+    /// The profile of the walker's state, or still of the state before.
     pub profile: Option<Arc<Inside>>,
     pub profile_wanted: Option<Box<Ask>>,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
-    /// The names of the presets, once asked for.
     pub preset_names: Vec<String>,
-    /// What the person is to be asked.
     pub question: Option<Question>,
     pub next_request: u64,
     pub quit: bool,
@@ -236,12 +223,10 @@ impl Model {
         self.views = before.views;
     }
 
-    /// Sets the message of the status line.
     pub(super) fn tell(&mut self, level: Level, text: impl Into<String>) {
         self.message = Some((level, text.into()));
     }
 
-    /// A new request number.
     pub(super) fn number(&mut self) -> u64 {
         let number = self.next_request;
         self.next_request += 1;
@@ -292,10 +277,9 @@ impl Model {
         self.curve_shown < self.curve_wanted
     }
 
-    /// The parameters with a knob, in the table's order, and their values, of which none follows from others; behind
-    /// them the dimensionless groups that can be set.
+    /// The parameters that can be changed with their values, then the dimensionless groups that can be set.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
-        // The title behind the numbers, which are what is turned.
+        // The title comes last: the numbers are what people change.
         let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
         numbers
             .into_iter()

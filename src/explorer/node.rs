@@ -45,7 +45,7 @@ pub struct Node {
     /// The state, reduced.
     pub state: State,
     pub step: usize,
-    /// How force and area answer to the approach here, reduced.
+    /// dP/dδ and dA/dδ here, reduced.
     pub stiffness: Stiffness,
     /// At a limit point of the control: where the jump leads, if that is known.
     pub ahead: Option<Ahead>,
@@ -62,7 +62,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// The slopes that tell the stability.
+    /// The slopes that decide the stability.
     pub fn stability(&self) -> Stability {
         self.setting.scales.stability(&self.point)
     }
@@ -72,8 +72,8 @@ impl Node {
         matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
     }
 
-    /// Of a state that cannot be, the reduced r at fault: of the crest that would touch, with its number where it has one,
-    /// or `None` with it where the disc would have to pull.
+    /// Of an inadmissible state, the reduced r at fault, with the crest that would touch there (and its number), or
+    /// `None` where the disc would have to pull.
     pub fn fault_radius(&self) -> Option<(f64, Option<Option<u64>>)> {
         let found = self.admissibility;
         if found.holds || self.is_apart() {

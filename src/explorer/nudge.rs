@@ -67,8 +67,7 @@ pub fn nudge(
     Ok(changed)
 }
 
-/// The stiffnesses the knob turns through, over the contact's own: beyond them the limit points of the device differ
-/// from those of displacement or force by a few thousandths at most.
+/// Stiffnesses over the contact's own; beyond them the device is displacement or force control to a few thousandths.
 const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// `control` made stiffer or softer: force, a spring of stiffness k by its logarithm, displacement.
@@ -91,8 +90,7 @@ fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result
     })
 }
 
-/// The control after that of `preset`: displacement, force, a spring, and round again; the spring has the stiffness
-/// `last`, if there was one.
+/// The control after that of `preset`: displacement, force, a spring (of stiffness `last`), and round again.
 pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
     // As stiff as the paper's contacts themselves in reduced units: all three kinds of limit points differ.
     const STIFFNESS: f64 = 0.15;

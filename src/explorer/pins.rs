@@ -41,7 +41,7 @@ impl Pin {
 #[derive(Debug, Clone, Default)]
 pub struct Pins {
     shown: Vec<Pin>,
-    /// Those of a resumed session whose curves are on their way, with their numbers.
+    /// Pins of a resumed session whose curves are still to be computed.
     awaited: Vec<(usize, Preset)>,
 }
 
@@ -83,7 +83,6 @@ impl Pins {
     }
 
     /// Pins `curve` under the smallest free number, which is given back.
-    /// Errors: Why not, in words: it is pinned already, or all numbers are taken.
     pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
         let same = |pin: &&Pin| {
             let title = curve.setting.preset.title.clone();
@@ -113,7 +112,6 @@ impl Pins {
         self.numbers().count() < before
     }
 
-    /// The numbers that are taken.
     fn numbers(&self) -> impl Iterator<Item = usize> {
         self.shown.iter().map(|pin| pin.number).chain(self.awaited.iter().map(|(number, _)| *number))
     }
@@ -150,12 +148,11 @@ pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, betwee
 
 /// The values of `pinned` that `now` has not, as labels and values; the first few of them.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
-    // An end that is given up differs only in what the other has.
+    // A value that only the other preset has is not named.
     named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
 }
 
-/// The values of `now` that some of the pins have not, as labels and values: its own name among them; `None` where it
-/// has no such value.
+/// The name of `now` among the pins: its values that some of them have not; `None` without any.
 pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
     let keys: HashSet<String> = pins
         .iter()

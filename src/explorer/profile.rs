@@ -23,7 +23,6 @@ pub struct Ask {
     pub id: u64,
     /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
-    /// The state, reduced.
     pub state: State,
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
@@ -46,9 +45,8 @@ impl Ask {
 /// The inside of one state, reduced.
 #[derive(Debug, Clone)]
 pub struct Inside {
-    /// The number it was asked for under.
     pub id: u64,
-    /// The way to the user's units.
+    /// Factors to the user's units.
     pub units: Units,
     /// λ, where the gap has one wave alone.
     pub wave: Option<f64>,
@@ -58,7 +56,7 @@ pub struct Inside {
     pub exact: Vec<(f64, f64)>,
     /// The potential over the contact radius; `None` off the curve.
     pub landscape: Option<Landscape>,
-    /// What keeps the edge from running the way it is walked.
+    /// The energy barrier in the walking direction.
     pub barrier: Option<f64>,
 }
 

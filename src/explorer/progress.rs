@@ -18,7 +18,7 @@ pub enum Progress {
 impl Progress {
     /// In words, short.
     pub fn text(self) -> String {
-        // A part is whole when the next has begun.
+        // Never 100 %: a part is complete only when the next has begun.
         match self {
             Self::Basis(share) => format!("basis {:.0} %", (100.0 * share).floor().clamp(0.0, 99.0)),
             Self::Curve(done) => format!("point {done}"),
@@ -35,9 +35,9 @@ pub struct Pace {
     told: Option<(Instant, Progress)>,
 }
 
-/// Shorter computations tell nothing.
+/// Shorter computations report nothing.
 const SHORT: Duration = Duration::from_millis(100);
-/// Between two tellings.
+/// Least time between two reports.
 const BETWEEN: Duration = Duration::from_millis(250);
 
 impl Pace {

@@ -6,11 +6,11 @@
 
 use super::node::{Node, NodeKind};
 
-/// The most states kept without a reason.
+/// More states than this are pruned.
 pub const MOST: usize = 5_000;
-/// So many are left where there are more.
+/// Pruning leaves so many.
 const LEFT: usize = 3_750;
-/// The newest are never forgotten.
+/// So many of the newest are never pruned.
 const NEWEST: usize = 2_000;
 
 /// Which of `nodes` stay, the walker standing on `cursor`.
@@ -30,7 +30,7 @@ pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
         if surplus == 0 || plain.is_empty() {
             break;
         }
-        // Of a single one that is left too, the first goes.
+        // If one is left over, the first goes.
         for at in plain.into_iter().step_by(2).take(surplus) {
             stays[at] = false;
             surplus -= 1;
@@ -46,7 +46,6 @@ pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
     stays
 }
 
-/// The children of every node.
 pub(super) fn children(nodes: &[&Node]) -> Vec<Vec<usize>> {
     let mut children = vec![Vec::new(); nodes.len()];
     for (at, node) in nodes.iter().enumerate() {
@@ -57,8 +56,7 @@ pub(super) fn children(nodes: &[&Node]) -> Vec<Vec<usize>> {
     children
 }
 
-/// Whether an end says nothing that a later sibling does not say: a knob that was turned further, or the same state
-/// made again after undo.
+/// Whether a later sibling replaces this end: the same change made further, or the same state made again after undo.
 pub(super) fn is_repeated(nodes: &[&Node], children: &[Vec<usize>], at: usize) -> bool {
     let is_change = |kind: &NodeKind| matches!(kind, NodeKind::Solved | NodeKind::Stale(_));
     let Some(siblings) = nodes[at].parent.map(|parent| &children[parent]) else { return false };

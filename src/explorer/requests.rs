@@ -15,14 +15,13 @@ pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = model.number();
     model.curve_wanted = id;
     (model.progress, model.curve_error) = (None, None);
-    // The curve does not know what is controlled: under another control it need not be swept again.
+    // The curve does not depend on the control: under another one it is reused.
     let known = model.curve.as_ref().map(|curve| &curve.base).filter(|base| base.is_of(&model.preset));
     let base = known.map(Arc::clone);
     Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), base }))
 }
 
-/// Asks which states of the curve on the screen are admissible, once no newer curve is on its way. A newer curve drops
-/// the question; if it fails or is given up, the question is asked again.
+/// Asks for the admissibility of the curve on the screen, once no newer curve is being computed.
 pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
     let curve = model.curve.as_ref().filter(|curve| !model.is_computing() && !curve.is_checked()).cloned();
     let Some(curve) = curve else {
@@ -107,17 +106,14 @@ fn own_folder(model: &Model) -> Option<PathBuf> {
     }
 }
 
-/// Asks for the profiles of a folder.
 pub(super) fn browse(model: &Model, folder: Option<PathBuf>) -> Effect {
     file(Job::Browse { folder, own: own_folder(model) })
 }
 
-/// Asks for the rows of a profile.
 pub(super) fn read(model: &Model, name: String) -> Effect {
     file(Job::Read { folder: own_folder(model), name })
 }
 
-/// A job on files as an effect.
 pub(super) fn file(job: Job) -> Effect {
     Effect::File(Box::new(job))
 }

@@ -17,7 +17,6 @@ pub(super) struct Saves {
 }
 
 impl Saves {
-    /// Does a job on files.
     pub(super) fn run(&mut self, store: &Store, mut job: Job) -> Done {
         let mut known = None;
         if let Job::Save { source, overwrite: Overwrite::IfUnchanged(asked), .. } = &mut job {

@@ -22,7 +22,6 @@ pub(super) fn of_before() -> String {
     )
 }
 
-/// How far the curve is that takes long.
 fn progress(model: &Model) -> String {
     let Some(progress) = model.progress else { return String::new() };
     format!(": {}; {} gives up", progress.text(), Id::Cancel.named())

@@ -34,7 +34,6 @@ pub enum Axes {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EventSource {
-    /// The quasi-static path along the whole curve.
     Curve,
     Walked,
 }
@@ -201,8 +200,7 @@ impl Window {
         1.0 / (self.x[1] - self.x[0])
     }
 
-    /// So many times closer about a place of the window that stays where it is, in shares of the window; `None`
-    /// beyond the limits.
+    /// Zoomed about a place, in shares of the window; `None` beyond the limits.
     #[must_use]
     pub fn zoomed(&self, times: f64, about: (f64, f64)) -> Option<Self> {
         let zoomed = |[lo, hi]: [f64; 2], at: f64| {

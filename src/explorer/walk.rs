@@ -72,31 +72,23 @@ pub struct Request {
     pub on_limit: bool,
     /// What is controlled (reduced).
     pub control: Control,
-    /// Whether the contact is to shrink.
     pub inward: bool,
     pub length: f64,
 }
 
-/// One new state.
+/// One new state; the fields are as in [`Node`](super::node::Node).
 #[derive(Debug, Clone)]
 pub struct Made {
     pub kind: NodeKind,
     /// The problem it solves, which may be no longer the one on the screen.
     pub setting: Arc<Setting>,
     pub point: Point,
-    /// The state, reduced.
     pub state: State,
-    /// How force and area answer to the approach there, reduced.
     pub stiffness: Stiffness,
-    /// At a limit point: where the jump leads, if that is known.
     pub ahead: Option<Ahead>,
-    /// Whether the state is admissible, and the nearest crest.
     pub admissibility: Admissibility,
-    /// Decimal digits the basis can be trusted for there.
     pub digits: f64,
-    /// The difference of P from the exact solution at the same contact radius, relative to its force scale.
     pub from_exact: f64,
-    /// Whether a walk of its own begins here.
     pub begins: bool,
 }
 
@@ -109,7 +101,6 @@ pub enum Outcome {
     Paused,
     /// The end of what can be walked was reached, in words.
     Ended(String),
-    /// It cannot go on, in words.
     Stopped(String),
 }
 
@@ -186,7 +177,7 @@ struct Stop {
     is_corner: bool,
 }
 
-/// The stop just left is where the walker stands, to this share of its radius.
+/// Within this share of its radius the walker stands on a stop.
 const LEFT: f64 = 1e-12;
 
 /// The stops on the curve of `request` up to the radius `reach`, ascending.
@@ -209,7 +200,7 @@ fn stops(request: &Request, reach: f64) -> Vec<Stop> {
     stops
 }
 
-/// A stop as a table no larger than it needs has it: to the last bit the same, however far the walk has been.
+/// The stop computed with the smallest sufficient table, so that its bits do not depend on how far the walk has been.
 fn located(request: &Request, stop: Stop) -> Stop {
     const ROOM: f64 = 1.05;
     let away = |other: &Stop| (other.contact_radius - stop.contact_radius).abs();
@@ -459,7 +450,7 @@ fn nearest_crossing(request: &Request, value: f64, s: f64) -> Option<Point> {
     let monotone = curve.monotone(request.control);
     let value = match request.control {
         Control::Displacement | Control::Force => value,
-        // As the stretches have it, whatever the stiffness.
+        // The stretches hold the value scaled so.
         Control::Stiffness(k) => value * (k / (1.0 + k)),
     };
     let radius = |place: Place| solution.at(place).contact_radius;

@@ -39,8 +39,7 @@ pub struct WalkRow {
     pub wavelength: Option<f64>,
     /// Whether it is admissible; nothing once the bodies are apart.
     pub admissible: Option<bool>,
-    /// The keys of the preset that changed during the walk, with their values when it was solved: null where the preset had
-    /// none.
+    /// The keys that changed during the walk, with their values here; null where the preset had none.
     #[serde(flatten)]
     pub changed: BTreeMap<String, Value>,
 }
@@ -68,8 +67,7 @@ pub const WALK_COLUMNS: &[&str] = &[
     "admissible",
 ];
 
-/// The keys whose value is not the same in all states of a walk, in the order in which they changed. How the preset is
-/// called and shown is of no state.
+/// The keys that changed during a walk, in that order; not the title and the display units.
 pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
     // States of one problem share it.
     let mut presets: Vec<&Preset> = Vec::new();

@@ -12,9 +12,7 @@ pub enum Role {
     /// The smooth sphere of the same curvature and adhesion.
     Smooth,
     Envelope,
-    /// A pinned curve, by its number.
     Pin(usize),
-    /// The states of another branch of the walk.
     Branch,
     Exact,
     Unstable,
@@ -118,7 +116,6 @@ pub struct Figure {
     pub areas: Vec<Area>,
     /// The whole of it: what is shown at first.
     pub bounds: Bounds,
-    /// What else it says, in words.
     pub notes: Vec<String>,
     pub missing: Option<String>,
 }

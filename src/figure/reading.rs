@@ -11,8 +11,7 @@ use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::report::unload::{EventReport, control_name};
 use pulloff_engine::units::{Quantity, UnitSystem};
 
-/// A mark within this share of the window is meant, though a state of the curve may be nearer; a step of the
-/// cross-hair is shorter.
+/// Within this share of the window a mark is preferred to a nearer state of the curve.
 const NEAR: f64 = 0.025;
 
 /// Two radii that differ by less are the same.
@@ -27,9 +26,7 @@ pub enum What {
         control: Control,
         /// Its number from the start inward, from 1.
         number: usize,
-        /// The limit points of the control.
         of: usize,
-        /// The number of the event that begins there.
         event: Option<usize>,
     },
     /// Where the jump of the event of this number lands.
@@ -41,7 +38,6 @@ pub enum What {
 /// A state near to a point of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// Where it stands in the view.
     pub at: (f64, f64),
     pub what: What,
     /// δ, in the user's units.
@@ -82,8 +78,8 @@ impl What {
     }
 }
 
-/// The state nearest to `at`, as seen in a window of these bounds: a limit point or a landing where one is near, else
-/// a point of the curve or of a pinned one; `None` on a view of something else.
+/// The state nearest to `at` in a window of these bounds, limit points and landings first; `None` if the view shows
+/// no states.
 pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<Nearest> {
     if !view.is_curve() {
         return None;

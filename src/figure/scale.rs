@@ -5,8 +5,7 @@ use crate::explorer::{Axes, CurveData, View};
 use pulloff_engine::gap::Gap;
 use pulloff_engine::units::{Quantity, UnitSystem};
 
-/// The divisors of the axes; without adhesion there is no `P_c`, without one wave alone no λ,
-/// and those axes stay raw.
+/// The divisors of the axes; an axis without one (no adhesion, no single wave) stays raw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale<'a> {
     /// `P_c`.

@@ -12,8 +12,7 @@ use pulloff_engine::quasistatic::profile::Outside;
 use pulloff_engine::report::number::{loss, significant, with_unit};
 use pulloff_engine::units::Quantity;
 
-/// The pressure grows without bound at an adhesive edge: the whole is fitted to the disc up to this share of its
-/// radius.
+/// The pressure is singular at an adhesive edge: axes are fitted to the disc up to this share of its radius.
 const FITTED: f64 = 0.99;
 /// Of the contact this share of what is shown outside is seen in the gap.
 const INSIDE: f64 = 0.3;

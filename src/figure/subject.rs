@@ -11,18 +11,15 @@ use pulloff_engine::preset::Preset;
 /// What figures are built from.
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
-    /// The curve with its theory and its path.
     pub curve: &'a CurveData,
     /// The states that led to the walker, which is the last.
     pub walk: Vec<&'a Node>,
-    /// The other branches of the walk.
     pub branches: Vec<Branch<'a>>,
     /// The inside of the walker's state, where it is known.
     pub inside: Option<&'a Inside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
     pub pins: &'a [Pin],
-    /// The preset by which the pins are named.
     pub preset: &'a Preset,
     /// The theory to draw.
     pub overlays: Overlays,

@@ -59,7 +59,6 @@ impl Chart {
     }
 
     /// The part of its x axis in `range`; an empty chart stays as it is.
-    /// Errors: [`RangeError`] when the range shows nothing.
     pub fn across(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.x = range.ends(&self.x.title, self.bounds.x, self.drawn().x)?;
@@ -68,7 +67,6 @@ impl Chart {
     }
 
     /// The part of its y axis in `range`; an empty chart stays as it is.
-    /// Errors: [`RangeError`] when the range shows nothing.
     pub fn upwards(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.y = range.ends(&self.y.title, self.bounds.y, self.drawn().y)?;
@@ -106,7 +104,6 @@ impl Run {
         }
     }
 
-    /// The value at a place.
     fn value(self, place: f64) -> f64 {
         match self {
             Self::Linear => place,

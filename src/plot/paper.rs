@@ -39,15 +39,12 @@ pub struct Sheet {
 /// Why a figure could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
-    /// A shipped preset is not what it was.
     #[error("a shipped preset cannot be read: {0}")]
     Preset(#[from] ReadError),
     #[error("the shipped preset {0} is missing")]
     Missing(&'static str),
-    /// A problem could not be computed.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// A basis could not be made.
     #[error(transparent)]
     Basis(#[from] RingsError),
     /// There is no equilibrium where the paper shows one.
@@ -65,7 +62,6 @@ const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
 const COMPARED: f64 = 0.9;
 
 /// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
-/// Errors: [`PaperError`] when a figure cannot be computed.
 pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
     let mut sheets = Vec::new();
     begin("Fig. 1");
@@ -318,7 +314,6 @@ fn errors() -> Result<Sheet, PaperError> {
     Ok(Sheet { name: "fig-5", chart, caption })
 }
 
-/// A shipped preset with other values.
 fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperError> {
     let found = shipped::find(name).ok_or(PaperError::Missing(name))?;
     Ok(read_with(name, found.text, assignments)?)

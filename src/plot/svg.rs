@@ -228,7 +228,6 @@ const PATTERN: FillPattern = FillPattern::DiagonalForward;
 /// The tint under the hatches of an energy.
 const LOST: &str = "#f3d9e6";
 
-/// The entry of a hatched area.
 pub(super) fn hatched(name: &str) -> LegendEntry {
     entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
 }
@@ -246,7 +245,6 @@ fn plots(chart: &Chart) -> Vec<Plot> {
     plots
 }
 
-/// A line as its finite pieces.
 fn line(line: &Line) -> Vec<Drawn> {
     let Stroke { color, width, dashes } = ink::stroke(line.role);
     line.points
@@ -262,7 +260,6 @@ fn line(line: &Line) -> Vec<Drawn> {
         .collect()
 }
 
-/// Marks of one sign.
 fn marks(marks: &[Mark]) -> Option<Drawn> {
     let stamp = ink::stamp(marks.first()?.sign);
     let places: Vec<(f64, f64)> =
@@ -271,7 +268,6 @@ fn marks(marks: &[Mark]) -> Option<Drawn> {
     (!places.is_empty()).then(|| plot().with_data(places).into())
 }
 
-/// An outline as path data.
 pub(super) fn outline(points: &[(f64, f64)], field: &ComputedLayout) -> String {
     let mut data = String::new();
     for (i, (x, y)) in points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).enumerate() {

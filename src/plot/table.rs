@@ -7,7 +7,6 @@ use super::ink;
 const FIRST: [&str; 2] = ["name", "curve"];
 
 /// One row a point: the curve's name, its number among the curves, x, y; an empty x and y break a curve.
-/// Errors: When a row cannot be encoded, which no name can cause.
 pub fn csv(chart: &Chart) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record([FIRST[0], FIRST[1], &chart.x.title, &chart.y.title])?;

@@ -21,7 +21,6 @@ impl Mend for FormatError {
 /// Why a figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
-    /// The document could not be read back.
     #[error("the figure cannot be read back: {0}")]
     Document(String),
     /// It has no area, or too large a one.

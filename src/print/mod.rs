@@ -42,7 +42,6 @@ impl Format {
     };
 
     /// The format that the ending of `path` names.
-    /// Errors: It names none, or one that this build lacks.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let missing = |name, feature| Err(FormatError::Missing { name, feature });
@@ -57,7 +56,6 @@ impl Format {
     }
 
     /// The file of `svg`, a figure of this program.
-    /// Errors: [`DrawError`] when the document is no figure of this program, or this build lacks the format.
     pub fn bytes(self, svg: &str) -> Result<Vec<u8>, DrawError> {
         match self {
             Self::Svg => Ok(svg.as_bytes().to_vec()),

@@ -28,7 +28,6 @@ pub enum Overwrite {
     Never,
     /// Replace it only if it is the file that was loaded.
     IfUnchanged(Fingerprint),
-    /// Replace it: the person said so.
     Always,
 }
 
@@ -89,7 +88,6 @@ pub fn write_atomically(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Resu
 }
 
 /// As [`write_atomically`], after `verify` approved what was read back from the disk.
-/// Errors: As there, or `verify` refuses.
 pub fn write_verified(
     path: &Path,
     bytes: &[u8],
@@ -117,7 +115,6 @@ pub fn write_verified(
 }
 
 /// As [`write_atomically`] for a file that is not held in memory: `fill` writes it. It is not read back.
-/// Errors: As there, or those of `fill`.
 pub fn write_filled<E: From<WriteError>>(
     path: &Path,
     overwrite: Overwrite,
@@ -156,7 +153,6 @@ impl<'a> Begun<'a> {
         Ok(Self { path, target, overwrite, folder, temporary, writing })
     }
 
-    /// Puts it in its place.
     fn put(self) -> Result<File, WriteError> {
         // What is bound first is dropped last.
         let Self { writing: _writing, path, target, overwrite, folder, temporary } = self;
@@ -179,7 +175,6 @@ impl<'a> Begun<'a> {
 }
 
 /// The file that a path names after all links, whether or not it exists.
-/// Errors: The links run in a circle, or cannot be read.
 pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
     let failed = |cause| WriteError::Io { path: show_path(path), doing: "follow its links", cause };
     let mut target = path.to_owned();

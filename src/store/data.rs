@@ -14,22 +14,16 @@ use thiserror::Error;
 /// The files of this program's presets: its own data, and the disk.
 pub const FILES: Files = Files(load);
 
-/// Why a file gives no profile.
+/// Why a file gives no profile. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum ProfileError {
     #[error(transparent)]
     File(#[from] FileError),
-    /// The text of the file is no profile.
     #[error("{path}: {cause}")]
-    Text {
-        /// The file, safe to show.
-        path: String,
-        cause: TextError,
-    },
+    Text { path: String, cause: TextError },
 }
 
 /// Reads the profile in the file `path`.
-/// Errors: [`ProfileError`]: the file cannot be read, is not regular, larger than [`LARGEST`], or its text is no profile.
 pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
     let (bytes, _) = read_bytes(path, LARGEST)?;
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
@@ -66,8 +60,7 @@ pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Re
     read_in(None, name, text, assignments)
 }
 
-/// Reads a preset whose files are relative to `folder`, or to the current one; those of assignments always are relative
-/// to the current one.
+/// Reads a preset whose files are relative to `folder`; those of assignments, to the current folder.
 pub fn read_in<S: AsRef<str>>(
     folder: Option<&Path>,
     name: &str,

@@ -43,40 +43,20 @@ impl Fingerprint {
     }
 }
 
-/// Why a file cannot be read.
+/// Why a file cannot be read. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum FileError {
     #[error("{}: cannot read: {cause}", .path)]
-    Io {
-        /// The file, safe to show.
-        path: String,
-        cause: io::Error,
-    },
-    /// A folder, a pipe, a device.
+    Io { path: String, cause: io::Error },
     #[error("{path}: is {what}, not a regular file")]
-    NotRegular {
-        /// The file, safe to show.
-        path: String,
-        what: &'static str,
-    },
-    /// Larger than a preset can be.
+    NotRegular { path: String, what: &'static str },
     #[error("{path}: has {bytes} bytes, more than the {limit} that are read")]
-    TooLarge {
-        /// The file, safe to show.
-        path: String,
-        bytes: u64,
-        limit: u64,
-    },
+    TooLarge { path: String, bytes: u64, limit: u64 },
     /// A pipe or a device that gives more than a preset can be.
     #[error("{path}: has more than the {limit} bytes that are read")]
-    Endless {
-        /// The name, safe to show.
-        path: String,
-        limit: u64,
-    },
+    Endless { path: String, limit: u64 },
     #[error("{path}: is not UTF-8 text (byte {at} on)")]
     NotText {
-        /// The file, safe to show.
         path: String,
         /// The first bad byte, from 0.
         at: usize,
@@ -112,7 +92,6 @@ pub fn kind_of(metadata: &Metadata) -> &'static str {
 }
 
 /// The text of a regular file of at most `limit` bytes.
-/// Errors: It cannot be read, is not regular, is larger, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<(String, Fingerprint), FileError> {
     let (bytes, fingerprint) = read_bytes(path, limit)?;
     Ok((text(&show_path(path), bytes)?, fingerprint))
@@ -127,7 +106,6 @@ pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
 }
 
 /// The content of a regular file of at most `limit` bytes.
-/// Errors: It cannot be read, is not regular, or is larger.
 pub fn read_bytes(path: &Path, limit: u64) -> Result<(Vec<u8>, Fingerprint), FileError> {
     let io = |cause| FileError::Io { path: show_path(path), cause };
     // Looked at before it is opened, since opening a device can have effects; and again after, since the

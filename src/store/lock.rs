@@ -67,7 +67,6 @@ impl FileLock {
     const PATIENCE: Duration = Duration::from_millis(50);
 
     /// Takes the lock of the file `path`, which is made; `None` if another holds it.
-    /// Errors: The file cannot be made or locked.
     pub fn acquire(path: &Path) -> io::Result<Option<Self>> {
         let deadline = Instant::now() + Self::PATIENCE;
         loop {

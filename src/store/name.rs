@@ -34,7 +34,6 @@ pub fn is_well_formed(name: &str) -> bool {
 }
 
 /// Checks a name that a preset is to be saved under.
-/// Errors: It is malformed, one of the `commands`, or a shipped preset's.
 pub fn check<S: AsRef<str>>(name: &str, commands: &[S]) -> Result<(), NameError> {
     let shown = quote(name);
     if !is_well_formed(name) {

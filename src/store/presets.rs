@@ -33,7 +33,6 @@ const LISTED: usize = 1000;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Source {
     Shipped(&'static Shipped),
-    /// It is the person's own, by name.
     User {
         name: String,
         path: PathBuf,
@@ -74,7 +73,6 @@ pub struct Loaded {
     pub source: Source,
     /// The preset, with the assignments laid over it.
     pub preset: Preset,
-    /// The text of its file, comments included.
     pub text: String,
     /// How to recognise the file when saving, where there is one.
     pub fingerprint: Option<Fingerprint>,
@@ -99,46 +97,32 @@ pub struct Listing {
     pub notice: Option<String>,
 }
 
-/// Why a preset was not found, loaded or saved, in one line.
+/// Why a preset was not found, loaded or saved, in one line. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum StoreError {
     #[error("no preset is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
     NotFound { name: String, meant: Option<String> },
-    /// The name cannot be a preset's.
     #[error(transparent)]
     Name(#[from] NameError),
     #[error(transparent)]
     File(#[from] FileError),
-    /// The file holds no valid preset.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The preset to be saved is not valid.
     #[error("the preset is not valid: {0}")]
     Invalid(Invalid),
     /// Neither a configuration folder nor a home folder is known.
     #[error("no folder for presets: neither XDG_CONFIG_HOME nor HOME is set")]
     NoFolder,
     #[error("{path}: cannot make the folder: {cause}")]
-    Folder {
-        /// The folder, safe to show.
-        path: String,
-        cause: io::Error,
-    },
-    /// The data of a profile cannot be copied.
+    Folder { path: String, cause: io::Error },
     #[error(transparent)]
     Data(#[from] DataError),
-    /// The file cannot be written; nothing has changed.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What comes with the program stays.
     #[error("{0} comes with the program and cannot be deleted")]
     Shipped(&'static str),
     #[error("{path}: cannot delete it: {cause}")]
-    Delete {
-        /// The file, safe to show.
-        path: String,
-        cause: io::Error,
-    },
+    Delete { path: String, cause: io::Error },
 }
 
 impl Mend for StoreError {
@@ -187,14 +171,12 @@ impl Store {
     }
 
     /// The file of the preset `name`.
-    /// Errors: The name cannot be a preset's, or there is no folder.
     pub fn path_of(&self, name: &str) -> Result<PathBuf, StoreError> {
         name::check(name, &self.commands)?;
         Ok(self.folder.as_ref().ok_or(StoreError::NoFolder)?.join(format!("{name}.toml")))
     }
 
     /// What an argument names: a path if it has a `/` or ends in `.toml`, else a preset by name.
-    /// Errors: No preset has the name. A path is not looked at.
     pub fn resolve(&self, argument: impl AsRef<OsStr>) -> Result<Source, StoreError> {
         let argument = argument.as_ref();
         let bytes = argument.as_encoded_bytes();
@@ -231,7 +213,6 @@ impl Store {
     }
 
     /// Loads a preset and lays `KEY=VALUE` assignments over it.
-    /// Errors: Its file cannot be read, or it and the assignments make no valid preset.
     pub fn load<S: AsRef<str>>(&self, source: &Source, assignments: &[S]) -> Result<Loaded, StoreError> {
         let (text, fingerprint) = match source {
             Source::Shipped(shipped) => (shipped.text.to_owned(), None),
@@ -316,7 +297,6 @@ impl Store {
     }
 
     /// The file of the person's own preset of this name, which can be deleted.
-    /// Errors: The person has no preset of this name.
     pub fn own(&self, name: &str) -> Result<PathBuf, StoreError> {
         match shipped::find(name) {
             Some(shipped) => Err(StoreError::Shipped(shipped.name)),
@@ -368,7 +348,6 @@ fn make_own_folder(folder: &Path) -> Result<(), StoreError> {
 }
 
 /// Makes a folder of the person's own, and those above it.
-/// Errors: What the system says.
 pub fn make_folder(folder: &Path) -> io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }

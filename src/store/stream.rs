@@ -35,7 +35,6 @@ pub fn shown(path: &Path) -> String {
 }
 
 /// Opens what [`is_stream`] finds, to be written.
-/// Errors: What the system says.
 pub fn open(path: &Path) -> io::Result<File> {
     let descriptor = descriptor(path);
     if path == Path::new(STANDARD) || descriptor.as_deref().is_some_and(|name| name == "1") {
@@ -47,7 +46,6 @@ pub fn open(path: &Path) -> io::Result<File> {
 }
 
 /// The text of what [`is_stream`] finds, to its end, and how messages call it.
-/// Errors: It cannot be read, is larger than `limit`, or is not UTF-8.
 pub fn read_text(path: &Path, limit: u64) -> Result<(String, String), FileError> {
     let (name, bytes) = if path == Path::new(STANDARD) {
         let name = "standard input".to_owned();
@@ -65,7 +63,6 @@ pub fn read_text(path: &Path, limit: u64) -> Result<(String, String), FileError>
 }
 
 /// The text of a file that the person named, whether or not it is a stream, and how messages call it.
-/// Errors: As [`read_text`], and a file must be regular.
 pub fn read_given(path: &Path, limit: u64) -> Result<(String, String), FileError> {
     if is_stream(path) {
         return read_text(path, limit);

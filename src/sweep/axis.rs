@@ -85,15 +85,13 @@ impl Axis {
         Ok(axis)
     }
 
-    /// Reads an axis of the [`canonical`](Self::canonical) form with its key: its values have been checked, and are in the
-    /// units of their preset.
+    /// Reads an axis of the [`canonical`](Self::canonical) form; its values were checked before.
     pub(super) fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
         let entry = section.need("key", "a key")?;
         let key = entry.text("a key")?;
         Ok(Self { key: key.to_owned(), points: Reader { preset: None, key }.points(section, &entry)? })
     }
 
-    /// Refuses a key that this preset cannot have.
     fn check_applies(&self, entry: &Entry<'_>, preset: &Preset) -> Result<(), SpecError> {
         let Some(first) = self.first() else { return Ok(()) };
         match preset.clone().set(&self.key, first) {

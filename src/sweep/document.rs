@@ -42,7 +42,6 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// The text as a table.
     pub(super) fn parse(self) -> Result<DeTable<'a>, SpecError> {
         match DeTable::parse(self.text) {
             Ok(table) => Ok(table.into_inner()),
@@ -125,7 +124,6 @@ impl<'a> Entry<'a> {
         Ok(array.iter().map(entry).collect())
     }
 
-    /// The two values of an array.
     pub(super) fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
         let allowed = "two values, [from, to]";
         <[Entry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
@@ -151,7 +149,6 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// A value in a message.
 fn found(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => format!("\"{}\"", quote(text)),

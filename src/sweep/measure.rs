@@ -63,7 +63,7 @@ impl Work<'_> {
                 let control = self.reduced(column.under.control(own))?;
                 let path = self.path(control)?;
                 match (of(path), path.unloading.stop) {
-                    // What is counted up to there is not what is asked for.
+                    // A path that stopped early has no answer.
                     (_, PathStop::Curve(stop)) => {
                         let case = &self.start()?.case;
                         let stop = PathStop::Curve(stop.in_units(case.units()));

@@ -106,7 +106,6 @@ impl Part {
         Ok(Some(&self.line))
     }
 
-    /// The fault of the line read last.
     fn changed(&self, what: Wrong) -> MergeError {
         MergeError::Changed { path: show_path(&self.path), line: self.lines, what }
     }
@@ -154,7 +153,7 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
         (1..=of).zip(found.iter().flatten()).map(part).collect()
     };
     if stream::is_stream(results) {
-        // What is written there cannot be taken back: everything is read once before.
+        // A stream cannot be taken back, so all parts are checked first.
         fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
         let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
         fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, sidecar.rows)?;
@@ -167,9 +166,8 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
     Ok(sidecar.rows)
 }
 
-/// A few of many.
 fn listed(names: &[String]) -> String {
-    /// So many are told.
+    /// Listed at most.
     const TOLD: usize = 10;
     let more = names.len().saturating_sub(TOLD);
     let told = names[..names.len() - more].join(", ");

@@ -31,7 +31,6 @@ pub enum Existing {
 /// Why results cannot be begun, gone on with or written. Paths are safe to show.
 #[derive(Debug, Error)]
 pub enum OutputError {
-    /// The file beside them cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     #[error("{path}: cannot {doing}: {cause}")]
@@ -94,7 +93,6 @@ const LATEST: Duration = Duration::from_millis(200);
 
 impl Output {
     /// Opens the results of a part of a sweep, and finds how far they are.
-    /// Errors: They cannot be opened, or are not of this part of this sweep.
     pub fn open(path: &Path, spec: &Spec, shard: Shard, existing: Existing) -> Result<Self, OutputError> {
         let shown = show_path(path);
         let failed = |doing| {

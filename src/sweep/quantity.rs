@@ -12,7 +12,6 @@ pub struct Quantity {
     /// Its name in a spec and in the results.
     pub name: &'static str,
     pub unit: Unit,
-    /// What it is, in one line.
     pub meaning: &'static str,
     pub(super) of: Stage,
 }
@@ -200,7 +199,6 @@ impl Quantity {
         matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed)
     }
 
-    /// The columns it can be.
     fn columns(&'static self) -> impl Iterator<Item = Column> {
         let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
         Under::ALL[..last].iter().map(move |(under, _)| Column { quantity: self, under: *under })
@@ -209,7 +207,6 @@ impl Quantity {
 
 impl Column {
     /// The column of a name.
-    /// Errors: What is wrong with the name, in words, with the nearest one.
     pub fn named(name: &str) -> Result<Self, String> {
         let all = || QUANTITIES.iter().flat_map(Quantity::columns);
         all().find(|column| column.name() == name).ok_or_else(|| {

@@ -19,7 +19,6 @@ pub const ERROR: &str = "error";
 pub struct Layout {
     pub axes: Vec<Axis>,
     pub design: Design,
-    /// The names of all columns, in their order.
     pub columns: Vec<String>,
 }
 
@@ -40,7 +39,6 @@ impl fmt::Display for Wrong {
     }
 }
 
-/// Fields as a line of CSV.
 fn line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
     let mut writer = csv::WriterBuilder::new().buffer_capacity(256).from_writer(Vec::new());
     // Writing to memory cannot fail, and all fields are text.
@@ -62,7 +60,6 @@ fn known(axes: &[Axis], design: Design, row: u64) -> Vec<String> {
     std::iter::once(row.to_string()).chain(values.iter().map(ToString::to_string)).collect()
 }
 
-/// Fields as the beginning of a line.
 fn beginning(fields: &[String]) -> String {
     let mut text = line(fields.iter().map(String::as_str));
     text.pop();
@@ -109,7 +106,6 @@ impl Layout {
     }
 
     /// The reason of the fault of a row, if it has one, from its whole line.
-    /// Errors: It is not the line of that row: another row or value of an axis, too few fields, no numbers.
     pub fn fault(&self, row: u64, line: &[u8]) -> Result<Option<&'static str>, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));
@@ -141,7 +137,6 @@ impl Layout {
     }
 }
 
-/// A field in a message.
 fn shown(field: &str) -> String {
     if field.is_empty() { "empty".to_owned() } else { quote(field) }
 }

@@ -11,7 +11,6 @@ use thiserror::Error;
 /// Why results cannot be read. Texts are safe to show.
 #[derive(Debug, Error)]
 pub enum ResultsError {
-    /// Nothing says what the columns are.
     #[error(transparent)]
     Sidecar(#[from] SidecarError),
     #[error("{path}: has no column \"{name}\"{hint}")]
@@ -43,7 +42,6 @@ pub struct Results {
 
 impl Results {
     /// Opens the results; nothing but what stands beside them is read.
-    /// Errors: The file beside them is missing or none of ours.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
@@ -67,7 +65,6 @@ impl Results {
     }
 
     /// The cells of some columns, one vector each; only these are held in memory. A torn line at the end is left out.
-    /// Errors: There is no such column, or the table cannot be read.
     pub fn texts(&self, names: &[&str]) -> Result<Vec<Vec<String>>, ResultsError> {
         self.read(names, |cell| Some(cell.to_owned()))
     }

@@ -28,7 +28,6 @@ pub struct Summary {
     pub before: u64,
     pub now: u64,
     pub of: u64,
-    /// The faults of all rows that are there.
     pub faults: Faults,
 }
 
@@ -89,7 +88,6 @@ struct Window {
 }
 
 struct State {
-    /// The next row that is written.
     written: u64,
     closed: bool,
 }

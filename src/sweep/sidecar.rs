@@ -18,17 +18,16 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::{Table, Value};
 
-/// What is behind the name of the results.
+/// The ending added to the name of the results.
 const ENDING: &str = ".spec.toml";
 
-/// Why the file beside some results says nothing.
+/// Why the file beside some results says nothing. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum SidecarError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{path}: {what}")]
     Unknown {
-        /// The file, safe to show.
         path: String,
         /// What is wrong, safe to show.
         what: String,
@@ -52,7 +51,6 @@ pub struct ColumnInfo {
     pub symbol: Option<String>,
     /// The unit of its numbers; `None` for pure numbers, texts, and in reduced units.
     pub unit: Option<String>,
-    /// What it is, in one line.
     pub meaning: String,
 }
 
@@ -61,7 +59,6 @@ pub struct ColumnInfo {
 pub struct Sidecar {
     pub identity: String,
     shard: String,
-    /// The rows of the whole sweep.
     pub rows: u64,
     #[serde(rename = "column")]
     pub columns: Vec<ColumnInfo>,
@@ -131,7 +128,7 @@ const PARTS: [(&[&str], &str); 6] = [
     (&["axis"], "other axes or values"),
 ];
 
-/// In what a sweep differs from that of a file of this text, in words; safe to show.
+/// How a sweep differs from the one of this sidecar text, in words that are safe to show.
 #[must_use]
 pub fn differences(text: &str, spec: &Spec) -> String {
     let sweep = |text: &str| toml::from_str::<Table>(text).ok()?.remove("sweep");
@@ -166,9 +163,8 @@ fn values_of(preset: &str) -> BTreeMap<String, Value> {
     values
 }
 
-/// The first keys whose values differ, in brackets.
 fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> String {
-    /// So many are told.
+    /// Listed at most.
     const TOLD: usize = 3;
     let all: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
     let keys: Vec<String> = all
@@ -222,7 +218,6 @@ impl ColumnInfo {
 
 impl Sidecar {
     /// Reads the file beside `results`, with its text.
-    /// Errors: It is not there, or none of ours.
     pub fn read(results: &Path) -> Result<(Self, String), SidecarError> {
         let path = path(results);
         // Every value of every axis stands in it.
@@ -235,7 +230,6 @@ impl Sidecar {
     }
 
     /// The layout of the results beside `text`, that of this file.
-    /// Errors: The sweep in it is none of ours.
     pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SidecarError> {
         let path = path(results);
         let document = Document { name: &path.to_string_lossy(), text };

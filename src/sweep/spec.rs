@@ -39,7 +39,6 @@ pub enum Design {
 /// A sweep: what is computed of what.
 #[derive(Debug, Clone)]
 pub struct Spec {
-    /// The preset that the axes change.
     pub preset: Preset,
     /// The axes; at least one.
     pub axes: Vec<Axis>,
@@ -76,7 +75,6 @@ const DESIGNS: [&str; 2] = ["grid", "pairs"];
 impl Spec {
     /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
     /// one where the spec comes through a pipe.
-    /// Errors: The file cannot be read, or the first mistake in it.
     pub fn load(store: &Store, path: &Path) -> Result<Self, LoadError> {
         let (name, text) = stream::read_given(path, file::LARGEST)?;
         let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
@@ -84,7 +82,6 @@ impl Spec {
     }
 
     /// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
-    /// Errors: The first mistake, with its line.
     pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Self, SpecError> {
         let document = Document { name, text };
         let table = document.parse()?;
@@ -130,7 +127,6 @@ impl Spec {
     }
 
     /// The preset of a row.
-    /// Errors: A value that it does not take.
     pub fn problem(&self, row: u64) -> Result<Preset, Fault> {
         let mut preset = self.preset.clone();
         let keys = self.axes.iter().map(|axis| &*axis.key);
@@ -227,7 +223,6 @@ pub(super) fn values(axes: &[Axis], design: Design, row: u64) -> Vec<Value> {
 }
 
 /// The axes of a canonical form, as [`Spec::canonical`] writes it, and how they make rows.
-/// Errors: It is none, which is told with its line; `document` names it.
 pub(super) fn of_canonical(document: Document<'_>) -> Result<(Vec<Axis>, Design), SpecError> {
     let table = document.parse()?;
     let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;

@@ -51,21 +51,19 @@ pub(super) struct CurveMinima {
     critical_force: Option<f64>,
 }
 
-/// A state of the curve at which what a control holds is smallest; none where it is smaller in a contact larger than
-/// that of the start.
+/// The state of the curve at which the controlled quantity is smallest.
 struct Least {
     state: State,
     is_cut_off: OnceCell<bool>,
     control: Control,
 }
 
-/// What is smallest in contacts up to so many times the start's, and in so many more waves, is sought: from wave to wave
-/// the minima fall on the way out until they rise.
+/// Smaller values are sought up to so many start radii and waves further out.
 const REACH: f64 = 1.5;
 
 const WAVES: f64 = 2.0;
 
-/// Smaller by this share is smaller.
+/// Differences below this share do not count.
 const SMALLER: f64 = 1e-3;
 
 /// The unloading under one control, reduced.
@@ -116,7 +114,6 @@ impl CurveMinima {
         Ok(Self { curve, least, critical_force })
     }
 
-    /// Stage the state of smallest force.
     pub(super) fn least(&self, of: fn(&State) -> f64) -> Result<Option<Cell>, Fault> {
         Ok(Some(Cell::Number(of(self.smallest(0)?))))
     }
@@ -144,8 +141,7 @@ impl CurveMinima {
         if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
     }
 
-    /// Whether what `control` holds is smaller in a larger contact than the curve has, by the table of the gap: rings need not
-    /// resolve the waves out there.
+    /// Whether the controlled quantity is smaller in a contact larger than the start, by the exact solution.
     fn is_smaller_beyond(&self, state: &State, control: Control) -> bool {
         let Equilibrium { problem, table, .. } = &self.curve.equilibrium;
         let start = self.curve.outermost();

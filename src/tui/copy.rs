@@ -90,7 +90,6 @@ fn drawn(app: &App, content: Content) -> String {
     lines(buffer, if content == Content::Chart { chart.unwrap_or(size) } else { size })
 }
 
-/// A part of the screen as lines.
 fn lines(buffer: &Buffer, area: Rect) -> String {
     let row = |y| (area.left()..area.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (area.top()..area.bottom()).map(|y| row(y).trim_end().to_owned() + "\n").collect()

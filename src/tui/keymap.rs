@@ -70,7 +70,6 @@ impl Key {
     }
 
     /// The key of a label.
-    /// Errors: Why a command cannot have it, in words.
     pub fn parse(label: &str) -> Result<Self, String> {
         let named = NAMES.iter().find(|(name, _)| name.eq_ignore_ascii_case(label)).map(|(_, key)| *key);
         let ctrl = label
@@ -212,7 +211,6 @@ impl Keymap {
         }
     }
 
-    /// The keys that two commands have.
     fn clashes(&self, config: &Config) -> Vec<Mistake> {
         let all: Vec<(Id, Key)> =
             self.0.iter().flat_map(|(id, keys)| keys.iter().map(|key| (*id, *key))).collect();

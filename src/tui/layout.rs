@@ -9,7 +9,6 @@ pub const SMALLEST: (u16, u16) = (40, 10);
 /// Where the regions are; those that do not fit are left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Regions {
-    /// The preset and what is controlled.
     pub header: Rect,
     pub problem: Option<Rect>,
     pub walker: Option<Rect>,
@@ -20,8 +19,7 @@ pub struct Regions {
     pub footer: Rect,
 }
 
-/// The regions of a screen showing `view`, and its companions where more than one fits, with room for so many
-/// `events`; `None` below the smallest size.
+/// The regions of a screen that shows `view` and so many `events`; `None` below the smallest size.
 pub fn regions(area: Rect, view: View, events: usize) -> Option<Regions> {
     let (width, height) = (area.width, area.height);
     if width < SMALLEST.0 || height < SMALLEST.1 {

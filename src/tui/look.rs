@@ -19,11 +19,8 @@ use clap::ValueEnum;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LookFile {
     pub theme: Option<Palette>,
-    /// What curves are drawn with.
     pub charts: Option<Charts>,
-    /// Only characters below 0x80.
     pub ascii: Option<bool>,
-    /// Whether the mouse is taken from the start.
     pub mouse: Option<bool>,
 }
 

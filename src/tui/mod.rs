@@ -57,9 +57,8 @@ use view::Pictures;
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
     pub keymap: Keymap,
-    /// How the screen is to look.
     pub look: look::LookFile,
-    /// What is to be told when the screen comes up.
+    /// A message for when the screen comes up.
     pub notice: Option<String>,
 }
 
@@ -114,7 +113,6 @@ fn begin(start: Start, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, 
 }
 
 /// Runs the explorer until the person quits; its session is kept in `archive`.
-/// Errors: When the terminal cannot be taken, or the system gives no thread.
 pub fn run(
     store: Store,
     archive: Archive,
@@ -129,12 +127,12 @@ pub fn run(
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let teller = inbox.sender();
     autosave.start(move |text| {
-        // Refused only when the screen is gone.
+        // Fails only when the screen is gone.
         let _ = teller.send(Reply::Notice(text));
     })?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
-        // Refused only when the screen is gone, and the process with it.
+        // Fails only when the screen is gone.
         let _ = sender.send(reply);
     })?;
     let (mut app, effects, mut offered) = begin(start, look.theme(), &autosave);
@@ -146,7 +144,7 @@ pub fn run(
     workers.submit_all(effects);
     converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects), &mut |app| {
         if let Some(held) = offered.take_if(|_| !app.is_offering()) {
-            // Answered; a session that nobody wants may be had by another program.
+            // Answered: if not wanted, another program may have the session.
             if app.model.session > 0 {
                 autosave.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             }
@@ -163,11 +161,10 @@ pub fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// A step is made sooner than this: a frame that says no more than that it has begun is spared the line, and the step
-/// does not wait for the frame after it.
+/// Most steps are done sooner: the frame waits so long for the result.
 const GRACE: Duration = Duration::from_millis(30);
 
-/// Whether a walk is among these, none of whose states has come.
+/// Whether `effects` begin a walk that has no states yet.
 fn is_walk_begun(model: &Model, effects: &[Effect]) -> bool {
     effects.iter().any(|effect| matches!(effect, Effect::Walk(_)))
         && model.walking.is_some_and(|walking| walking.made == 0)
@@ -186,8 +183,7 @@ fn converse<S: Sink>(
 ) {
     let (mut pictures, mut notice) = (Pictures::default(), SlowNotice::default());
     let mut dirty = true;
-    // Whether the first curve is still to come. Its frame does not wait until a slow line has carried the empty one
-    // before it: a person has waited for nothing else.
+    // Whether the first curve is still to come; its frame does not wait for the pace of a slow line.
     let mut awaits_curve = true;
     // Until when the first change since the last frame may wait for the step that it began.
     let mut grace = None;

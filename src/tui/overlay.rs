@@ -13,9 +13,7 @@ use tui_input::Input;
 pub enum Overlay {
     Prompt(Prompt),
     Choose(Choose),
-    /// A question to answer with yes or no.
     Confirm(Confirm),
-    /// A session to resume, or not.
     Offer(Offer),
     Help(Help),
 }
@@ -34,13 +32,11 @@ pub const LONGEST_LINE: usize = 4096;
 #[derive(Debug, Clone)]
 pub struct Prompt {
     pub title: String,
-    /// What is allowed, in one line.
     pub note: String,
     pub input: Input,
     /// Whether the text is still the old value: the first character typed replaces it.
     pub fresh: bool,
     pub purpose: Purpose,
-    /// Why the last try was refused.
     pub error: Option<String>,
     /// Whether its line was taken and waits for the file it needs: no key changes it until that is read or written.
     pub waits: bool,
@@ -60,9 +56,7 @@ pub enum Purpose {
     },
     File(ExportKind),
     Page(Page),
-    /// The path of a preset to open.
     Path,
-    /// A command of the script grammar.
     Line,
 }
 
@@ -70,7 +64,6 @@ pub enum Purpose {
 #[derive(Debug, Clone, Default)]
 pub struct Help {
     pub line: usize,
-    /// What is being typed to look for.
     pub typing: Option<Input>,
     pub pattern: String,
     /// Where it was found: the line, the number of that place from 1, and how many there are.
@@ -131,9 +124,7 @@ pub struct Choose {
     pub items: Vec<Item>,
     /// What was typed: only lines with it are shown.
     pub filter: String,
-    /// The selected one of those shown.
     pub selected: usize,
-    /// What the selected one looks like.
     pub picture: Option<Figure>,
 }
 
@@ -178,7 +169,6 @@ pub enum Action {
 /// A session that may be resumed. Any key but those that take it goes on without it, and does what it always does.
 #[derive(Debug, Clone)]
 pub struct Offer {
-    /// What is offered, and how to answer.
     pub question: String,
     pub snapshot: Box<Snapshot>,
 }

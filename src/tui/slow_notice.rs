@@ -5,10 +5,10 @@ use crate::explorer::background_jobs::BackgroundJob;
 use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
-/// What is over sooner is not told of.
+/// Shorter jobs are not shown.
 const SHORT: Duration = Duration::from_millis(100);
 
-/// Work beside the curve and the walk, with the time when it was first seen.
+/// The background job under way, and since when.
 #[derive(Debug, Default)]
 pub(super) struct SlowNotice {
     since: Option<(BackgroundJob, Instant)>,
@@ -16,7 +16,7 @@ pub(super) struct SlowNotice {
 }
 
 impl SlowNotice {
-    /// Looks at what is under way, and says whether `app` has something else to show of it.
+    /// Updates the notice in `app`; whether it changed.
     pub(super) fn look(&mut self, app: &mut App) -> bool {
         let now = Instant::now();
         let begun = |beside: BackgroundJob| {
@@ -30,7 +30,7 @@ impl SlowNotice {
         std::mem::replace(&mut app.late, late) != late
     }
 
-    /// When to look again, though nothing has happened.
+    /// When to look again if nothing happens before.
     pub(super) fn due(&self) -> Option<Instant> {
         self.since.filter(|_| !self.is_told).map(|(_, begun)| begun + SHORT)
     }

@@ -20,7 +20,6 @@ pub enum Stroke {
     LongDashed,
     /// Long and short dashes in turn.
     DashDotted,
-    /// A line with this letter along it.
     Marked(&'static str),
     Lettered(&'static str),
     /// This letter again and again, over what else is there.

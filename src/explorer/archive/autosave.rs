@@ -162,7 +162,7 @@ impl Autosave {
             writer.written = Some((resumed, before));
         }
         let known = writer.written.as_ref().is_some_and(|(written, how)| {
-            // A file that says it runs, without a program, is of one that was cut off.
+            // A session marked as running that no program holds was cut off.
             let is_said = *how == ended
                 || (*how == Ended::Running && ended == Ended::Dropped)
                 || (ended == Ended::Running && writer.before == Some(*how));
@@ -187,7 +187,7 @@ impl Autosave {
     }
 }
 
-/// A lock, waited for until a moment: whoever holds it may be stuck.
+/// Waits for a lock until `until`: its holder may be stuck.
 fn patiently<T>(mutex: &Mutex<T>, until: Instant) -> Option<MutexGuard<'_, T>> {
     loop {
         match mutex.try_lock() {

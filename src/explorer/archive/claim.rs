@@ -29,7 +29,6 @@ impl Claim {
     }
 
     /// Writes the session whole or not at all.
-    /// Errors: It cannot be written; the one before is as it was.
     pub fn write(&self, bytes: &[u8]) -> Result<(), ArchiveError> {
         write_atomically(&self.path, bytes, Overwrite::Always)?;
         Ok(())

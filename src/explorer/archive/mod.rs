@@ -44,44 +44,28 @@ const ENDING: &str = "json";
 /// The ending of one that could not be read, kept aside.
 const ASIDE: &str = "damaged";
 
-/// Why a session is not found, read or written, in one line.
+/// Why a session is not found, read or written, in one line. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
     /// Neither a state folder nor a home folder is known.
     #[error("no folder for sessions: neither XDG_STATE_HOME nor HOME is set")]
     NoFolder,
     #[error("no session is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
-    NotFound {
-        /// The name, safe to show.
-        name: String,
-        meant: Option<String>,
-    },
-    /// There is no session at all.
+    NotFound { name: String, meant: Option<String> },
     #[error("there is no session to resume")]
     Empty,
     #[error("the session {name} is running in another pulloff")]
     Running { name: String },
-    /// Its file is no session of this program.
     #[error("{path}: {cause}")]
-    Unreadable {
-        /// The file, safe to show.
-        path: String,
-        cause: Unreadable,
-    },
+    Unreadable { path: String, cause: Unreadable },
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// It has no form as a document.
     #[error("the session cannot be written: {0}")]
     Document(serde_json::Error),
     #[error("{path}: cannot {doing}: {cause}")]
-    Io {
-        /// The file or folder, safe to show.
-        path: String,
-        doing: &'static str,
-        cause: io::Error,
-    },
+    Io { path: String, doing: &'static str, cause: io::Error },
 }
 
 impl Mend for ArchiveError {
@@ -129,7 +113,6 @@ pub struct Entry {
 #[derive(Debug)]
 pub struct Held {
     pub claim: Claim,
-    /// What a list shows of it.
     pub summary: Summary,
     pub snapshot: Snapshot,
 }
@@ -165,7 +148,6 @@ impl Archive {
     }
 
     /// The sessions, the newest first.
-    /// Errors: The folder cannot be listed; one that is not there is empty.
     pub fn list(&self) -> Result<Vec<Entry>, ArchiveError> {
         let Some(folder) = &self.folder else { return Ok(Vec::new()) };
         let files = match fs::read_dir(folder) {
@@ -188,7 +170,6 @@ impl Archive {
         Ok(entries)
     }
 
-    /// The file of a session.
     fn path(&self, name: &str) -> Result<PathBuf, ArchiveError> {
         let path = self.folder_or()?.join(format!("{name}.{ENDING}"));
         if is_well_formed(name) && path.symlink_metadata().is_ok() {
@@ -200,13 +181,11 @@ impl Archive {
     }
 
     /// The bytes of a session, as they are.
-    /// Errors: It is not there or cannot be read.
     pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ArchiveError> {
         Ok(read_bytes(&self.path(name)?, LARGEST)?.0)
     }
 
     /// What a list shows of a session.
-    /// Errors: It is not there, cannot be read, or is no session of this program.
     pub fn summary(&self, name: &str) -> Result<Summary, ArchiveError> {
         let path = self.path(name)?;
         let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
@@ -245,7 +224,6 @@ impl Archive {
 
     /// The newest session, if it was cut off: its program did not end as its person wanted. One that is damaged is
     /// kept aside under another name.
-    /// Errors: Words for the person; nothing but this one session is the matter.
     pub fn cut_off(&self) -> Result<Option<Held>, String> {
         // A folder that cannot be read will be a notice once there is something to write.
         let Ok(Some(name)) = self.newest() else { return Ok(None) };
@@ -277,7 +255,6 @@ impl Archive {
     }
 
     /// Removes a session.
-    /// Errors: It is not there, a program writes it, or the system says no.
     pub fn delete(&self, name: &str) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
         let _claim = Claim::of(self.folder_or()?, name)?;
@@ -285,7 +262,6 @@ impl Archive {
     }
 
     /// The right to write a new session, called after `base` and the next number.
-    /// Errors: The folder cannot be made, or no file in it.
     pub fn begin(&self, base: &str) -> Result<Claim, ArchiveError> {
         let folder = self.folder_or()?;
         crate::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;
@@ -337,12 +313,10 @@ fn is_left_behind(folder: &Path, name: &str) -> bool {
     session.is_some_and(|session| !session.exists()) && !FileLock::is_held(&folder.join(name))
 }
 
-/// The lock of a session.
 fn lock_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!(".{name}.lock"))
 }
 
-/// The number at the end of a name.
 fn number(name: &str) -> u32 {
     name.rsplit_once('-').and_then(|(_, number)| number.parse().ok()).unwrap_or(0)
 }

@@ -16,12 +16,10 @@ use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 pub struct Completion {
     /// The line, with as much more as all offers have in common.
     pub line: String,
-    /// The words that can stand at its end.
     pub offers: Vec<String>,
 }
 
-/// Completes the last word of `line` for a session on `preset`; `presets` are the names known, the shipped ones where
-/// there are none.
+/// Completes the last word of `line`; `presets` are the known names, or none for those shipped.
 pub fn complete(line: &str, preset: &Preset, presets: &[String]) -> Completion {
     let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
     let (before, word) = line.split_at(start);

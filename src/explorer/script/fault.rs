@@ -11,7 +11,6 @@ pub const LONGEST: usize = 16_384;
 pub struct Fault {
     /// The column, in characters from 1.
     pub column: usize,
-    /// What is wrong and what is allowed.
     pub what: String,
 }
 

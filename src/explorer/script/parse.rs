@@ -17,7 +17,6 @@ const TRY: &str = "try";
 pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
 
 /// The command of a line; `None` where there is none.
-/// Errors: What is wrong, where, and what is allowed.
 pub fn parse(line: &str) -> Result<Option<Command>, Fault> {
     let words = split(line)?;
     let Some((name, rest)) = words.split_first() else { return Ok(None) };

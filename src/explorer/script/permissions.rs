@@ -16,7 +16,6 @@ pub struct Permission {
     pub anywhere: bool,
 }
 
-/// The command as it may be done.
 pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -> Result<Command, String> {
     let Permission { overwrite, anywhere } = permission;
     let may_replace = |replace: bool| match (replace, overwrite) {

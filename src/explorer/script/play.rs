@@ -68,7 +68,6 @@ fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission)
     refusal(model).map_or(Ok(()), Err)
 }
 
-/// What was told, if it is an error.
 fn refusal(model: &Model) -> Option<Reason> {
     let (level, text) = model.message.as_ref().filter(|(level, _)| level.is_bad())?;
     // Nothing is computed any more: where there is no curve, it could not be.

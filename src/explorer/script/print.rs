@@ -4,8 +4,7 @@ use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command, row_of};
 use crate::explorer::view::Overlay;
 
-/// The line of a command: what reads back as the same command. `None` for what only a screen can mean: values as typed
-/// beside a unit, tried or taken back, folders, places of a chart.
+/// The line that reads back as this command; `None` for commands that need a screen.
 pub fn line(command: &Command) -> Option<String> {
     let name = row_of(command.id()).name;
     let rest = match command {
@@ -44,7 +43,6 @@ fn replacing(replace: bool) -> &'static str {
     if replace { " replace" } else { "" }
 }
 
-/// The word for an overlay.
 pub(super) fn overlay_name(overlay: Overlay) -> &'static str {
     match overlay {
         Overlay::Smooth => "smooth",

@@ -46,7 +46,6 @@ impl fmt::Display for ScriptError {
 }
 
 /// Reads a script; `name` names it in messages. Nothing of it is done.
-/// Errors: All lines that are no commands, or none for a script.
 pub fn read(name: &str, text: &str) -> Result<Vec<Line>, ScriptError> {
     let (mut lines, mut faults) = (Vec::new(), Vec::new());
     for (i, text) in text.lines().enumerate() {

@@ -40,7 +40,6 @@ impl Ended {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     pub format: u32,
-    /// The version of the program that wrote it.
     pub program_version: String,
     pub ended: Ended,
     /// When it was written, in seconds since 1970.
@@ -189,7 +188,6 @@ impl Document {
     }
 
     /// As JSON, in one line.
-    /// Errors: None that is known: every number and text has a form.
     pub fn json(&self) -> serde_json::Result<Vec<u8>> {
         let mut bytes = serde_json::to_vec(self)?;
         bytes.push(b'\n');
@@ -213,7 +211,6 @@ impl Document {
     }
 
     /// The snapshot of it; no problem is made ready and no file is read.
-    /// Errors: [`Unreadable::Damaged`].
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
         let Restored { presets, settings, was_former } = self.problems.back()?;
         let preset = |number: usize| {

@@ -66,12 +66,10 @@ impl<'de> Deserialize<'de> for Real {
     }
 }
 
-/// Numbers for a session.
 pub(super) fn reals<const N: usize>(numbers: [f64; N]) -> [Real; N] {
     numbers.map(Real)
 }
 
-/// Numbers of a session.
 pub(super) fn floats<const N: usize>(numbers: [Real; N]) -> [f64; N] {
     numbers.map(|real| real.0)
 }

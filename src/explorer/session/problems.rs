@@ -86,7 +86,6 @@ pub(super) struct Collector {
 }
 
 impl Collector {
-    /// The number of a preset.
     pub(super) fn preset(&mut self, preset: &Preset) -> usize {
         let profile = match &preset.gap {
             Shape::Profile(measured) => Some(self.profile(measured.rows())),
@@ -100,7 +99,6 @@ impl Collector {
         })
     }
 
-    /// The number of a setting.
     pub(super) fn setting(&mut self, setting: &Arc<Setting>) -> usize {
         if let Some(known) = self.settings.get(&Arc::as_ptr(setting)) {
             return *known;

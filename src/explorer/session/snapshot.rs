@@ -16,21 +16,16 @@ use serde::{Deserialize, Serialize};
 /// What a person made of a session. A clone, and a snapshot of a model, share the walk with it.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
-    /// Which session of the program it is of.
     pub session: u64,
     /// The preset as it is, without a value that is still being typed.
     pub preset: Preset,
-    /// The preset as loaded or last saved.
     pub saved: Preset,
     pub source: Source,
-    /// How its file was when last seen.
     pub fingerprint: Option<Fingerprint>,
     pub history: History,
     /// Whether the walker has been tried on the preset as it is.
     pub settled: bool,
-    /// The pinned curves' numbers and presets.
     pub pins: Vec<(usize, Preset)>,
-    /// How it is looked at and walked.
     pub look: Look,
     pub journal: Kept,
     /// Whether it was read from a session that calls the exact basis spectral, as programs before this one did.
@@ -40,26 +35,21 @@ pub struct Snapshot {
 /// What is said of a session of before when it goes on.
 const FORMER: &str = "its basis spectral is exact now";
 
-/// How a session is looked at and walked.
+/// How a session is looked at and walked; the fields are as in [`Model`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Look {
     pub panel: Panel,
     pub parameter: usize,
     pub event: usize,
     pub view: View,
-    /// The parts of the views that are shown, where that is not the whole.
     pub windows: Vec<(View, Window)>,
     pub cross: Option<(f64, f64)>,
     pub axes: Axes,
     pub events: EventSource,
-    /// The theory drawn.
     pub overlays: Overlays,
-    /// Whether steps shrink the contact.
     pub inward: bool,
     pub length: f64,
-    /// The last stiffness of the device.
     pub stiffness: Option<f64>,
-    /// Whether its line is drawn, where somebody has said so.
     pub device: Option<bool>,
 }
 
@@ -144,8 +134,7 @@ impl Snapshot {
         self.history.len().saturating_sub(1)
     }
 
-    /// The session of it: its curve and those of its pins are asked for. `before` is the model that it takes the place
-    /// of, whose late replies are to be recognised.
+    /// The session of it, and the curves it needs. It takes the place of `before`, whose late replies are recognised.
     pub fn resume(self, before: Option<&Model>) -> (Model, Vec<Effect>) {
         let loaded = Loaded {
             source: self.source,

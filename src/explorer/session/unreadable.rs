@@ -15,9 +15,5 @@ pub enum Unreadable {
         "the session has format {format}, of a later pulloff (it was written by {program}); this one reads format \
          {FORMAT}"
     )]
-    Future {
-        format: u32,
-        /// The version of the program that wrote it.
-        program: String,
-    },
+    Future { format: u32, program: String },
 }

@@ -72,7 +72,6 @@ impl App {
         Vec::new()
     }
 
-    /// Does what the selected line says.
     fn take(&mut self, choose: &Choose) -> Vec<Effect> {
         let Some((at, item)) = choose.current() else { return Vec::new() };
         match item.action.clone() {

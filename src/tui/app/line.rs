@@ -95,7 +95,6 @@ fn changed(prompt: &mut Prompt, input: Input) {
     prompt.fault = None;
 }
 
-/// What the command begun takes and does.
 fn note(line: &str) -> String {
     let name = line.split_whitespace().next().unwrap_or_default();
     let row = ROWS.iter().find(|row| row.name == name);

@@ -46,11 +46,10 @@ pub struct App {
     pub typed: Typed,
     /// Whether the mouse is taken from the terminal.
     pub mouse: bool,
-    /// What is to be put into the clipboard.
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
-    /// What takes so long beside the curve and the walk that it is told of.
+    /// The background job that takes long enough to be shown.
     pub late: Option<BackgroundJob>,
 }
 
@@ -61,7 +60,6 @@ impl App {
         (Self::on(model, theme), effects)
     }
 
-    /// The screen of a session.
     pub(super) fn on(model: Model, theme: Theme) -> Self {
         Self {
             model,
@@ -344,7 +342,6 @@ impl App {
         Vec::new()
     }
 
-    /// Offers a list.
     pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
         let picture = items.get(selected).and_then(|item| self.picture(&item.action));
         let (title, filter) = (title.to_owned(), String::new());

@@ -23,10 +23,10 @@ struct Ink {
 /// As after a reset.
 const PLAIN: Ink = Ink { fg: Color::Reset, bg: Color::Reset, modifier: Modifier::empty() };
 
-/// What of a look is seen on a blank.
+/// The attributes that show on a blank.
 const SEEN_ON_BLANKS: Modifier = Modifier::REVERSED.union(Modifier::UNDERLINED).union(Modifier::CROSSED_OUT);
 
-/// What the terminal is writing with, for the length of one frame, which begins and ends with a plain look.
+/// Encodes the cells of one frame, which begins and ends with plain attributes.
 pub(super) struct CellEncoder<'a> {
     frame: &'a mut Vec<u8>,
     ink: Ink,
@@ -42,7 +42,6 @@ impl<'a> CellEncoder<'a> {
         Self { frame, ink: PLAIN, at: None, is_sure: false }
     }
 
-    /// Writes a cell in its place.
     pub(super) fn write(&mut self, at: Position, cell: &Cell) {
         self.go(at);
         let ink = Ink { fg: cell.fg, bg: cell.bg, modifier: cell.modifier };
@@ -59,7 +58,6 @@ impl<'a> CellEncoder<'a> {
         };
     }
 
-    /// The frame ends.
     pub(super) fn end(mut self) {
         self.dip(PLAIN);
     }
@@ -124,7 +122,6 @@ const MODIFIERS: [(Modifier, u8); 9] = [
     (Modifier::CROSSED_OUT, 9),
 ];
 
-/// Whether a blank looks the same in both.
 fn looks_same_blank(a: Ink, b: Ink) -> bool {
     let marked = |ink: Ink| ink.modifier.intersects(SEEN_ON_BLANKS);
     a.bg == b.bg && !marked(a) && !marked(b)

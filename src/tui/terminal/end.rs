@@ -98,7 +98,7 @@ pub(super) fn restore() {
     }
 }
 
-/// Returns in one thread only, with the timer running.
+/// Returns in the first thread that calls it, with the timer running; the others wait for ever.
 fn claim(status: i32) {
     if ENDING.swap(true, Ordering::SeqCst) {
         loop {
@@ -114,7 +114,6 @@ fn claim(status: i32) {
     });
 }
 
-/// Runs the last words, if there are any.
 fn speak() {
     join(start_to_speak());
 }

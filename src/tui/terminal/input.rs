@@ -23,7 +23,6 @@ const CAPACITY: usize = 256;
 /// Something that happened; `T` is the program's own message, a worker's reply for instance.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Incoming<T> {
-    /// A key was pressed or repeats.
     Key(KeyEvent),
     /// The first button was pressed, or the wheel turned; the place may be outside of the screen.
     Mouse(MouseEvent),
@@ -33,7 +32,6 @@ pub enum Incoming<T> {
     Resized,
     /// The program was stopped and goes on: call [`Display::repaint`](super::Display::repaint) and draw.
     Resumed,
-    /// A message of the program's own.
     App(T),
 }
 
@@ -125,7 +123,6 @@ impl<T: Send + 'static> Inbox<T> {
         }
     }
 
-    /// Starts the thread that reads the terminal.
     pub(super) fn read_terminal(&self, line: &'static Tty) -> io::Result<()> {
         let sender = self.sender.clone();
         thread::Builder::new().name("input".to_owned()).spawn(move || {
@@ -162,7 +159,6 @@ impl<T: Send + 'static> Inbox<T> {
     }
 }
 
-/// The mouse does nothing else.
 fn is_wanted(kind: MouseEventKind) -> bool {
     use MouseEventKind::{Down, ScrollDown, ScrollUp};
     matches!(kind, Down(MouseButton::Left) | ScrollUp | ScrollDown)

@@ -22,7 +22,6 @@ const PREFIX: &str = "panic-";
 const SUFFIX: &str = ".txt";
 
 /// Writes a report about a panic, and says where it is.
-/// Errors: In words: no state folder is known, or it cannot be written to.
 pub(super) fn write(what: &str, trace: &Backtrace) -> Result<String, String> {
     let home = etcetera::base_strategy::Xdg::new().map_err(|error| error.to_string())?;
     let folder = home.state_dir().ok_or("no folder for reports is known")?.join("pulloff/reports");

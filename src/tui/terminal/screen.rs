@@ -28,7 +28,6 @@ use super::sink::Sink;
 pub struct Screen<S: Sink + 'static> {
     line: &'static S,
     frame: Vec<u8>,
-    /// Whether the cursor is shown, if known.
     cursor_shown: Option<bool>,
     /// Where the cursor was put, if nothing was drawn since.
     cursor_at: Option<Position>,
@@ -51,7 +50,6 @@ impl<S: Sink> Screen<S> {
         self.last
     }
 
-    /// Collects a command.
     fn collect(&mut self, command: impl Command) {
         self.cursor_at = None;
         let mut text = String::new();

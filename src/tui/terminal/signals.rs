@@ -39,7 +39,6 @@ pub(super) fn catch() -> io::Result<Signals> {
     Signals::new(ENDING.into_iter().chain([SIGTSTP, SIGCONT, SIGWINCH]))
 }
 
-/// Starts the thread that answers the signals.
 pub(super) fn serve(mut signals: Signals, tty: &'static Tty, notifier: Notifier) -> io::Result<()> {
     thread::Builder::new().name("signals".to_owned()).spawn(move || {
         loop {

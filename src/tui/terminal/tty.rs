@@ -147,7 +147,6 @@ impl Tty {
         }
     }
 
-    /// Returns once the terminal has gone away.
     pub(super) fn wait_for_hang_up(&self) -> io::Result<()> {
         // Hang-up and error are reported without being asked for.
         while !self.wait(PollFlags::empty(), None)? {}
@@ -174,7 +173,6 @@ impl Tty {
         }
     }
 
-    /// Whether the modes are ours at the moment.
     pub(super) fn is_taken(&self) -> bool {
         is_ours(self.hands.load(Ordering::SeqCst))
     }

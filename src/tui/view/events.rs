@@ -81,7 +81,7 @@ fn first(model: &Model, count: usize, rows: usize) -> usize {
 
 /// The line in this row of the screen, in the panel `area`.
 pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
-    // The frame and the heads.
+    // Three lines are the frame and the column heads.
     let rows = usize::from(area.height.saturating_sub(3));
     let count = model.shown_events().len() + model.shown_inadmissible().len();
     let below = usize::from(row.checked_sub(area.y + 2)?);
@@ -214,8 +214,7 @@ const SHORT: &[Column] = &[
     ("event", 0, true),
 ];
 
-/// The heads and the rows of the events, the columns as wide as their longest cell; without a `P_c` the forces over it
-/// are forces.
+/// The heads and the rows of the events; without a `P_c` forces are shown in their unit.
 fn table(units: &UnitSystem, events: &[EventReport], critical: f64, wide: bool) -> (String, Vec<String>) {
     let columns = if wide { LONG } else { SHORT };
     let cells =

@@ -53,7 +53,6 @@ impl Entry {
         Self { label: label.to_owned(), text: text.into(), style, name: "" }
     }
 
-    /// Its rows in so many columns.
     fn rows(&self, theme: Theme, width: usize) -> Vec<Line<'static>> {
         let indent = Span::raw(&*self.label).width();
         let room = width.saturating_sub(indent).max(1);

@@ -79,7 +79,6 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
     }
 }
 
-/// Where a list lies on the screen.
 fn place_of(choose: &Choose, area: Rect) -> Rect {
     let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
     let (width, height) = if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (76, height) };

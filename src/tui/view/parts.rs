@@ -12,7 +12,6 @@ pub(super) fn side_panel<'a>(theme: Theme, title: &str, selected: bool) -> Block
     panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
 }
 
-/// A panel's frame with its title.
 pub(super) fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
     Block::bordered()
         .border_set(theme.border())

@@ -21,7 +21,6 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum What {
     Walker,
-    /// The instabilities, and the selected one.
     Events(usize),
     /// A view, its window, and the cross-hair; the first has the keys.
     Chart {
@@ -124,7 +123,6 @@ struct Scene {
     keymap: Keymap,
 }
 
-/// The inside that is shown.
 fn inside(model: &Model) -> Option<&Arc<Inside>> {
     model.profile.as_ref().filter(|_| model.profile_wanted.is_some())
 }
