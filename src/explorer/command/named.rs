@@ -3,7 +3,7 @@
 //! A sentence holds the command itself ([`Id::named`]). Who shows it knows what the command is called there: the terminal
 //! its key, a script its name.
 
-use super::{Id, ROWS, row_of};
+use super::table::{Id, ROWS, row_of};
 
 /// Encloses the name of a command. No text from outside holds it: it is a control character, and those are replaced.
 const MARK: char = '\u{1}';

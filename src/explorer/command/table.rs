@@ -1,279 +1,151 @@
-//! The table of commands: name, section of the help, what each does and what it needs.
+//! The table of commands. One line each: identity, name in scripts, what it needs, what it takes (if anything), a word or
+//! two for the footer, and what it does.
 
-use super::{Id, Needs, Row};
-
-const fn row(
-    id: Id,
-    name: &'static str,
-    section: &'static str,
-    short: &'static str,
-    help: &'static str,
-    needs: Needs,
-) -> Row {
-    Row { id, name, section, help, short, argument: None, needs }
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    pub id: Id,
+    pub name: &'static str,
+    pub section: &'static str,
+    pub help: &'static str,
+    pub short: &'static str,
+    pub argument: Option<&'static str>,
+    /// What must be there before it can be done.
+    pub needs: Needs,
 }
 
-const fn taking(argument: &'static str, mut row: Row) -> Row {
-    row.argument = Some(argument);
-    row
+/// What must be there before a command can be done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    Nothing,
+    Walker,
+    /// A state of the walk, or no curve being computed.
+    WalkerOrNoCurve,
+    /// A state in which the edge can run.
+    Jump,
+    /// A state or a value to go back to.
+    Undo,
+    Redo,
+    /// A second branch of the walk.
+    Branches,
+    Curve,
+    Pins,
+    Parameter,
+    /// A view that shows a part of its chart only.
+    Zoom,
 }
 
-const WALK: &str = "Walk along the curve";
-const VALUES: &str = "Change the problem";
-const VIEW: &str = "Look";
-const FILES: &str = "Presets and files";
-const PROGRAM: &str = "Program";
+/// Makes [`Id`] and [`ROWS`] of the table.
+macro_rules! commands {
+    ($($section:literal { $(
+        $id:ident $name:literal $needs:ident $(($argument:literal))? $short:literal: $help:literal;
+    )* })*) => {
+        /// A command's identity.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Id { $($(
+            #[doc = $help]
+            $id,
+        )*)* }
 
-/// The table, in the order of the help.
-pub static ROWS: &[Row] = &[
-    taking(
-        "number of steps",
-        row(
-            Id::Step,
-            "step",
-            WALK,
-            "step",
-            "one step along the curve; type a number first for that many",
-            Needs::Walker,
-        ),
-    ),
-    row(
-        Id::NextLimit,
-        "next-limit",
-        WALK,
-        "next limit",
-        "run to the next limit point of the control",
-        Needs::Walker,
-    ),
-    row(
-        Id::PreviousLimit,
-        "previous-limit",
-        WALK,
-        "previous",
-        "turn round and run to the previous limit point",
-        Needs::Walker,
-    ),
-    row(
-        Id::Jump,
-        "jump",
-        WALK,
-        "jump",
-        "let the edge run at constant control to the next stable state",
-        Needs::Jump,
-    ),
-    taking("number of states", row(Id::Run, "run", WALK, "run", "run and pause", Needs::Walker)),
-    taking(
-        "contact radius",
-        row(
-            Id::MoveTo,
-            "move-to",
-            WALK,
-            "move to",
-            "the walker to the state of a contact radius on the curve",
-            Needs::Curve,
-        ),
-    ),
-    row(Id::Reverse, "reverse", WALK, "reverse", "walk the other way", Needs::Walker),
-    row(Id::Halve, "halve-step", WALK, "half step", "halve the step length", Needs::Nothing),
-    row(Id::Double, "double-step", WALK, "double step", "double the step length", Needs::Nothing),
-    taking(
-        "length",
-        row(
-            Id::StepLength,
-            "step-length",
-            WALK,
-            "step length",
-            "the longest step, as a share of every quantity's range",
-            Needs::Nothing,
-        ),
-    ),
-    row(Id::Undo, "undo", WALK, "undo", "back to the state before; nothing is erased", Needs::Undo),
-    row(
-        Id::UndoCommand,
-        "undo-command",
-        WALK,
-        "undo all",
-        "back to where the last command began: a run, a count of steps",
-        Needs::Undo,
-    ),
-    row(Id::Redo, "redo", WALK, "redo", "forward again along the last branch walked", Needs::Redo),
-    taking(
-        "branch",
-        row(
-            Id::Branches,
-            "branches",
-            WALK,
-            "branches",
-            "the branches of the walk: what each ended with, and back to it",
-            Needs::Branches,
-        ),
-    ),
-    row(Id::Restart, "restart", WALK, "restart", "back to the start state", Needs::WalkerOrNoCurve),
-    taking(
-        "control",
-        row(
-            Id::Control,
-            "control",
-            WALK,
-            "control",
-            "control the displacement, the force, or a spring's far end",
-            Needs::Nothing,
-        ),
-    ),
-    taking(
-        "number",
-        row(
-            Id::SelectEvent,
-            "select-event",
-            WALK,
-            "event",
-            "the walker to the event of this number in the list",
-            Needs::Walker,
-        ),
-    ),
-    row(Id::Less, "less", VALUES, "less", "the selected value, a little less", Needs::Parameter),
-    row(Id::More, "more", VALUES, "more", "the selected value, a little more", Needs::Parameter),
-    row(Id::MuchLess, "much-less", VALUES, "much less", "the selected value, much less", Needs::Parameter),
-    row(Id::MuchMore, "much-more", VALUES, "much more", "the selected value, much more", Needs::Parameter),
-    taking(
-        "value",
-        row(
-            Id::Edit,
-            "edit",
-            VALUES,
-            "type value",
-            "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there",
-            Needs::Nothing,
-        ),
-    ),
-    taking(
-        "KEY=VALUE ...",
-        row(Id::Assign, "set", VALUES, "set", "other values for some keys, as one change", Needs::Nothing),
-    ),
-    row(Id::Up, "up", VIEW, "up", "select the line above; in Charts: move up", Needs::Nothing),
-    row(Id::Down, "down", VIEW, "down", "select the line below; in Charts: move down", Needs::Nothing),
-    row(Id::Left, "left", VIEW, "left", "the panel before; in Charts: move left", Needs::Nothing),
-    row(Id::Right, "right", VIEW, "right", "the next panel; in Charts: move right", Needs::Nothing),
-    row(Id::NextPanel, "next-panel", VIEW, "panel", "next panel", Needs::Nothing),
-    row(Id::PreviousPanel, "previous-panel", VIEW, "panel back", "previous panel", Needs::Nothing),
-    row(Id::NextView, "next-view", VIEW, "view", "the next view of the chart", Needs::Nothing),
-    row(Id::PreviousView, "previous-view", VIEW, "view back", "the view before", Needs::Nothing),
-    taking(
-        "place",
-        row(
-            Id::ZoomIn,
-            "zoom-in",
-            VIEW,
-            "closer",
-            "the chart closer, about the cross-hair or the walker",
-            Needs::Curve,
-        ),
-    ),
-    taking("place", row(Id::ZoomOut, "zoom-out", VIEW, "wider", "further away", Needs::Curve)),
-    row(Id::Fit, "fit", VIEW, "fit", "the whole chart again", Needs::Zoom),
-    row(
-        Id::CrossHair,
-        "cross-hair",
-        VIEW,
-        "cross-hair",
-        "a cross-hair that reads the chart; arrows move it",
-        Needs::Curve,
-    ),
-    row(Id::Axes, "axes", VIEW, "axes", "axes in P/Pc, delta, s/lambda, or raw values", Needs::Nothing),
-    row(Id::Events, "events", VIEW, "events", "events on the curve, or walked", Needs::Nothing),
-    row(
-        Id::Device,
-        "device-line",
-        VIEW,
-        "device",
-        "show or hide the line of the loading device through the walker",
-        Needs::Nothing,
-    ),
-    taking(
-        "theory",
-        row(
-            Id::Overlays,
-            "overlays",
-            VIEW,
-            "theory",
-            "theory over the curve: smooth sphere, exact solution, envelope",
-            Needs::Curve,
-        ),
-    ),
-    row(Id::Pin, "pin", VIEW, "pin", "keep this curve to compare the next ones with", Needs::Curve),
-    taking("number", row(Id::Pins, "pins", VIEW, "pins", "take pinned curves away", Needs::Pins)),
-    taking(
-        "preset",
-        row(
-            Id::Open,
-            "open",
-            FILES,
-            "open",
-            "open a preset; D in the list deletes one of your own",
-            Needs::Nothing,
-        ),
-    ),
-    row(Id::Save, "save", FILES, "save", "save the preset", Needs::Nothing),
-    taking(
-        "name",
-        row(Id::SaveAs, "save-as", FILES, "save as", "save the preset under another name", Needs::Nothing),
-    ),
-    taking(
-        "file",
-        row(
-            Id::Export,
-            "export",
-            FILES,
-            "export",
-            "write curve, walk or events as CSV or JSON, the session as a script, the screen as text",
-            Needs::Nothing,
-        ),
-    ),
-    row(
-        Id::Copy,
-        "copy",
-        FILES,
-        "copy",
-        "the state, the events, the chart or the screen into the terminal's clipboard",
-        Needs::Nothing,
-    ),
-    row(
-        Id::CommandLine,
-        "command-line",
-        PROGRAM,
-        "command",
-        "type a command by its name; Tab completes, up and down bring lines back",
-        Needs::Nothing,
-    ),
-    row(
-        Id::Mouse,
-        "mouse",
-        PROGRAM,
-        "mouse",
-        "take the mouse (click, wheel), or leave it to the terminal to select text",
-        Needs::Nothing,
-    ),
-    row(Id::Help, "help", PROGRAM, "help", "this help; / searches it", Needs::Nothing),
-    row(
-        Id::Cancel,
-        "cancel",
-        PROGRAM,
-        "back",
-        "take typed text back, close, stop a run or a curve",
-        Needs::Nothing,
-    ),
-    row(
-        Id::Quit,
-        "quit",
-        PROGRAM,
-        "quit",
-        "quit; asks only if the preset has unsaved changes",
-        Needs::Nothing,
-    ),
-];
+        /// The rows in the order of the help, which is that of [`Id`].
+        pub static ROWS: &[Row] = &[$($(
+            Row {
+                id: Id::$id,
+                name: $name,
+                section: $section,
+                help: $help,
+                short: $short,
+                argument: commands!(@argument $($argument)?),
+                needs: Needs::$needs,
+            },
+        )*)*];
+    };
+    (@argument) => { None };
+    (@argument $argument:literal) => { Some($argument) };
+}
+
+commands! {
+    "Walk along the curve" {
+        Step "step" Walker ("number of steps") "step": "one step along the curve; type a number first for that many";
+        NextLimit "next-limit" Walker "next limit": "run to the next limit point of the control";
+        PreviousLimit "previous-limit" Walker "previous": "turn round and run to the previous limit point";
+        Jump "jump" Jump "jump": "let the edge run at constant control to the next stable state";
+        Run "run" Walker ("number of states") "run": "run and pause";
+        MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
+        Reverse "reverse" Walker "reverse": "walk the other way";
+        Halve "halve-step" Nothing "half step": "halve the step length";
+        Double "double-step" Nothing "double step": "double the step length";
+        StepLength "step-length" Nothing ("length") "step length": "the longest step, as a share of every quantity's range";
+        Undo "undo" Undo "undo": "back to the state before; nothing is erased";
+        UndoCommand "undo-command" Undo "undo all": "back to where the last command began: a run, a count of steps";
+        Redo "redo" Redo "redo": "forward again along the last branch walked";
+        Branches "branches" Branches ("branch") "branches": "the branches of the walk: what each ended with, and back to it";
+        Restart "restart" WalkerOrNoCurve "restart": "back to the start state";
+        Control "control" Nothing ("control") "control": "control the displacement, the force, or a spring's far end";
+        SelectEvent "select-event" Walker ("number") "event": "the walker to the event of this number in the list";
+    }
+    "Change the problem" {
+        Less "less" Parameter "less": "the selected value, a little less";
+        More "more" Parameter "more": "the selected value, a little more";
+        MuchLess "much-less" Parameter "much less": "the selected value, much less";
+        MuchMore "much-more" Parameter "much more": "the selected value, much more";
+        Edit "edit" Nothing ("value") "type value": "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there";
+        Assign "set" Nothing ("KEY=VALUE ...") "set": "other values for some keys, as one change";
+    }
+    "Look" {
+        Up "up" Nothing "up": "select the line above; in Charts: move up";
+        Down "down" Nothing "down": "select the line below; in Charts: move down";
+        Left "left" Nothing "left": "the panel before; in Charts: move left";
+        Right "right" Nothing "right": "the next panel; in Charts: move right";
+        NextPanel "next-panel" Nothing "panel": "next panel";
+        PreviousPanel "previous-panel" Nothing "panel back": "previous panel";
+        NextView "next-view" Nothing "view": "the next view of the chart";
+        PreviousView "previous-view" Nothing "view back": "the view before";
+        ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";
+        ZoomOut "zoom-out" Curve ("place") "wider": "further away";
+        Fit "fit" Zoom "fit": "the whole chart again";
+        CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
+        Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
+        Events "events" Nothing "events": "events on the curve, or walked";
+        Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";
+        Overlays "overlays" Curve ("theory") "theory": "theory over the curve: smooth sphere, exact solution, envelope";
+        Pin "pin" Curve "pin": "keep this curve to compare the next ones with";
+        Pins "pins" Pins ("number") "pins": "take pinned curves away";
+    }
+    "Presets and files" {
+        Open "open" Nothing ("preset") "open": "open a preset; D in the list deletes one of your own";
+        Save "save" Nothing "save": "save the preset";
+        SaveAs "save-as" Nothing ("name") "save as": "save the preset under another name";
+        Export "export" Nothing ("file") "export": "write curve, walk or events as CSV or JSON, the session as a script, the screen as text";
+        Copy "copy" Nothing "copy": "the state, the events, the chart or the screen into the terminal's clipboard";
+    }
+    "Program" {
+        CommandLine "command-line" Nothing "command": "type a command by its name; Tab completes, up and down bring lines back";
+        Mouse "mouse" Nothing "mouse": "take the mouse (click, wheel), or leave it to the terminal to select text";
+        Help "help" Nothing "help": "this help; / searches it";
+        Cancel "cancel" Nothing "back": "take typed text back, close, stop a run or a curve";
+        Quit "quit" Nothing "quit": "quit; asks only if the preset has unsaved changes";
+    }
+}
 
 /// The row of a command.
 pub fn row_of(id: Id) -> &'static Row {
-    // Totality is tested, so the fallback is never taken.
-    ROWS.iter().find(|row| row.id == id).unwrap_or(&ROWS[0])
+    &ROWS[id as usize]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_id_has_one_row_with_a_name_of_its_own() {
+        let ids: HashSet<Id> = ROWS.iter().map(|row| row.id).collect();
+        let names: HashSet<&str> = ROWS.iter().map(|row| row.name).collect();
+        assert_eq!(ids.len(), ROWS.len());
+        assert_eq!(names.len(), ROWS.len());
+        for row in ROWS {
+            assert_eq!(row_of(row.id).name, row.name);
+        }
+    }
 }
