@@ -76,7 +76,10 @@ fn agrees(found: &Cycle, reference: &Value, tolerance: f64, losses: f64) {
         let error = (event.dissipated.unwrap() - lost).abs();
         worst[3] = worst[3].max(if lost == 0.0 { error } else { error / lost });
     }
-    println!("worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}", worst[0], worst[1], worst[2], worst[3]);
+    println!(
+        "worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}",
+        worst[0], worst[1], worst[2], worst[3]
+    );
     assert!(worst[..3].iter().all(|error| *error < tolerance) && worst[3] < losses, "{worst:?}");
     let sum = reference["checks"]["sum_of_losses"].as_f64().unwrap();
     assert!((found.totals.dissipated.unwrap() / sum - 1.0).abs() < losses);
@@ -109,7 +112,9 @@ fn figure_8_touches_once_and_snaps_once() {
     let kinds: Vec<EventKind> = found.events.iter().map(|event| event.kind).collect();
     assert_eq!(kinds, [EventKind::FirstTouch, EventKind::Turn, EventKind::Recede, EventKind::PullOff]);
     let landed = found.events[0].after.as_ref().unwrap();
-    assert!((landed.contact_radius - 0.373_502_9).abs() < 1e-7 && (landed.force + 0.035_632_181_2).abs() < 1e-10);
+    assert!(
+        (landed.contact_radius - 0.373_502_9).abs() < 1e-7 && (landed.force + 0.035_632_181_2).abs() < 1e-10
+    );
     assert!((found.events[0].dissipated.unwrap() / 1.976_571_4e-3 - 1.0).abs() < 1e-7);
     let reference = reference("fig8");
     let unloading = reference["control"]["displacement"]["unloading"].as_array().or_else(|| {
@@ -249,8 +254,9 @@ fn random_loop(number: u64, areas: Areas) -> Result<(Cycle, String), String> {
     let mut random = fastrand::Rng::with_seed(number);
     let (gap, name) = random_gap(&mut random);
     let gamma = 1e-5 * 500.0_f64.powf(random.f64());
-    let control = [Control::Displacement, Control::Force, Control::Stiffness(0.03 * 100.0_f64.powf(random.f64()))]
-        [random.usize(0..3)];
+    let control =
+        [Control::Displacement, Control::Force, Control::Stiffness(0.03 * 100.0_f64.powf(random.f64()))]
+            [random.usize(0..3)];
     let approach = 0.01 + 0.07 * random.f64();
     let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
     let ground = Ground::of(gap, 0.8).unwrap();
@@ -266,7 +272,8 @@ fn random_loops(numbers: std::ops::Range<u64>, areas: Areas) {
     for number in numbers {
         match random_loop(number, areas) {
             Ok((found, name)) => {
-                let gains = found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-18));
+                let gains =
+                    found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-18));
                 let off = found.totals.balance.is_some_and(|balance| !(balance < 1e-7));
                 let lines = found.warnings.iter().any(|warning| matches!(warning, Warning::Area { .. }));
                 let apart = found.events.last().map(|event| event.kind) == Some(EventKind::PullOff);

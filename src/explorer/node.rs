@@ -2,6 +2,7 @@
 
 use super::setting::Setting;
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::walk::Ahead;
 use pulloff_engine::quasistatic::{Admissibility, Event, Point, Stability, State, Stiffness};
 use std::sync::Arc;
 
@@ -20,15 +21,6 @@ pub enum NodeKind {
     Solved,
     /// Not solved after a change: the state before, with the reason.
     Stale(String),
-}
-
-/// Where the edge would land from a limit point, and what it would cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ahead {
-    /// The landing, reduced; `None` where the bodies come apart.
-    pub after: Option<State>,
-    /// Energy lost, reduced; `None` for a pull-off under a dead load.
-    pub dissipated: Option<f64>,
 }
 
 /// One state of the walk.

@@ -14,6 +14,7 @@
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
 //! | [`overlap`] | where a curve or a path passes states that are not admissible |
 //! | [`unload`] | the whole unloading: snaps, pull-off, losses |
+//! | [`walk`] | steps, runs and jumps along the curve, one request at a time |
 //!
 //! All numbers are in reduced units.
 
@@ -29,6 +30,7 @@ pub mod overlap;
 pub mod profile;
 pub mod start;
 pub mod unload;
+pub mod walk;
 
 pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Detail, Sample};

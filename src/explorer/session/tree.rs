@@ -5,10 +5,11 @@
 
 use super::number::{Real, floats, reals};
 use crate::explorer::history::History;
-use crate::explorer::node::{Ahead, Node, NodeKind};
+use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::setting::Setting;
 use pulloff_engine::continuation::{Column, Columns};
 use pulloff_engine::quasistatic::admissible::Crest;
+use pulloff_engine::quasistatic::walk::Ahead;
 use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

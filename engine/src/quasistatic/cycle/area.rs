@@ -52,11 +52,16 @@ impl Balance<'_> {
     }
 
     /// ∫ Σ 2πe (G − γ) dα from the small contacts to the large ones.
-    fn opened(&self, small: &[[f64; 2]], large: &[[f64; 2]], value: f64, crests: Option<&[f64]>) -> Option<f64> {
+    fn opened(
+        &self,
+        small: &[[f64; 2]],
+        large: &[[f64; 2]],
+        value: f64,
+        crests: Option<&[f64]>,
+    ) -> Option<f64> {
         let (mut ways, mut vanishing) = (Vec::new(), Vec::new());
         for &[lo, hi] in large {
-            let inside: Vec<[f64; 2]> =
-                small.iter().copied().filter(|[a, b]| *b > lo && *a < hi).collect();
+            let inside: Vec<[f64; 2]> = small.iter().copied().filter(|[a, b]| *b > lo && *a < hi).collect();
             let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
                 let crest = crests.and_then(|crests| crests.iter().find(|r| **r > lo && **r < hi));
                 match crest {
@@ -136,7 +141,8 @@ impl Balance<'_> {
     fn vanished(&self, others: &[[f64; 2]], [a, b]: [f64; 2], value: f64) -> Option<f64> {
         let (middle, width) = (0.5 * (a + b), b - a);
         let of = |w: f64| {
-            let mut edges: Vec<[[f64; 2]; 2]> = others.iter().map(|ring| ring.map(|edge| [edge, 0.0])).collect();
+            let mut edges: Vec<[[f64; 2]; 2]> =
+                others.iter().map(|ring| ring.map(|edge| [edge, 0.0])).collect();
             edges.push([[middle - 0.5 * w, -0.5], [middle + 0.5 * w, 0.5]]);
             self.rate(edges, value)
         };

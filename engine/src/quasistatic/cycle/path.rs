@@ -360,7 +360,9 @@ impl Path<'_, '_> {
     pub(super) fn warnings(&self, balance: Option<f64>) -> Vec<Warning> {
         let mut warnings = Vec::new();
         // Written so that what is no number warns.
-        if let Some(share) = balance.filter(|share| !matches!(share.total_cmp(&BALANCED), std::cmp::Ordering::Less)) {
+        if let Some(share) =
+            balance.filter(|share| !matches!(share.total_cmp(&BALANCED), std::cmp::Ordering::Less))
+        {
             warnings.push(Warning::Balance { share });
         }
         if self.digits.0 < DIGITS {

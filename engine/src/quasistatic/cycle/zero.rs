@@ -159,7 +159,8 @@ impl Path<'_, '_> {
             };
             let (_, next, crest) = self.touching(&step, &point, length, next)?;
             // A gap that closes does so before that touch, or is looked at again after it.
-            if let Some((gap, merged)) = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach)) {
+            if let Some((gap, merged)) = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach))
+            {
                 let turn = self.setting.turn;
                 if self.measure(&merged) < turn.value() {
                     let after = self.state(&merged);
@@ -173,8 +174,7 @@ impl Path<'_, '_> {
             }
             let turn = self.setting.turn;
             if self.measure(&next.held) >= turn.value() {
-                let mut left =
-                    |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
+                let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
                 let at_start = self.measure(&point.held) - turn.value();
                 let offset = step.offset(&next);
                 let length = step.tangent().dot(&offset);
