@@ -55,11 +55,11 @@ impl Closed {
         }
     }
 
-    /// Writes x with `Mᵀ x = right` to `x`.
-    pub fn solve_transposed(&self, right: &Vector, x: &mut Vector) {
+    /// Writes x with `Mᵀ x = right` to `x`; `z` is overwritten.
+    pub fn solve_transposed(&self, right: &Vector, z: &mut Vector, x: &mut Vector) {
         let n = self.order.len();
         let column = |i: usize, from: usize| self.factors[from * n..].iter().skip(i).step_by(n);
-        let mut z = right.clone();
+        z.copy_from(right);
         for i in 0..n {
             let sum = column(i, 0).zip(z.iter()).take(i).fold(z[i], |sum, (a, z)| sum - a * z);
             z[i] = sum / self.factors[i * n + i];
@@ -149,7 +149,7 @@ mod tests {
                 closed.factor(&jacobian, m.row(n - 1).transpose().column(0)).unwrap();
                 let [mut x, mut z, mut along, mut last] = [(); 4].map(|()| Vector::zeros(n));
                 closed.solve(&(&m * &wanted), &mut x);
-                closed.solve_transposed(&(m.transpose() * &wanted), &mut z);
+                closed.solve_transposed(&(m.transpose() * &wanted), &mut last, &mut z);
                 closed.null_vector(&mut last, &mut along);
                 let condition = m.norm() * m.clone().try_inverse().unwrap().norm();
                 for off in [x - &wanted, z - &wanted, &m * along - last] {

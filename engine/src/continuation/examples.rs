@@ -1,7 +1,7 @@
 //! Small systems with known answers, for the tests of this module.
 
 use super::branch::Point;
-use super::system::{Linearization, Matrix, System, Vector};
+use super::system::{Linearization, Matrix, MatrixMut, System, Vector};
 
 /// p = u³ − 3u with unknowns (u, p): folds of p at u = ∓1, p = ±2.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ impl System for Cubic {
         Some(())
     }
 
-    fn second(&self, at: &Linearization, v: &Vector, second: &mut Matrix) -> Option<()> {
+    fn second(&self, at: &Linearization, v: &Vector, mut second: MatrixMut<'_>) -> Option<()> {
         second.copy_from_slice(&[at.kept[0] * v[0], 0.0]);
         Some(())
     }
@@ -95,7 +95,7 @@ impl System for Lifted {
         Some(())
     }
 
-    fn second(&self, _: &Linearization, v: &Vector, second: &mut Matrix) -> Option<()> {
+    fn second(&self, _: &Linearization, v: &Vector, mut second: MatrixMut<'_>) -> Option<()> {
         second.fill(0.0);
         second[(1, 0)] = -2.0 * v[0];
         (second[(2, 0)], second[(2, 1)]) = (-v[1], -v[0]);
@@ -162,7 +162,7 @@ impl System for Bratu {
         Some(())
     }
 
-    fn second(&self, at: &Linearization, v: &Vector, second: &mut Matrix) -> Option<()> {
+    fn second(&self, at: &Linearization, v: &Vector, mut second: MatrixMut<'_>) -> Option<()> {
         let (unit, n) = (self.spacing().sqrt(), self.nodes);
         second.fill(0.0);
         for (i, kept) in at.kept.chunks_exact(2).enumerate() {

@@ -153,7 +153,7 @@ impl Tracer<'_> {
             let Self { system, y, at, algebra, work, row: gradient, .. } = self;
             algebra.closed.factor(&at.jacobian, along.column(0)).ok_or(singular)?;
             algebra.closed.null_vector(&mut algebra.right, &mut v);
-            algebra.closed.solve_transposed(row, &mut w);
+            algebra.closed.solve_transposed(row, &mut algebra.right, &mut w);
             let undefined = NewtonFailure::Undefined { round };
             algebra.second.find(*system, y, at, &v, &mut work.evaluations).ok_or(undefined)?;
             for (gradient, column) in gradient.iter_mut().zip(algebra.second.along.column_iter()) {

@@ -34,7 +34,7 @@ impl Second {
         v: &Vector,
         evaluations: &mut usize,
     ) -> Option<()> {
-        if let Some(()) = system.second(at, v, &mut self.along) {
+        if system.second(at, v, self.along.as_view_mut()).is_some() {
             return Some(());
         }
         let step = f64::EPSILON.cbrt() * y.amax().max(1.0) / v.norm();

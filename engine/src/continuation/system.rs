@@ -9,7 +9,7 @@
 //!
 //! n is known when the program runs: 2 to some hundred, for the algebra is dense.
 
-use nalgebra::{DMatrix, DVector, DVectorView, MatrixXx3};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector, DVectorView, MatrixXx3};
 
 /// A column of numbers.
 pub type Vector = DVector<f64>;
@@ -19,6 +19,8 @@ pub type Columns = MatrixXx3<f64>;
 pub type Column<'a> = DVectorView<'a, f64>;
 /// A matrix.
 pub type Matrix = DMatrix<f64>;
+/// A matrix to write to, whose size is given.
+pub type MatrixMut<'a> = DMatrixViewMut<'a, f64>;
 
 /// The equations and their derivatives at one point.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +123,7 @@ pub trait System {
     fn linearize(&self, y: &Vector, at: &mut Linearization) -> Option<()>;
 
     /// Writes `J_v` ((n − 1) × n) at the point of `at` to `second`; `None` where the system leaves it to differences of J.
-    fn second(&self, at: &Linearization, v: &Vector, second: &mut Matrix) -> Option<()> {
+    fn second(&self, at: &Linearization, v: &Vector, second: MatrixMut<'_>) -> Option<()> {
         let _ = (at, v, second);
         None
     }

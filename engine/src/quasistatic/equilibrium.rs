@@ -20,7 +20,7 @@
 //! ```
 
 use super::admissible::{Admissibility, Judge};
-use crate::continuation::{self, Column, Linearization, Matrix, System, Vector};
+use crate::continuation::{self, Column, Linearization, MatrixMut, System, Vector};
 use crate::disc::{Basis, Evaluation, Table};
 use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
@@ -293,7 +293,7 @@ impl System for Equilibrium {
         Some(())
     }
 
-    fn second(&self, at: &Linearization, v: &Unknowns, second: &mut Matrix) -> Option<()> {
+    fn second(&self, at: &Linearization, v: &Unknowns, mut second: MatrixMut<'_>) -> Option<()> {
         let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
         let &[r_dd, r_ds, r_ss, p_dd, p_ds, p_ss] = at.kept.as_slice() else { return None };
         // Both depend on δ and s alone.

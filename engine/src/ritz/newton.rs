@@ -9,7 +9,7 @@
 //! and the second line of (19), in its root form (see [`super::functional`], [`crate::disc::exact`]), is one equation in s. From a
 //! contact radius three times too large it takes the 5-6 rounds that the paper reports.
 
-use crate::continuation::{self, Convergence, Criteria};
+use crate::continuation::{Convergence, Criteria, NewtonFailure};
 use crate::disc::{Basis, Evaluation};
 use crate::problem::{Control, Reduced};
 
@@ -39,7 +39,7 @@ pub struct Solved {
 
 /// Why Newton-Raphson found no state.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum NewtonFailure {
+pub enum SolveFailure {
     /// An iterate left the region where the equations are defined.
     #[error("Newton-Raphson left the contact at round {round}: s = {s:.6e} (reduced units)")]
     Left {
@@ -50,7 +50,7 @@ pub enum NewtonFailure {
     },
     /// The iteration did not converge.
     #[error(transparent)]
-    NotConverged(#[from] continuation::NewtonFailure),
+    NotConverged(#[from] NewtonFailure),
 }
 
 /// An iterate so many times as far out as the first has lost its way, and a basis may have to be made for it.
@@ -68,7 +68,7 @@ fn weights(control: Control) -> (f64, f64) {
 /// The equilibrium at which `control` takes `value`, from the contact radius `s`.
 ///
 /// # Errors
-/// [`NewtonFailure`] with the round and the numbers; nothing is clamped on the way.
+/// [`SolveFailure`] with the round and the numbers; nothing is clamped on the way.
 pub fn solve(
     basis: &dyn Basis,
     problem: &Reduced,
@@ -76,7 +76,7 @@ pub fn solve(
     value: f64,
     mut s: f64,
     settings: NewtonSettings,
-) -> Result<Solved, NewtonFailure> {
+) -> Result<Solved, SolveFailure> {
     let (of_approach, of_force) = weights(control);
     let mut convergence = Convergence::new(Criteria::new(settings.tolerance, settings.rounds));
     let first = s;
@@ -91,7 +91,7 @@ pub fn solve(
         let evaluation = basis.evaluate(problem, s, delta);
         let residual = (evaluation.residual / evaluation.residual_scale).abs();
         if !residual.is_finite() {
-            return Err(NewtonFailure::Left { round, s });
+            return Err(SolveFailure::Left { round, s });
         }
         if convergence.is_reached(residual)? {
             return Ok(Solved { evaluation, rounds: round });
@@ -101,7 +101,7 @@ pub fn solve(
         let follows = -of_force * p_s / (of_approach + of_force * p_d);
         let next = s - evaluation.residual / (r_s + r_d * follows);
         if !(next > 0.0 && next <= FARTHEST * first) {
-            return Err(NewtonFailure::Left { round, s: next });
+            return Err(SolveFailure::Left { round, s: next });
         }
         convergence.corrected((next - s).abs() / s)?;
         s = next;
