@@ -5,10 +5,11 @@
 //! ```
 //!
 //! The potential knows no way, so any will do: a new contact opens from a point, a gap closes to its middle, by t = ½(1 − cos πu) with
-//! Gauss's nodes in u. A stretched ring that vanishes holds an energy like 1/ln(1/width), and is integrated in that variable; of the rest
+//! Gauss's nodes in u. A stretched ring that vanishes holds an energy that falls with the logarithm of its width alone, and is integrated
+//! in that variable,
 //!
 //! ```text
-//! dU/dw = U/(w ln(32c/w))      c its radius, w → 0
+//! U = K/(ln(32c/w) + C)      c its radius, w → 0, C from what stands beside it
 //! ```
 
 use super::balance::Balance;
@@ -21,8 +22,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const NODES: usize = 32;
 const NODES_PER_WAVE: f64 = 24.0;
 
-/// Where the rest of a vanishing ring takes over, as a share of its width.
-const REST: f64 = 1e-7;
+/// Where the rest of a vanishing ring takes over, as a share of its width, and how much wider its other sample is.
+const REST: f64 = 1e-6;
+const WIDER: f64 = 10.0;
 
 /// A way of edges: from where it is small, to where it is large.
 #[derive(Debug, Clone, Copy)]
@@ -154,8 +156,15 @@ impl Balance<'_> {
             let w = 32.0 * middle * (-u.recip()).exp();
             sum += 0.5 * (to - from) * weight * of(w)? * w / (u * u);
         }
+        // U = K/(L + C), L = ln(32c/w): the root of −dU/dL = w dU/dw is √K/(L + C).
         let w = REST * width;
-        Some(sum + of(w)? * w * log(w))
+        // Of U the elastic energy; the adhesion of the rest is its area's.
+        let adhesion = 2.0 * PI * middle * self.work_of_adhesion;
+        let [near, wider] =
+            [w, WIDER * w].map(|w| of(w).map(|rate| ((rate + adhesion) * w).max(0.0).sqrt()));
+        let (near, wider) = (near?, wider?);
+        let root = WIDER.ln() / (near.recip() - wider.recip());
+        Some(sum + root * near - adhesion * w)
     }
 }
 

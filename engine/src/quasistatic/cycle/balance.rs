@@ -180,5 +180,8 @@ pub fn moved(contacts: &Contacts, by: &DVector<f64>) -> Contacts {
 
 /// Whether every width of `next` is at least this share of what it was.
 pub fn keeps_widths(before: &Contacts, next: &Contacts, share: f64) -> bool {
-    next.check().is_ok() && before.widths().iter().zip(next.widths()).all(|(old, new)| new >= share * old)
+    // A disc that shrank through the axis has no edge left.
+    before.edge_count() == next.edge_count()
+        && next.check().is_ok()
+        && before.widths().iter().zip(next.widths()).all(|(old, new)| new >= share * old)
 }

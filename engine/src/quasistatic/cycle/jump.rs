@@ -148,18 +148,19 @@ impl Balance<'_> {
         let size = held.jacobian.amax();
         let fastest = slow.iter().copied().fold(f64::INFINITY, f64::min);
         let mut mu = if lowest > 0.0 { 0.0 } else { 1.3 * lowest.abs() / fastest };
-        let push = -&held.excess;
+        // An edge a hair beyond its place stands still until the others ease it: what is left is corrected at the end.
+        let push = held.excess.map(|excess| if -excess * sense < 0.0 { 0.0 } else { -excess });
+        let stands: Vec<bool> = push.iter().map(|push| *push == 0.0).collect();
         for _ in 0..200 {
             let mut matrix = held.jacobian.clone();
             for (i, slow) in slow.iter().enumerate() {
                 matrix[(i, i)] += mu * slow;
-            }
-            let large = mu * fastest > 1e4 * size;
-            if let Some(mut step) = matrix.lu().solve(&push) {
-                if large {
-                    // A fast edge a hair beyond its place.
-                    step.apply(|x| *x = if *x * sense < 0.0 { 0.0 } else { *x });
+                if stands[i] {
+                    matrix.row_mut(i).fill(0.0);
+                    matrix[(i, i)] = 1.0;
                 }
+            }
+            if let Some(step) = matrix.lu().solve(&push) {
                 let right = step.iter().all(|x| x * sense >= 0.0 && x.is_finite());
                 let next = moved(contacts, &step);
                 if right && step.amax() <= LONGEST * wave && keeps_widths(contacts, &next, LEFT) {

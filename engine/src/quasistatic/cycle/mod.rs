@@ -37,5 +37,5 @@ pub use balance::{Balance, Held, NotFound};
 pub use error::{CycleError, Warning};
 pub use event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 pub use jump::{EVEN, Mobility};
-pub use path::{Areas, Cycle, Setting, Totals, Turn, TurnReached, cycle};
+pub use path::{Areas, Cycle, Setting, Totals, Turn, TurnReached, cycle, cycle_on};
 pub use point::{Point, Step};

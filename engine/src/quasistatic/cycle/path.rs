@@ -6,9 +6,11 @@ use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 use super::jump::Mobility;
 use super::point::{Point, Step};
 use crate::annuli::ground::gauss;
-use crate::annuli::{Around, Contacts, Crest, Ground};
-use crate::contact::Control;
+use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground};
+use crate::contact::{Control, Form};
+use crate::disc::Table;
 use nalgebra::DVector;
+use std::sync::Arc;
 
 /// Steps of a loop at most.
 const STEPS: usize = 200_000;
@@ -153,13 +155,62 @@ pub(super) struct Path<'a, 'b> {
     pub digits: (f64, f64),
 }
 
-/// The loop of a gap with the work of adhesion `gamma` (E* = 1).
+/// How far beyond what may touch a table goes.
+const BEYOND: f64 = 1.3;
+
+/// A formula is looked at up to so many of its lengths.
+const LENGTHS: f64 = 10.0;
+
+/// The loop of the gap of `table` with the work of adhesion `gamma` (E* = 1): as [`cycle_on`], as far out as the loop goes.
+///
+/// # Errors
+/// [`CycleError`].
+pub fn cycle(
+    table: &Arc<Table>,
+    gamma: f64,
+    setting: &Setting<'_>,
+    go_on: &dyn Fn(f64) -> bool,
+) -> Result<Cycle, CycleError> {
+    let mut reach = match setting.turn {
+        Turn::Radius(radius) => BEYOND * radius,
+        Turn::Approach(approach) => 2.0 * approach.abs().sqrt(),
+        Turn::Force(_) | Turn::Control(_) => 0.5,
+    };
+    reach = reach.max(2.0 * table.gap().feature_length().unwrap_or(0.0)).max(0.05);
+    if matches!(table.gap().form(), Form::Any) {
+        reach = reach.max(LENGTHS);
+    }
+    for _ in 0..40 {
+        if !reach.is_finite() {
+            return Err(CycleError::BadTurn(setting.turn.value()));
+        }
+        let ground = Ground::new(Arc::clone(table), reach, &mut || go_on(0.0))?;
+        let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
+        let far_enough = match setting.turn {
+            Turn::Approach(approach) => BEYOND * ground.can_touch_up_to(approach) <= ground.reach(),
+            _ => true,
+        };
+        if !far_enough && !whole {
+            reach = 1.5 * ground.reach();
+            continue;
+        }
+        match cycle_on(&ground, gamma, setting, go_on) {
+            Err(CycleError::BeyondGap { .. } | CycleError::RadiusBeyondGap { .. }) if !whole => {
+                reach = 2.0 * ground.reach();
+            }
+            other => return other,
+        }
+    }
+    Err(CycleError::NeverTouches { searched: reach })
+}
+
+/// The loop of a gap with the work of adhesion `gamma` (E* = 1), as far out as `ground` goes: a loop that comes to its end is an error.
 ///
 /// `go_on` is asked before each step with the share of the way that is done, 0 to 1, roughly.
 ///
 /// # Errors
 /// [`CycleError`].
-pub fn cycle(
+pub fn cycle_on(
     ground: &Ground,
     gamma: f64,
     setting: &Setting<'_>,
@@ -211,6 +262,16 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
     }
     let radius = if value(best) < value(hi) { best } else { hi };
     Some(Crest { radius, gap: value(radius) })
+}
+
+/// The error with what was reached, where an edge ran beyond what is known of the gap.
+pub(super) fn beyond(error: CycleError, approach: f64, force: f64) -> CycleError {
+    match error {
+        CycleError::State(AnnuliError::BeyondGap { known, .. }) => {
+            CycleError::BeyondGap { radius: known, approach, force }
+        }
+        other => other,
+    }
 }
 
 impl Path<'_, '_> {
@@ -405,7 +466,8 @@ impl Path<'_, '_> {
         let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
         let held = self
             .balance
-            .run(start, value, 1.0, self.setting.mobility, &mut passed)?
+            .run(start, value, 1.0, self.setting.mobility, &mut passed)
+            .map_err(|error| beyond(error, crest.gap, 0.0))?
             .ok_or(CycleError::Lost { control_value: value })?;
         let after = self.state(&held);
         let loss = match self.setting.control {
@@ -439,8 +501,9 @@ impl Path<'_, '_> {
         let mut passed: Vec<Passed> =
             radius.iter().map(|radius| Passed { kind: PassedKind::Touch, radius: *radius }).collect();
         let value = before.control_value;
-        let landed =
-            self.balance.run(start, value, self.direction.sense(), self.setting.mobility, &mut passed)?;
+        let sense = self.direction.sense();
+        let landed = self.balance.run(start, value, sense, self.setting.mobility, &mut passed);
+        let landed = landed.map_err(|error| beyond(error, before.approach, before.force))?;
         let old = self.state(before);
         self.piece += 1;
         let after = landed.as_ref().map(|held| self.state(held));
@@ -495,6 +558,17 @@ impl Path<'_, '_> {
         self.steps += 1;
         if self.steps > STEPS {
             return Err(CycleError::TooLong { steps: STEPS, control_value: held.control_value });
+        }
+        // What could touch may lie beyond the table, where the gap goes on.
+        let ground = self.balance.ground;
+        if ground.reach() < ground.table.end() * (1.0 - 1e-9)
+            && ground.can_touch_up_to(held.approach) >= ground.reach()
+        {
+            return Err(CycleError::BeyondGap {
+                radius: ground.reach(),
+                approach: held.approach,
+                force: held.force,
+            });
         }
         if (self.go_on)(self.progress(held)) { Ok(()) } else { Err(CycleError::Cancelled) }
     }

@@ -133,7 +133,8 @@ impl Path<'_, '_> {
         let mut passed = Vec::new();
         let held = self
             .balance
-            .run(start, delta, 1.0, self.setting.mobility, &mut passed)?
+            .run(start, delta, 1.0, self.setting.mobility, &mut passed)
+            .map_err(|error| super::path::beyond(error, delta, 0.0))?
             .ok_or(CycleError::Lost { control_value: delta })?;
         self.record(&held);
         Ok(held)
