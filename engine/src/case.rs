@@ -3,7 +3,6 @@
 //! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
 //! they all see the same numbers.
 
-use crate::annuli::Ground;
 use crate::continuation::Branch;
 use crate::disc::table::Kept;
 use crate::disc::{Basis, Exact, Table, TableError};
@@ -265,30 +264,13 @@ impl Case {
                 shown: Box::new(self.shown.clone()),
             },
         };
-        let gamma = self.reduced.work_of_adhesion;
-        let turn = turn.or(self.turn).unwrap_or(Turn::Radius(self.start));
-        let adhesive = 4.0 * gamma.cbrt();
-        let contact = match turn {
-            Turn::Radius(radius) => radius,
-            Turn::Force(force) | Turn::Control(force) if control == Control::Force => force.abs().cbrt(),
-            Turn::Force(force) => force.abs().cbrt(),
-            Turn::Approach(x) | Turn::Control(x) => (2.0 * x.abs()).sqrt(),
+        let setting = Setting {
+            control,
+            turn: turn.or(self.turn).unwrap_or(Turn::Radius(self.start)),
+            areas,
+            mobility: EVEN,
         };
-        let most = self.reduced.largest_contact();
-        // The next crest may touch far outside the contact; where this is not far enough it is done again.
-        let mut reach = (2.0 * contact.max(adhesive)).max(self.start).min(most);
-        for _ in 0..MOST_REACHES {
-            let ground = Ground::new(Arc::clone(&self.table), reach, &mut || go_on(0.0))
-                .map_err(|error| failed(error.into()))?;
-            let setting = Setting { control, turn, areas, mobility: EVEN };
-            match cycle(&ground, gamma, &setting, go_on) {
-                Err(CycleError::BeyondGap { .. } | CycleError::RadiusBeyondGap { .. }) if reach < most => {
-                    reach = (2.0 * reach).min(most);
-                }
-                done => return done.map_err(failed),
-            }
-        }
-        Err(failed(CycleError::NeverTouches { searched: reach }))
+        cycle(&self.table, self.reduced.work_of_adhesion, &setting, go_on).map_err(failed)
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
@@ -410,9 +392,6 @@ fn table(
         }
     })
 }
-
-/// How often the gap is looked at further out, twice as far each time.
-const MOST_REACHES: usize = 12;
 
 fn words_of_cycle(error: &CycleError, control: Control, shown: &UnitSystem) -> String {
     error.words(control, shown)

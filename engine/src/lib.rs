@@ -73,11 +73,6 @@ pub mod continuation;
 pub mod disc;
 #[doc(hidden)]
 pub mod expression;
-#[doc(hidden)]
-pub mod contact {
-    pub use crate::gap::*;
-    pub use crate::problem::*;
-}
 #[cfg(test)]
 mod fixtures;
 #[doc(hidden)]

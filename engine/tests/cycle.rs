@@ -1,12 +1,14 @@
 //! Whole loops against those of another program, and what holds for every loop.
 
-use pulloff_engine::annuli::Ground;
-use pulloff_engine::contact::shapes::random_waves::RandomWaves;
-use pulloff_engine::contact::shapes::{Harmonic, Harmonics};
-use pulloff_engine::contact::{Control, Gap, Problem, Shape};
+use pulloff_engine::annuli::{Around, Contacts, Ground};
 use pulloff_engine::disc::Table;
+use pulloff_engine::gap::shapes::random_waves::RandomWaves;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::gap::{shapes::Harmonic, shapes::Harmonics};
+use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::quasistatic::cycle::{
-    Areas, Cycle, CycleError, CycleState, EVEN, EventKind, Setting, Turn, Warning, cycle, cycle_on,
+    Areas, Balance, Cycle, CycleError, CycleState, Direction, EVEN, EventKind, Setting, Turn, Warning, cycle,
+    cycle_on,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -343,4 +345,85 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
     let setting =
         Setting { control: Control::Force, turn: Turn::Force(0.01), areas: Areas::No, mobility: EVEN };
     assert_eq!(cycle_on(&ground, 1e-4, &setting, &|_| false).unwrap_err(), CycleError::Cancelled);
+}
+
+#[test]
+#[ignore = "times, of which nothing is asserted"]
+fn times() {
+    use pulloff_engine::annuli::Wanted;
+    let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
+    let slope = |s: f64| ground.slope(s);
+    for rings in [
+        vec![],
+        vec![[0.0327, 0.0625]],
+        vec![[0.0338, 0.0626], [0.087, 0.109]],
+        vec![[0.0386, 0.0612], [0.0901, 0.1079], [0.14, 0.155]],
+    ] {
+        let contacts = Contacts { disc: 0.0185, rings };
+        let points = pulloff_engine::annuli::points(&ground, &contacts);
+        for wanted in [Wanted::Values, Wanted::Rates] {
+            let best = (0..200)
+                .map(|_| {
+                    let started = std::time::Instant::now();
+                    let state = ground.state_with(&contacts, &points, wanted).unwrap();
+                    if wanted == Wanted::Rates {
+                        std::hint::black_box(state.jacobian(0.006, slope(0.0185)));
+                    }
+                    std::hint::black_box(state);
+                    started.elapsed().as_secs_f64()
+                })
+                .fold(f64::INFINITY, f64::min);
+            println!("{points:?} {wanted:?} {:.1} us", 1e6 * best);
+        }
+    }
+    for (gamma, turn) in [(0.025 / TAU, 0.14), (1e-4, 0.14), (1e-5, 0.06), (0.0, 0.1)] {
+        for areas in [Areas::No, Areas::Yes] {
+            let best = (0..5)
+                .map(|_| {
+                    let started = std::time::Instant::now();
+                    let found =
+                        looped(wavy(0.0025, 0.05), gamma, Control::Displacement, Turn::Approach(turn), areas);
+                    std::hint::black_box(found);
+                    started.elapsed().as_secs_f64()
+                })
+                .fold(f64::INFINITY, f64::min);
+            println!("{gamma:e} {areas:?} {:.1} ms", 1e3 * best);
+        }
+    }
+}
+
+#[test]
+fn without_adhesion_solving_afresh_finds_the_same() {
+    for number in 0..10_u64 {
+        let mut random = fastrand::Rng::with_seed(number);
+        let (gap, name) = random_gap(&mut random);
+        let approach = 0.02 + 0.03 * random.f64();
+        let ground = Ground::of(Arc::clone(&gap), 0.7).unwrap();
+        let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
+        let setting = Setting { control, turn: Turn::Approach(approach), areas: Areas::No, mobility: EVEN };
+        let found = match cycle_on(&ground, 0.0, &setting, &|_| true) {
+            Ok(found) => found,
+            Err(error) => panic!("{number} {name}: {error}"),
+        };
+        let balance = Balance { ground: &ground, work_of_adhesion: 0.0, control: Control::Displacement };
+        let back: Vec<_> =
+            found.states.iter().filter(|state| state.direction == Direction::Unloading).collect();
+        for k in 0..20 {
+            // Contact, pressed everywhere, gaps open everywhere else: the one solution.
+            let state = back[k * (back.len() - 1) / 19];
+            let disc = state.contacts.first().filter(|first| first[0] <= 0.0).map_or(0.0, |first| first[1]);
+            let rings = state.contacts.iter().copied().filter(|ring| ring[0] > 0.0).collect();
+            let shifted = Contacts { disc, rings };
+            let held = balance.solve(&shifted, state.approach).unwrap();
+            assert!((held.force - state.force).abs() < 1e-12, "{number} {name}");
+            let around = Around::new(&ground, &held.state, held.approach);
+            for [lo, hi] in held.state.contacts.intervals() {
+                for i in 1..40 {
+                    let r = lo + (hi - lo) * f64::from(i) / 40.0;
+                    assert!(around.pressure(r) > -1e-8, "{number} {name} {r} {}", around.pressure(r));
+                }
+            }
+            assert!(balance.least_gap(&held).is_none_or(|crest| crest.gap > -1e-10), "{number} {name}");
+        }
+    }
 }

@@ -9,8 +9,8 @@
 use super::elliptic;
 use super::ground::{Ground, Under};
 use super::state::State;
-use crate::contact::Gap;
 use crate::disc::outside;
+use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, PI};
 use wide::f64x4;
 

@@ -1,13 +1,49 @@
-//! Symmetric positive definite systems, A = UᵀU by rows, four pivots at a time.
+//! Symmetric positive definite systems, A = `UᵀU` by rows, four pivots at a time.
 
+use nalgebra::{DMatrix, Dyn, LU};
 use wide::f64x4;
+
+/// A matrix made ready for right-hand sides.
+#[derive(Debug, Clone)]
+pub enum Factor {
+    /// `UᵀU`.
+    Cholesky(Vec<f64>),
+    /// With pivots: between breaks of a gap the sums need not be positive definite.
+    Pivoted(Box<LU<f64, Dyn, Dyn>>),
+}
+
+impl Factor {
+    /// Of the `n`×`n` matrix with this upper triangle, by rows; `definite` where nothing else is expected. `None` where it is singular.
+    pub fn of(mut matrix: Vec<f64>, n: usize, definite: bool) -> Option<Self> {
+        if definite {
+            return factorize(&mut matrix, n).then_some(Self::Cholesky(matrix));
+        }
+        let full = DMatrix::from_fn(n, n, |i, k| matrix[i.min(k) * n + i.max(k)]);
+        let lu = full.lu();
+        (lu.is_invertible() && matrix.iter().all(|x| x.is_finite())).then(|| Self::Pivoted(Box::new(lu)))
+    }
+
+    /// Solves for four right-hand sides at once, in place.
+    pub fn solve(&self, x: &mut [f64x4]) {
+        match self {
+            Self::Cholesky(u) => solve(u, x.len(), x),
+            Self::Pivoted(lu) => {
+                let mut columns = DMatrix::from_fn(x.len(), 4, |i, k| x[i].as_array()[k]);
+                lu.solve_mut(&mut columns);
+                for (i, x) in x.iter_mut().enumerate() {
+                    *x = f64x4::new(std::array::from_fn(|k| columns[(i, k)]));
+                }
+            }
+        }
+    }
+}
 
 /// Pivots eliminated together.
 const BLOCK: usize = 4;
 
 /// Replaces the upper triangle of the `n`×`n` matrix, stored by rows, by U with the reciprocals of its diagonal; `n` is a multiple of
 /// four. False where it is not positive definite.
-pub fn factorize(a: &mut [f64], n: usize) -> bool {
+fn factorize(a: &mut [f64], n: usize) -> bool {
     for j in (0..n).step_by(BLOCK) {
         let (done, rest) = a.split_at_mut((j + BLOCK) * n);
         let rows = &mut done[j * n..];
@@ -52,7 +88,7 @@ pub fn factorize(a: &mut [f64], n: usize) -> bool {
 }
 
 /// Solves for four right-hand sides at once, in place.
-pub fn solve(u: &[f64], n: usize, x: &mut [f64x4]) {
+fn solve(u: &[f64], n: usize, x: &mut [f64x4]) {
     for j in 0..n {
         let row = &u[j * n..(j + 1) * n];
         let (head, tail) = x.split_at_mut(j + 1);

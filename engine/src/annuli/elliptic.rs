@@ -24,7 +24,7 @@ pub struct Near {
 }
 
 /// Parameters up to here take four means.
-pub const FOUR_MEANS: f64 = 0.85;
+pub const FOUR_MEANS: f64 = 0.75;
 
 /// The power of 16 q/m in [`Near`].
 pub const ROOT: f64 = -4.0;
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn they_are_those_of_the_library() {
-        for m in [1e-9_f64, 1e-3, 0.01, 0.1, 0.3, 0.6, 0.849, 0.9, 0.99, 0.9999, 0.999_999] {
+        for m in [1e-9_f64, 1e-3, 0.01, 0.1, 0.3, 0.6, 0.749, 0.849, 0.9, 0.99, 0.9999, 0.999_999] {
             let near = near(f64x4::splat(m), m > FOUR_MEANS);
             let (k, e) = (ellip::ellipk(m).unwrap(), ellip::ellipe(m).unwrap());
             assert!((near.k.to_array()[1] / k - 1.0).abs() < 2e-15, "{m}: {:?} {k}", near.k);
@@ -133,7 +133,7 @@ mod tests {
             assert!((fe.to_array()[0] / e - 1.0).abs() < 1e-13, "{m}");
         }
         let zero = near(f64x4::ZERO, false);
-        assert_eq!(zero.power.to_array()[0], 1.0);
+        assert!((zero.power.to_array()[0] - 1.0).abs() < 1e-16);
         assert!((zero.d.to_array()[0] - std::f64::consts::FRAC_PI_4).abs() < 1e-16);
     }
 }

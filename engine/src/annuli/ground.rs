@@ -3,8 +3,8 @@
 //! Under the disc sums are taken in v, a = a₁ tanh v, with a₁ the inner edge of the first ring: 1/√(r² − a²) for r ≥ a₁ is then
 //! analytic for |Im v| < π/2 however near to the disc the ring begins.
 
-use crate::contact::{Form, Gap};
 use crate::disc::{Panels, Table, TableError};
+use crate::gap::{Form, Gap};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
@@ -48,6 +48,8 @@ pub struct Ground {
     pub(super) entire: Option<f64>,
     /// The smallest g from the inner end of each panel on, less what samples may miss.
     pub(super) least: Vec<f64>,
+    /// Whether the breaks are knots of a spline.
+    pub(super) spline: bool,
     /// The radii where h' or a higher derivative jumps, ascending.
     pub breaks: Vec<f64>,
 }
@@ -131,14 +133,31 @@ impl Ground {
             _ => None,
         };
         let least = least(&panels);
+        let spline = matches!(gap.form(), Form::Cubic(_));
         let [standin, crest] = lengths(&*gap, reach, &breaks);
         let wave = gap.feature_length().unwrap_or(standin);
-        Ok(Self { gap, table, panels, wave, crest, entire, least, breaks })
+        Ok(Self { gap, table, panels, wave, crest, entire, least, spline, breaks })
     }
 
     /// The largest radius that is tabulated.
     pub fn reach(&self) -> f64 {
         self.panels.reach()
+    }
+
+    /// The breaks inside a ring, so far from its edges that they are none of these.
+    pub fn inside(&self, [a, b]: [f64; 2]) -> &[f64] {
+        const APART: f64 = 1e-9;
+        let margin = APART * (b - a);
+        let from = self.breaks.partition_point(|r| *r <= a + margin);
+        let to = self.breaks.partition_point(|r| *r < b - margin);
+        &self.breaks[from..to.max(from)]
+    }
+
+    /// Whether the angle of a ring is graded towards these breaks: not towards many, nor towards the knots of a spline, whose first
+    /// two derivatives are continuous.
+    pub fn grades(&self, breaks: &[f64]) -> bool {
+        const MOST: usize = 6;
+        breaks.len() <= MOST && !self.spline
     }
 
     /// g at a radius.
@@ -208,10 +227,12 @@ fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> [f64; 2] {
         square += r * r;
     }
     let slope = if square > 0.0 { moment / square } else { 0.0 };
-    let most = |f: &dyn Fn(&(f64, [f64; 2])) -> f64| jets.iter().map(f).fold(0.0, f64::max);
-    let rise = most(&|(r, [first, _])| (first - slope * r).abs());
-    let bend = most(&|(_, [_, second])| (second - slope).abs());
-    let sharpest = most(&|(_, [_, second])| *second);
+    let [mut rise, mut bend, mut sharpest] = [0.0_f64; 3];
+    for (r, [first, second]) in &jets {
+        rise = rise.max((first - slope * r).abs());
+        bend = bend.max((second - slope).abs());
+        sharpest = sharpest.max(*second);
+    }
     let jump = |b: f64| {
         let step = 1e-9 * reach;
         (gap.jet(b + step).first - gap.jet(b - step).first).abs() > 1e-6

@@ -27,13 +27,14 @@
 //! | [`around`] | the gap outside the contacts, the pressure in them |
 //! | [`elliptic`] | complete elliptic integrals, four at a time |
 //! | `kernel` | blocks of the equations |
-//! | `nodes`, `rule` | points on a ring |
+//! | `nodes`, `rule`, `graded` | points on a ring |
 //! | `cholesky` | the solver |
 
 pub mod around;
 mod cholesky;
 pub mod contacts;
 pub mod elliptic;
+mod graded;
 pub mod ground;
 mod kernel;
 mod nodes;
@@ -45,7 +46,10 @@ pub mod state;
 mod tests;
 
 pub use around::{Around, Crest};
-pub use contacts::{Contacts, ContactsError, Edge, MOST_CONTACTS};
+pub use contacts::Contacts;
+pub use contacts::ContactsError;
+pub use contacts::Edge;
+pub use contacts::MOST_CONTACTS;
 pub use ground::Ground;
 pub use rule::MOST_POINTS;
-pub use state::{AnnuliError, MOST_POINTS_IN_ALL, State, Wanted, points};
+pub use state::{AnnuliError, MOST_POINTS_IN_ALL, Resolution, State, Wanted, points};

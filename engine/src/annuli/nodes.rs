@@ -1,7 +1,7 @@
 //! The points of one ring.
 
+use super::graded::Graded;
 use super::rule::Rule;
-use wide::f64x4;
 
 /// The points of one ring.
 #[derive(Debug, Clone)]
@@ -22,27 +22,6 @@ pub struct Nodes {
     pub stretch: [f64; 2],
     /// The angle graded towards breaks inside.
     pub graded: Option<Graded>,
-}
-
-/// An angle graded towards breaks inside a ring.
-#[derive(Debug, Clone)]
-pub struct Graded {
-    n: usize,
-    /// |r − r'| of all pairs.
-    apart: Vec<f64>,
-    /// |cos θ − cos θ'| over |cos t − cos t'|.
-    lift: Vec<f64>,
-    /// (v − v')/(r − r') for both edges, dv/dr on the diagonal.
-    pub speeds: [Vec<f64>; 2],
-}
-
-impl Graded {
-    /// |r − r'| and the lift of row `i` in the columns from `k` on.
-    pub fn pair(&self, i: usize, k: usize) -> (f64x4, f64x4) {
-        let at =
-            |of: &[f64]| of[i * self.n + k..].first_chunk::<4>().map_or(f64x4::ONE, |four| f64x4::new(*four));
-        (at(&self.apart), at(&self.lift))
-    }
 }
 
 impl Nodes {
@@ -74,12 +53,5 @@ impl Nodes {
     /// c.
     pub fn middle(&self) -> f64 {
         0.5 * (self.ends[0] + self.ends[1])
-    }
-}
-
-impl Graded {
-    /// t and dθ/dt at the angle θ.
-    pub fn angle(&self, theta: f64) -> (f64, f64) {
-        (theta, 1.0)
     }
 }

@@ -7,7 +7,6 @@
 //! J_ij = ∂κ_i/∂α_j,  α = ±e, + where the contact grows with e;      ∂P/∂α_j = 4πe_j κ_j ∂κ_j/∂δ
 //! ```
 
-use super::cholesky;
 use super::kernel::Moved;
 use super::state::{Kept, State, dot, edge_unit};
 use nalgebra::DMatrix;
@@ -47,7 +46,7 @@ struct Rates<'a> {
 }
 
 impl State {
-    /// J = ∂κ_i/∂α_j at an approach, rows and columns in the order of [`Contacts::edges`](super::Contacts::edges); α = e or −e,
+    /// J, the derivatives of κ by α at an approach, rows and columns in the order of [`Contacts::edges`](super::Contacts::edges); α = e or −e,
     /// so that a contact grows with it. Not a number where the state was not made with [`Rates`](super::Wanted::Rates).
     pub fn jacobian(&self, delta: f64, slope_at_disc: f64) -> DMatrix<f64> {
         let edges = self.contacts.edge_count();
@@ -85,7 +84,7 @@ impl Rates<'_> {
         &self.kept.between[inner * (2 * rings - inner - 1) / 2 + outer - inner - 1]
     }
 
-    /// F' − Σ ∂_r M_s y from other rings and the disc, at the points of a ring.
+    /// F' less what other rings and the disc add to the slope, at the points of a ring.
     fn pull(&self, ring: usize, delta: f64) -> Vec<f64> {
         let range = self.range(ring);
         let [at_zero, slope] = &self.kept.slopes;
@@ -150,11 +149,11 @@ impl Rates<'_> {
                 sides[edge][range.start + i] = v[edge] * pull[i] - sums[edge].reduce_add();
             }
         }
-        for edge in 0..2 {
+        for (edge, side) in sides.iter_mut().enumerate() {
             let moving: Vec<f64> = nodes.speeds[edge].iter().zip(y).map(|(v, y)| v * y).collect();
             let negative: Vec<f64> = moving.iter().map(|x| -x).collect();
             for other in 0..self.state.nodes.len() {
-                let out = &mut sides[edge][self.range(other)];
+                let out = &mut side[self.range(other)];
                 match other.cmp(&ring) {
                     std::cmp::Ordering::Less => {
                         add_product(out, &self.between(other, ring).second, &negative, false);
@@ -168,7 +167,7 @@ impl Rates<'_> {
             for (x, weight) in self.kept.inverse.chunks_exact(self.n).zip(&self.kept.weights) {
                 let terms = x[range.clone()].iter().zip(&moving).zip(&nodes.radii);
                 let factor = weight * terms.map(|((x, m), r)| m * r * (x * x * x)).sum::<f64>();
-                for (out, x) in sides[edge].iter_mut().zip(x) {
+                for (out, x) in side.iter_mut().zip(x) {
                     *out -= factor * x;
                 }
             }
@@ -195,8 +194,8 @@ impl Rates<'_> {
             let mut x: Vec<f64x4> = (0..self.n)
                 .map(|i| f64x4::new(std::array::from_fn(|k| columns.get(k).map_or(0.0, |c| c[i]))))
                 .collect();
-            if self.n > 0 {
-                cholesky::solve(&self.kept.factor, self.n, &mut x);
+            if let Some(factor) = &self.kept.factor {
+                factor.solve(&mut x);
             }
             for lane in 0..columns.len() {
                 let column = 4 * group + lane;
@@ -210,7 +209,7 @@ impl Rates<'_> {
         jacobian
     }
 
-    /// ∂κ_i/∂e for one edge.
+    /// What one edge changes.
     fn column(
         &self,
         jacobian: &mut DMatrix<f64>,
@@ -242,12 +241,10 @@ impl Rates<'_> {
             for at in 0..2 {
                 let row = offset + 2 * ring + at;
                 let mut value = edge_unit(nodes, at) * dot(&nodes.rule.ends[at], y);
-                if let Some((of, edge)) = moved {
-                    if of == ring {
-                        value -= 0.5 * kappa[row] * nodes.slopes[edge][at];
-                        if edge == at {
-                            value -= kappa[row] / nodes.ends[at];
-                        }
+                if let Some((_, edge)) = moved.filter(|(of, _)| *of == ring) {
+                    value -= 0.5 * kappa[row] * nodes.slopes[edge][at];
+                    if edge == at {
+                        value -= kappa[row] / nodes.ends[at];
                     }
                 }
                 jacobian[(row, column)] = value;

@@ -28,7 +28,7 @@ pub struct Rule {
     pub sines: Vec<f64>,
     /// 2 C(j) + ln 2, j = 0 … 2n.
     pub log_sums: Vec<f64>,
-    /// What makes of the sums' terms (π/n) f(t_k) the values at t = 0 and t = π.
+    /// What makes of the sums' terms (π/n) f the values at t = 0 and t = π.
     pub ends: [Vec<f64>; 2],
 }
 

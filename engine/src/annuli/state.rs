@@ -1,13 +1,15 @@
 //! The state of a disc and rings: pressures, force, energy and edge intensities, as polynomials in the approach.
 
-use super::cholesky;
-use super::contacts::{Contacts, ContactsError};
+use super::cholesky::Factor;
+use super::contacts::Contacts;
+use super::contacts::ContactsError;
+use super::graded;
 use super::ground::{Ground, Under};
 use super::kernel::{self, Moved};
 use super::nodes::Nodes;
 use super::rule::MOST_POINTS;
-use crate::contact::Gap;
 use crate::disc::outside;
+use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 use std::sync::Arc;
 use wide::f64x4;
@@ -20,6 +22,10 @@ const FEWEST_POINTS: f64 = 12.0;
 
 /// What the points of a ring leave: ln of its reciprocal, for 1e-12.
 const TOLERANCE: f64 = 27.63;
+
+/// Points on a piece of a ring between breaks beside those that an unbroken ring takes, and on a ring with many breaks.
+const ON_A_PIECE: f64 = 36.0;
+const AMONG_BREAKS: f64 = 96.0;
 
 /// Why there is no state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -63,8 +69,8 @@ pub enum Wanted {
 /// What the derivatives by the edges take.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Kept {
-    /// U of the equations.
-    pub factor: Vec<f64>,
+    /// The equations.
+    pub factor: Option<Factor>,
     /// The blocks on rings, and between them in the order (0, 1), (0, 2), …, (1, 2), …
     pub own: Vec<Moved>,
     pub between: Vec<Moved>,
@@ -96,37 +102,87 @@ pub struct State {
     pub(super) kept: Option<Kept>,
 }
 
-/// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts take the same.
-pub fn points(ground: &Ground, contacts: &Contacts) -> Vec<usize> {
-    let wants = |j: usize| {
-        let [a, b] = contacts.rings[j];
-        let half = 0.5 * (b - a);
-        let phase = 2.0 * PI * half / ground.wave;
-        let waves = phase + 8.0 * phase.cbrt() + 8.0;
-        let inner = if j > 0 { contacts.rings[j - 1][1] } else { contacts.disc };
-        let outward = contacts.rings.get(j + 1).map_or(f64::INFINITY, |next| next[0] - b);
-        let z = (a - inner).min(outward) / half;
-        let rho = 1.0 + z + (z * (2.0 + z)).sqrt();
-        FEWEST_POINTS.max(waves).max(TOLERANCE / rho.ln())
-    };
-    let rounded = |n: f64| {
-        // Positive, and 400 at most.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let n = n.min(MOST_POINTS as f64).ceil() as usize;
-        n.next_multiple_of(4)
-    };
-    (0..contacts.rings.len()).map(|j| rounded(wants(j))).collect()
+/// The points on every ring, one number for each piece between breaks of the gap inside. Held while Newton's method runs, what it solves
+/// is smooth.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Resolution {
+    rings: Vec<Vec<usize>>,
 }
 
-/// The digits that `points` leave of `contacts`.
-fn digits(contacts: &Contacts, nodes: &[Nodes]) -> f64 {
-    let of = |j: usize| {
+impl Resolution {
+    #[cfg(test)]
+    pub(super) fn of(rings: Vec<Vec<usize>>) -> Self {
+        Self { rings }
+    }
+
+    /// The points on all rings.
+    pub fn count(&self) -> usize {
+        self.rings.iter().flatten().sum()
+    }
+}
+
+/// The ratio of the ellipse about a ring on which its pressure is analytic.
+fn ellipse(contacts: &Contacts, ring: usize) -> f64 {
+    let [a, b] = contacts.rings[ring];
+    let inner = if ring > 0 { contacts.rings[ring - 1][1] } else { contacts.disc };
+    let outward = contacts.rings.get(ring + 1).map_or(f64::INFINITY, |next| next[0] - b);
+    let z = (a - inner).min(outward) / (0.5 * (b - a));
+    1.0 + z + (z * (2.0 + z)).sqrt()
+}
+
+/// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts take the same.
+pub fn points(ground: &Ground, contacts: &Contacts) -> Resolution {
+    let most = MOST_POINTS as f64;
+    let wants = |j: usize| {
         let [a, b] = contacts.rings[j];
-        let inner = if j > 0 { contacts.rings[j - 1][1] } else { contacts.disc };
-        let outward = contacts.rings.get(j + 1).map_or(f64::INFINITY, |next| next[0] - b);
-        let z = (a - inner).min(outward) / (0.5 * (b - a));
-        let rho = 1.0 + z + (z * (2.0 + z)).sqrt();
-        nodes[j].radii.len() as f64 * rho.log10()
+        let phase = PI * (b - a) / ground.wave;
+        let waves = phase + 8.0 * phase.cbrt() + 8.0;
+        FEWEST_POINTS.max(waves).max(TOLERANCE / ellipse(contacts, j).ln()).min(most)
+    };
+    let up = |n: f64, step: usize| {
+        // Positive, and some hundred at most.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let n = n.ceil() as usize;
+        n.next_multiple_of(step)
+    };
+    let pieces = |j: usize| {
+        let ends = contacts.rings[j];
+        let (n, breaks) = (wants(j), ground.inside(ends));
+        if breaks.is_empty() || !ground.grades(breaks) {
+            let least = if breaks.is_empty() { 0.0 } else { AMONG_BREAKS };
+            return vec![up(n.max(least), 4)];
+        }
+        let angles = breaks.iter().map(|r| graded::angle_of(ends, *r));
+        let borders: Vec<f64> = std::iter::once(0.0).chain(angles).chain([PI]).collect();
+        let share = most - 2.0 * (breaks.len() + 2) as f64;
+        let wanted = ON_A_PIECE * (breaks.len() + 1) as f64 + n;
+        let fewer = (share / wanted).min(1.0);
+        let widths = borders.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut pieces: Vec<usize> =
+            widths.map(|width| up(fewer * (ON_A_PIECE + n * width / PI), 2)).collect();
+        if !pieces.iter().sum::<usize>().is_multiple_of(4) {
+            pieces[0] += 2;
+        }
+        pieces
+    };
+    Resolution { rings: (0..contacts.rings.len()).map(pieces).collect() }
+}
+
+/// The digits that the points leave.
+fn digits(ground: &Ground, contacts: &Contacts, nodes: &[Nodes]) -> f64 {
+    let of = |j: usize| {
+        let breaks = ground.inside(contacts.rings[j]);
+        let count = nodes[j].radii.len() as f64;
+        let analytic = count * ellipse(contacts, j).log10();
+        // As found on a ring with as many breaks: one takes 98 points for ten digits, two 136 for eight; knots of a spline at 96 five.
+        let broken = match breaks.len() {
+            0 => return analytic,
+            1 => 10.0,
+            2 => 8.0,
+            n if ground.grades(breaks) => 6.0 + (count / ((n + 1) as f64 * ON_A_PIECE)).min(1.0),
+            _ => 5.0,
+        };
+        analytic.min(broken)
     };
     (0..nodes.len()).map(of).fold(12.0, f64::min)
 }
@@ -183,7 +239,7 @@ impl Ground {
     pub fn state_with(
         &self,
         contacts: &Contacts,
-        points: &[usize],
+        points: &Resolution,
         wanted: Wanted,
     ) -> Result<State, AnnuliError> {
         contacts.check()?;
@@ -191,16 +247,24 @@ impl Ground {
         if radius > known {
             return Err(AnnuliError::BeyondGap { radius, known });
         }
-        let count: usize = points.iter().sum();
+        let count = points.count();
         if count > MOST_POINTS_IN_ALL {
             return Err(AnnuliError::TooManyPoints { points: count, most: MOST_POINTS_IN_ALL });
         }
-        let nodes: Vec<Nodes> = contacts
-            .rings
-            .iter()
-            .zip(points.iter().chain(std::iter::repeat(&12)))
-            .map(|(ring, n)| Nodes::plain(*ring, *n))
-            .collect();
+        let mut nodes = Vec::with_capacity(contacts.rings.len());
+        for (j, ring) in contacts.rings.iter().enumerate() {
+            let breaks = self.inside(*ring);
+            let pieces = points.rings.get(j).map_or(&[][..], |pieces| &pieces[..]);
+            nodes.push(if pieces.len() > 1 && pieces.len() == breaks.len() + 1 {
+                Nodes::graded(*ring, breaks, pieces)
+            } else if breaks.is_empty() || !self.grades(breaks) {
+                Nodes::plain(*ring, pieces.iter().sum())
+            } else {
+                // An edge has passed a break since they were chosen.
+                let fresh = self::points(self, contacts);
+                Nodes::graded(*ring, breaks, &fresh.rings[j])
+            });
+        }
         self.solved(contacts.clone(), nodes, wanted)
     }
 
@@ -281,11 +345,12 @@ impl Ground {
             .zip(&loads.values[1])
             .map(|(a, b)| f64x4::new([*a, *b, 0.0, 0.0]))
             .collect();
-        if !cholesky::factorize(&mut matrix, n) {
+        let definite = nodes.iter().all(|nodes| nodes.graded.is_none());
+        let Some(factor) = Factor::of(matrix, n, definite) else {
             let narrowest = contacts.widths().into_iter().fold(f64::INFINITY, f64::min);
             return Err(AnnuliError::Singular { narrowest });
-        }
-        cholesky::solve(&matrix, n, &mut x);
+        };
+        factor.solve(&mut x);
         let y = [0, 1].map(|k| x.iter().map(|x| x.as_array()[k]).collect::<Vec<f64>>());
         for k in 0..2 {
             let shades = y[k].iter().zip(&loads.shade).map(|(y, shade)| y * shade);
@@ -295,10 +360,10 @@ impl Ground {
             }
         }
         state.elastic += 4.0 * dot(&y[0], &loads.values[0]);
-        state.digits = digits(contacts, nodes);
+        state.digits = digits(self, contacts, nodes);
         state.y = y;
         if rates {
-            kept.factor = matrix;
+            kept.factor = Some(factor);
             kept.slopes = loads.slopes;
             state.kept = Some(kept);
         }
@@ -404,11 +469,6 @@ impl State {
     /// U at an approach: the elastic energy less `gamma` for every unit of area.
     pub fn energy(&self, delta: f64, gamma: f64) -> f64 {
         self.elastic + delta * (self.force[0] + 0.5 * self.force[1] * delta) - gamma * self.contacts.area()
-    }
-
-    /// The number of points on every ring.
-    pub fn points(&self) -> Vec<usize> {
-        self.nodes.iter().map(|nodes| nodes.radii.len()).collect()
     }
 }
 

@@ -35,6 +35,9 @@ enum Way {
     Open(f64, [f64; 2]),
 }
 
+/// Edges with their rates.
+type Moving = Vec<[[f64; 2]; 2]>;
+
 impl Balance<'_> {
     /// What is lost between two states at one control value, one within the other; `None` where a state on the way is none. A contact
     /// between them that is new opens from one of the crests, a length each.
@@ -120,7 +123,6 @@ impl Balance<'_> {
     /// Σ 2πe (G − γ) de/dt for edges [radius, rate] of contacts, in any order.
     fn rate(&self, mut edges: Vec<[[f64; 2]; 2]>, value: f64) -> Option<f64> {
         edges.sort_by(|a, b| a[0][0].total_cmp(&b[0][0]));
-        type Moving = Vec<[[f64; 2]; 2]>;
         let (disc, rings): (Moving, Moving) = edges.into_iter().partition(|[inner, _]| inner[0] <= 0.0);
         let contacts = Contacts {
             disc: disc.first().map_or(0.0, |[_, outer]| outer[0]),
@@ -160,8 +162,7 @@ impl Balance<'_> {
         let w = REST * width;
         // Of U the elastic energy; the adhesion of the rest is its area's.
         let adhesion = 2.0 * PI * middle * self.work_of_adhesion;
-        let [near, wider] =
-            [w, WIDER * w].map(|w| of(w).map(|rate| ((rate + adhesion) * w).max(0.0).sqrt()));
+        let [near, wider] = [w, WIDER * w].map(|w| of(w).map(|rate| ((rate + adhesion) * w).max(0.0).sqrt()));
         let (near, wider) = (near?, wider?);
         let root = WIDER.ln() / (near.recip() - wider.recip());
         Some(sum + root * near - adhesion * w)

@@ -9,8 +9,8 @@
 //!
 //! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so that they are real where κ > 0.
 
-use crate::annuli::{AnnuliError, Around, Contacts, Ground, State, Wanted, points};
-use crate::contact::Control;
+use crate::annuli::{AnnuliError, Around, Contacts, Ground, Resolution, State, Wanted, points};
+use crate::problem::Control;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -77,7 +77,7 @@ impl Balance<'_> {
     ///
     /// # Errors
     /// [`AnnuliError`].
-    pub fn held(&self, contacts: &Contacts, points: &[usize], value: f64) -> Result<Held, AnnuliError> {
+    pub fn held(&self, contacts: &Contacts, points: &Resolution, value: f64) -> Result<Held, AnnuliError> {
         let state = self.ground.state_with(contacts, points, Wanted::Rates)?;
         let [p0, p1] = state.force;
         let (delta, factor, by_value) = match self.control {

@@ -1,7 +1,7 @@
 //! Why there is no loop.
 
 use crate::annuli::AnnuliError;
-use crate::contact::Control;
+use crate::problem::Control;
 
 /// Why there is no loop. All numbers are in reduced units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

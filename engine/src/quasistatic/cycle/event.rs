@@ -1,7 +1,7 @@
 //! What happens on a loop, and its states.
 
 use super::balance::Held;
-use crate::contact::Control;
+use crate::problem::Control;
 use crate::quasistatic::{energy, equilibrium};
 
 /// Which way the control goes.

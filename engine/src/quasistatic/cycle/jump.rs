@@ -4,8 +4,8 @@
 //! dα_i/dt = m_i (γ − G_i),  any mobilities m_i > 0;      step (J + μ D⁻¹) Δα = √γ − κ,  D = diag m
 //! ```
 //!
-//! An edge that advances eases every other (∂κ_i/∂α_j < 0 for j ≠ i), so this flow keeps order: begun where all G_i ≤ γ it only grows,
-//! and ends in the least equilibrium that contains its start, whatever the mobilities; begun where all G_i ≥ γ it only shrinks, to the
+//! An edge that advances eases every other (its derivative of their κ is negative), so this flow keeps order: begun where all G ≤ γ it only grows,
+//! and ends in the least equilibrium that contains its start, whatever the mobilities; begun where all G ≥ γ it only shrinks, to the
 //! greatest one inside. On the way contacts merge, touch and vanish.
 
 use super::balance::{Balance, CONVERGED, Held, keeps_widths, moved};

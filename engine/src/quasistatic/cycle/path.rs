@@ -7,8 +7,9 @@ use super::jump::Mobility;
 use super::point::{Point, Step};
 use crate::annuli::ground::gauss;
 use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground};
-use crate::contact::{Control, Form};
 use crate::disc::Table;
+use crate::gap::Form;
+use crate::problem::Control;
 use nalgebra::DVector;
 use std::sync::Arc;
 
@@ -198,6 +199,16 @@ pub fn cycle(
             Err(CycleError::BeyondGap { .. } | CycleError::RadiusBeyondGap { .. }) if !whole => {
                 reach = 2.0 * ground.reach();
             }
+            // A crest further out would have touched unseen.
+            Ok(cycle)
+                if !whole
+                    && cycle
+                        .states
+                        .iter()
+                        .any(|state| BEYOND * ground.can_touch_up_to(state.approach) > ground.reach()) =>
+            {
+                reach = 1.5 * ground.reach();
+            }
             other => return other,
         }
     }
@@ -306,10 +317,10 @@ impl Path<'_, '_> {
         if !turn.value().is_finite() {
             return Err(CycleError::BadTurn(turn.value()));
         }
-        if let Turn::Radius(radius) = turn {
-            if radius > ground.reach() {
-                return Err(CycleError::RadiusBeyondGap { radius, known: ground.reach() });
-            }
+        if let Turn::Radius(radius) = turn
+            && radius > ground.reach()
+        {
+            return Err(CycleError::RadiusBeyondGap { radius, known: ground.reach() });
         }
         let crest = first_crest(ground).ok_or(CycleError::NeverTouches { searched: ground.reach() })?;
         let first = match setting.control {
@@ -431,8 +442,8 @@ impl Path<'_, '_> {
         }
         for (event, of) in self.events.iter().enumerate() {
             if let (Some(energy), Some(area)) = (of.dissipated, of.dissipated_by_area) {
-                let share = (energy - area).abs() / energy.abs().max(f64::MIN_POSITIVE);
-                if share > AGREE && energy != area {
+                let share = (energy - area).abs() / energy.abs().max(f64::MIN_POSITIVE.sqrt());
+                if share > AGREE {
                     warnings.push(Warning::Area { event, share });
                 }
             }
@@ -658,10 +669,9 @@ impl Path<'_, '_> {
                 Some(at.gap)
             };
             let at_start = gap(from).unwrap_or(f64::NAN);
-            if !(at_start > 0.0) {
+            if at_start.is_nan() || at_start <= 0.0 {
                 // Rounding: the start of the step touches.
-                let crest = at;
-                return Ok((0.0, from.clone(), Some(crest)));
+                return Ok((0.0, from.clone(), Some(at)));
             }
             (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
             touched = Some(at);

@@ -1,8 +1,8 @@
 //! Points of an equilibrium curve with rings, and steps along it by arc length in all edges and the control.
 
 use super::balance::{Balance, Held, keeps_widths, moved};
-use crate::annuli::{Contacts, points};
-use crate::contact::Control;
+use crate::annuli::{Contacts, Resolution, points};
+use crate::problem::Control;
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's steps of one correction at most.
@@ -43,7 +43,7 @@ impl Point {
 pub struct Step<'a, 'b> {
     balance: &'a Balance<'b>,
     from: &'a Point,
-    points: Vec<usize>,
+    points: Resolution,
 }
 
 impl Balance<'_> {

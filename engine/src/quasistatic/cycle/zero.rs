@@ -48,7 +48,7 @@ impl Path<'_, '_> {
         let reached = self.measure(&held);
         let at_turn = self.state(&held);
         let work = match self.setting.control {
-            crate::contact::Control::Force => at_turn.energy,
+            crate::problem::Control::Force => at_turn.energy,
             control => at_turn.potential(control),
         };
         let up = self.events.clone();
@@ -124,7 +124,7 @@ impl Path<'_, '_> {
         let mut delta = delta + self.lift();
         match self.setting.turn {
             Turn::Approach(turn) => delta = delta.min(turn),
-            Turn::Control(turn) if self.setting.control == crate::contact::Control::Displacement => {
+            Turn::Control(turn) if self.setting.control == crate::problem::Control::Displacement => {
                 delta = delta.min(turn);
             }
             _ => {}

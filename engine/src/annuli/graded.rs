@@ -1,0 +1,221 @@
+//! An angle graded towards breaks of the gap inside a ring.
+//!
+//! A corner of the gap makes a logarithm in the pressure, a kink a logarithm in its slope: no cosine series converges there. With
+//!
+//! ```text
+//! r = c − d cos θ,  θ = w(t),  t_k = (k + ½)π/n,    unknown p r dr/dt
+//! S(u) = v^p/(v^p + v̂^p),  v = (1/p − ½)(1 − 2u)³ + (2u − 1)/p + ½,  v̂ = v(1 − u),  p = 8
+//! θ = θ_j + Δ S(u) between two breaks,   Δ (2S((1 + u)/2) − 1) from an edge to a break
+//! ```
+//!
+//! w' vanishes to a high order at the breaks, and all sums stay what they are with cos t in the place of x. Breaks fall midway between
+//! points; beside one the angle is kept as its distance from it.
+//!
+//! R. Kress, J. Comput. Appl. Math. 61, 345 (1995), for the substitution.
+
+use super::nodes::Nodes;
+use super::rule::Rule;
+use std::f64::consts::PI;
+use wide::f64x4;
+
+/// p.
+const POWER: f64 = 8.0;
+
+/// A graded angle.
+#[derive(Debug, Clone)]
+pub struct Graded {
+    n: usize,
+    /// θ at the edges and breaks, and the points on each piece between.
+    borders: Vec<f64>,
+    pieces: Vec<usize>,
+    /// |r − r'| of all pairs.
+    apart: Vec<f64>,
+    /// |cos θ − cos θ'| over |cos t − cos t'|.
+    lift: Vec<f64>,
+    /// (v − v')/(r − r') for both edges, dv/dr on the diagonal.
+    pub speeds: [Vec<f64>; 2],
+}
+
+/// S and S'.
+fn sigmoid(u: f64) -> [f64; 2] {
+    let [v, v_slope] = ramp(u);
+    let [w, w_slope] = ramp(1.0 - u);
+    let (vp, wp) = (v.powf(POWER), w.powf(POWER));
+    let sum = vp + wp;
+    let slope = POWER * (v * w).powf(POWER - 1.0) * (v_slope * w + v * w_slope) / (sum * sum);
+    [vp / sum, slope]
+}
+
+/// v and v'.
+fn ramp(u: f64) -> [f64; 2] {
+    let x = 1.0 - 2.0 * u;
+    let cubic = 1.0 / POWER - 0.5;
+    [(cubic * x * x * x - x / POWER + 0.5).max(0.0), -6.0 * cubic * x * x + 2.0 / POWER]
+}
+
+/// A place on a piece: its distances from both borders, and dθ/du.
+struct Place {
+    from_lower: f64,
+    to_upper: f64,
+    slope: f64,
+}
+
+/// The place at u of a piece of the width Δ, the first or last of all where there is no break at that end.
+fn place(u: f64, width: f64, first: bool, last: bool) -> Place {
+    if first {
+        let [s, slope] = sigmoid(0.5 * (1.0 - u));
+        return Place {
+            from_lower: width * (1.0 - 2.0 * s),
+            to_upper: 2.0 * width * s,
+            slope: width * slope,
+        };
+    }
+    if last {
+        let [s, slope] = sigmoid(0.5 * u);
+        return Place {
+            from_lower: 2.0 * width * s,
+            to_upper: width * (1.0 - 2.0 * s),
+            slope: width * slope,
+        };
+    }
+    let [s, slope] = sigmoid(u);
+    Place { from_lower: width * s, to_upper: width * sigmoid(1.0 - u)[0], slope: width * slope }
+}
+
+impl Graded {
+    /// |r − r'| and the lift of row `i` in the columns from `k` on.
+    pub fn pair(&self, i: usize, k: usize) -> (f64x4, f64x4) {
+        let at =
+            |of: &[f64]| of[i * self.n + k..].first_chunk::<4>().map_or(f64x4::ONE, |four| f64x4::new(*four));
+        (at(&self.apart), at(&self.lift))
+    }
+
+    /// t and dθ/dt at the angle θ.
+    pub fn angle(&self, theta: f64) -> (f64, f64) {
+        let last = self.pieces.len() - 1;
+        let j = self.borders[1..].partition_point(|border| *border < theta).min(last);
+        let width = self.borders[j + 1] - self.borders[j];
+        let (mut lo, mut hi) = (0.0, 1.0);
+        for _ in 0..60 {
+            let u = 0.5 * (lo + hi);
+            if place(u, width, j == 0, j == last).from_lower < theta - self.borders[j] {
+                lo = u
+            } else {
+                hi = u
+            }
+        }
+        let u = 0.5 * (lo + hi);
+        let before: usize = self.pieces[..j].iter().sum();
+        let (n, here) = (self.n as f64, self.pieces[j] as f64);
+        let slope = place(u, width, j == 0, j == last).slope * n / (PI * here);
+        (PI * (before as f64 + here * u) / n, slope)
+    }
+}
+
+/// θ of a radius on a ring.
+pub fn angle_of([a, b]: [f64; 2], r: f64) -> f64 {
+    2.0 * ((r - a).max(0.0).sqrt()).atan2((b - r).max(0.0).sqrt())
+}
+
+impl Nodes {
+    /// The points of a ring with these breaks inside, ascending, so many on each piece between them; all of them together are a
+    /// multiple of four.
+    pub fn graded(ends: [f64; 2], breaks: &[f64], pieces: &[usize]) -> Self {
+        let n: usize = pieces.iter().sum();
+        let rule = Rule::of(n);
+        let [a, b] = ends;
+        let (width, last) = (b - a, pieces.len() - 1);
+        let inner = breaks.iter().map(|r| angle_of(ends, *r));
+        let borders: Vec<f64> = std::iter::once(0.0).chain(inner).chain([PI]).collect();
+        let radii_of = |j: usize| {
+            if j == 0 {
+                a
+            } else if j > last {
+                b
+            } else {
+                breaks[j - 1]
+            }
+        };
+        // θ as the distance from a border, and what it makes of r.
+        let mut angles = Vec::with_capacity(n);
+        let mut stretches = Vec::with_capacity(n);
+        for (j, count) in pieces.iter().enumerate() {
+            let size = borders[j + 1] - borders[j];
+            for k in 0..*count {
+                let u = (k as f64 + 0.5) / *count as f64;
+                let at = place(u, size, j == 0, j == last);
+                angles.push(if at.from_lower < at.to_upper {
+                    (j, at.from_lower)
+                } else {
+                    (j + 1, -at.to_upper)
+                });
+                stretches.push(at.slope * n as f64 / (PI * *count as f64));
+            }
+        }
+        let theta: Vec<f64> = angles.iter().map(|(border, off)| borders[*border] + off).collect();
+        // r less the radius of a border: 2d sin sin of half sum and half difference.
+        let from_border = |k: usize, border: usize| {
+            let (own, off) = angles[k];
+            let difference = if own == border { off } else { theta[k] - borders[border] };
+            width * (0.5 * (theta[k] + borders[border])).sin() * (0.5 * difference).sin()
+        };
+        let from_inner: Vec<f64> = (0..n).map(|k| width * (0.5 * theta[k]).sin().powi(2)).collect();
+        let radii: Vec<f64> = (0..n).map(|k| radii_of(angles[k].0) + from_border(k, angles[k].0)).collect();
+        let (first_break, last_break) = (radii_of(1), radii_of(last));
+        let (inward, outward) = ((first_break - a).recip(), (b - last_break).recip());
+        let in_first = pieces[0];
+        let in_last = n - pieces[last];
+        let speeds = [
+            (0..n)
+                .map(|k| if k < in_first { -from_border(k, 1) * inward } else { 0.0 })
+                .collect::<Vec<f64>>(),
+            (0..n).map(|k| if k >= in_last { from_border(k, last) * outward } else { 0.0 }).collect(),
+        ];
+        let [mut apart, mut lift] = [vec![0.0; n * n], vec![0.0; n * n]];
+        let mut quotients = [vec![0.0; n * n], vec![0.0; n * n]];
+        for i in 0..n {
+            let at = i * n + i;
+            lift[at] = stretches[i] * theta[i].sin() / rule.angles[i].sin();
+            quotients[0][at] = if i < in_first { -inward } else { 0.0 };
+            quotients[1][at] = if i >= in_last { outward } else { 0.0 };
+            for k in i + 1..n {
+                let difference = if angles[i].0 == angles[k].0 {
+                    angles[k].1 - angles[i].1
+                } else {
+                    (borders[angles[k].0] - borders[angles[i].0]) + (angles[k].1 - angles[i].1)
+                };
+                let product = (0.5 * (theta[i] + theta[k])).sin() * (0.5 * difference).sin();
+                let ratio = product / (rule.sines[i + k + 1] * rule.sines[k - i]);
+                for at in [i * n + k, k * n + i] {
+                    apart[at] = width * product;
+                    lift[at] = ratio;
+                    for edge in 0..2 {
+                        quotients[edge][at] = (speeds[edge][k] - speeds[edge][i]) / (width * product);
+                    }
+                }
+            }
+        }
+        // Where both move on one line the quotient is its slope, which differences would lose.
+        for i in 0..in_first {
+            quotients[0][i * n..i * n + in_first].fill(-inward);
+        }
+        for i in in_last..n {
+            quotients[1][i * n + in_last..(i + 1) * n].fill(outward);
+        }
+        let edge = |j: usize, u: f64| {
+            place(u, borders[j + 1] - borders[j], j == 0, j == last).slope * n as f64
+                / (PI * pieces[j] as f64)
+        };
+        let stretch = [edge(0, 0.0), edge(last, 1.0)];
+        Self {
+            ends,
+            rule,
+            radii,
+            from_inner,
+            speeds,
+            slopes: [[-inward, 0.0], [0.0, outward]],
+            stretch,
+            graded: Some(Graded { n, borders, pieces: pieces.to_vec(), apart, lift, speeds: quotients }),
+        }
+    }
+}
