@@ -74,30 +74,30 @@ pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Fai
     }))
 }
 
-fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<crate::tui::Start, Failure> {
+fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<crate::tui::Opening, Failure> {
     use crate::explorer::archive::ArchiveError;
     let name = if name.is_empty() { archive.newest()?.ok_or(ArchiveError::Empty)? } else { name.to_owned() };
-    Ok(crate::tui::Start::Resume(Box::new(archive.load(&name)?)))
+    Ok(crate::tui::Opening::Resume(Box::new(archive.load(&name)?)))
 }
 
 /// A preset; a session that was cut off is offered where no preset was asked for, and else only mentioned.
 fn fresh(
     archive: &crate::explorer::archive::Archive,
     problem: &Problem,
-) -> Result<crate::tui::Start, Failure> {
+) -> Result<crate::tui::Opening, Failure> {
     use crate::explorer::archive::ago;
-    use crate::tui::Start;
+    use crate::tui::Opening;
     let loaded = Box::new(problem.load()?);
     let is_plain = problem.preset.is_none() && problem.assignments.is_empty();
     Ok(match archive.cut_off() {
-        Ok(None) => Start::Preset(loaded, None),
-        Ok(Some(held)) if is_plain => Start::Offer(loaded, Box::new(held)),
+        Ok(None) => Opening::Preset(loaded, None),
+        Ok(Some(held)) if is_plain => Opening::Offer(loaded, Box::new(held)),
         Ok(Some(held)) => {
             let same = held.summary.preset_name == loaded.source.shown();
             let name = held.claim.name();
             let notice = format!("cut off {}: --resume {name} goes on", ago(held.summary.saved_at));
-            Start::Preset(loaded, same.then_some(notice))
+            Opening::Preset(loaded, same.then_some(notice))
         }
-        Err(notice) => Start::Preset(loaded, Some(notice)),
+        Err(notice) => Opening::Preset(loaded, Some(notice)),
     })
 }

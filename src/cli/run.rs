@@ -3,7 +3,7 @@
 use super::Failure;
 use super::problem::{Problem, store};
 use crate::explorer::command::by_name;
-use crate::explorer::script::{self, Line, Permission, play};
+use crate::explorer::script::{self, Permission, ScriptLine, play};
 use crate::explorer::{Inline, Model, open};
 use crate::store::stream::{self, STANDARD};
 use clap::Args;
@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let problem = Problem { preset: arguments.preset.clone(), assignments: arguments.assignments.clone() };
     let (mut model, effects) = open(problem.load()?);
     let permission = Permission { overwrite: arguments.overwrite, anywhere: arguments.anywhere };
-    let mut told = |line: &Line, model: &Model| {
+    let mut told = |line: &ScriptLine, model: &Model| {
         if arguments.verbose {
             account(line, model);
         }
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 /// What became of a line, in one line.
-fn account(line: &Line, model: &Model) {
+fn account(line: &ScriptLine, model: &Model) {
     let command = script::line(&line.command).unwrap_or_default();
     let text = format!("{}: {command}: {}", line.number, by_name(&model.status().1));
     // Nobody may be listening.

@@ -2,7 +2,7 @@
 
 use super::{Failure, output};
 use crate::store::stream;
-use crate::sweep::axis::Axis;
+use crate::sweep::axis::SweepAxis;
 use crate::sweep::spec::Design;
 use crate::sweep::{Existing, Output, OutputError, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
 use clap::{Args, Subcommand};
@@ -228,7 +228,7 @@ impl Sweep {
 
 /// How to draw it, where it is a curve or a map.
 fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
-    let is_numeric = spec.axes.iter().all(Axis::is_numeric);
+    let is_numeric = spec.axes.iter().all(SweepAxis::is_numeric);
     let picture = match &spec.axes[..] {
         [_] if is_numeric => "curve",
         axes @ [_, _] if is_numeric && spec.design == Design::Grid => {

@@ -4,7 +4,7 @@ use super::command::{Assignment, Command};
 use super::curve::CurveData;
 use super::export::Page;
 use super::job::{Content, Done, Job};
-use super::journal::Start;
+use super::journal::Beginning;
 use super::walk_table::{WALK_COLUMNS, WalkRow, changed_keys};
 use super::{data, script};
 use crate::mend::Reason;
@@ -168,7 +168,7 @@ struct Walked<'a, R> {
 
 /// A session as a script: opens the preset it began with, with the values that differ from its file, and follows its
 /// lines.
-fn script_text(store: &Store, start: &Start, lines: &[String]) -> Result<String, String> {
+fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<String, String> {
     let name = match &start.source {
         Source::Shipped(shipped) => shipped.name.to_owned(),
         Source::User { name, .. } => name.clone(),

@@ -9,7 +9,7 @@ const CHUNK: usize = 256;
 
 /// A node with its place in the tree.
 #[derive(Debug, Clone)]
-struct Entry {
+struct TreeNode {
     node: Node,
     forward: Option<usize>,
 }
@@ -25,7 +25,7 @@ pub struct Mark {
 /// The tree. A clone is cheap however long the walk: what is not changed afterwards stays shared.
 #[derive(Debug, Clone, Default)]
 pub struct History {
-    chunks: Vec<Arc<Vec<Entry>>>,
+    chunks: Vec<Arc<Vec<TreeNode>>>,
     cursor: Option<usize>,
     revision: u64,
     /// How often nodes were forgotten and the others numbered anew.
@@ -48,7 +48,7 @@ impl History {
         }
         let mut tree = Self::default();
         for (node, forward) in nodes {
-            tree.add(Entry { node, forward });
+            tree.add(TreeNode { node, forward });
         }
         tree.cursor = cursor;
         Some(tree)
@@ -115,7 +115,7 @@ impl History {
         self.numbering
     }
 
-    fn entry(&self, number: usize) -> Option<&Entry> {
+    fn entry(&self, number: usize) -> Option<&TreeNode> {
         self.chunks.get(number / CHUNK)?.get(number % CHUNK)
     }
 
@@ -131,7 +131,7 @@ impl History {
         }
     }
 
-    fn add(&mut self, entry: Entry) {
+    fn add(&mut self, entry: TreeNode) {
         match self.chunks.last_mut().filter(|last| last.len() < CHUNK) {
             Some(last) => Arc::make_mut(last).push(entry),
             None => self.chunks.push(Arc::new(vec![entry])),
@@ -155,7 +155,7 @@ impl History {
         if let Some(parent) = node.parent {
             self.set_forward(parent, at);
         }
-        self.add(Entry { node, forward: None });
+        self.add(TreeNode { node, forward: None });
         self.stand(at);
         if self.len() > self.prune_at.max(prune::MOST) {
             self.prune();
@@ -173,7 +173,7 @@ impl History {
             let parent = node.parent.map(|parent| place[parent]);
             if stays[at] {
                 place.push(tree.len());
-                tree.add(Entry { node: Node { parent, ..(*node).clone() }, forward: None });
+                tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, forward: None });
             } else {
                 // The first node has no parent, and stays.
                 place.push(parent.unwrap_or(0));

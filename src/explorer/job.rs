@@ -4,7 +4,7 @@ use super::command::Assignment;
 use super::curve::CurveData;
 use super::data::Folder;
 use super::export::{ExportKind, Page};
-use super::journal::Start;
+use super::journal::Beginning;
 use super::node::Node;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
@@ -22,7 +22,7 @@ pub enum Content {
     Walk(Arc<CurveData>, Vec<Node>),
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
-    Script(Box<Start>, Vec<String>),
+    Script(Box<Beginning>, Vec<String>),
 }
 
 impl Content {

@@ -25,7 +25,7 @@ const BYTES: usize = 1 << 19;
 pub struct Journal {
     lines: Arc<Vec<String>>,
     bytes: usize,
-    start: Option<Box<Start>>,
+    start: Option<Box<Beginning>>,
     replay: Option<Box<Replay>>,
     /// The steps of the last line, if further steps can be added to it.
     steps: Option<usize>,
@@ -36,7 +36,7 @@ pub struct Journal {
 
 /// Where the walk began.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Start {
+pub struct Beginning {
     pub source: Source,
     pub preset: Preset,
 }
@@ -63,7 +63,7 @@ struct Walking {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Kept {
     pub lines: Arc<Vec<String>>,
-    pub start: Option<Start>,
+    pub start: Option<Beginning>,
     pub replay: Option<Replay>,
     pub steps: Option<usize>,
     pub broken: Option<String>,
@@ -92,7 +92,7 @@ impl Journal {
     }
 
     /// Where the walk began; nothing before the first state.
-    pub fn start(&self) -> Option<&Start> {
+    pub fn start(&self) -> Option<&Beginning> {
         self.start.as_deref()
     }
 
@@ -106,7 +106,7 @@ impl Journal {
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
         let replay = Replay { preset: preset.clone(), inward: true, length: FIRST_LENGTH };
-        let (start, replay) = (Some(Box::new(Start { source, preset })), Some(Box::new(replay)));
+        let (start, replay) = (Some(Box::new(Beginning { source, preset })), Some(Box::new(replay)));
         *self = Self { start, replay, ..Self::default() };
     }
 

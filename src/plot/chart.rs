@@ -15,7 +15,7 @@ pub enum Run {
 
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Axis {
+pub struct ChartAxis {
     /// What stands beside it: `δ (µm)`.
     pub title: String,
     pub run: Run,
@@ -24,8 +24,8 @@ pub struct Axis {
 /// A chart: what a figure shows, without what only a screen needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    pub x: Axis,
-    pub y: Axis,
+    pub x: ChartAxis,
+    pub y: ChartAxis,
     pub bounds: Bounds,
     /// The lines, in the order of drawing; those of one name are one entry of the legend.
     pub lines: Vec<Line>,
@@ -38,7 +38,7 @@ pub struct Chart {
 impl Chart {
     /// A figure of the explorer in the part of it that `window` shows.
     pub fn of(figure: &Figure, window: &Window) -> Self {
-        let axis = |title| Axis { title, run: Run::Linear };
+        let axis = |title| ChartAxis { title, run: Run::Linear };
         Self {
             x: axis(figure.x.title()),
             y: axis(figure.y.title()),
@@ -51,7 +51,7 @@ impl Chart {
     }
 
     /// A chart of `lines` over all their points; a logarithmic axis passes over what is not positive.
-    pub fn new(x: Axis, y: Axis, lines: Vec<Line>) -> Self {
+    pub fn new(x: ChartAxis, y: ChartAxis, lines: Vec<Line>) -> Self {
         let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
         let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
         let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };

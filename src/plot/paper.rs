@@ -10,7 +10,7 @@
 //! | 8, 9 | force and contact radius on slight and on steep waves |
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
 
-use super::chart::{Axis, Chart, Run};
+use super::chart::{Chart, ChartAxis, Run};
 use crate::explorer::{CurveData, Overlays, View, Window};
 use crate::figure::{Line, Role, Subject};
 use crate::store::{read_with, shipped};
@@ -232,7 +232,7 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
 }
 
 fn pressure_chart(lines: Vec<Line>) -> Chart {
-    let axis = |title: &str| Axis { title: title.to_owned(), run: Run::Linear };
+    let axis = |title: &str| ChartAxis { title: title.to_owned(), run: Run::Linear };
     Chart::new(axis("r/s"), axis("p/E*"), lines)
 }
 
@@ -304,7 +304,7 @@ fn errors() -> Result<Sheet, PaperError> {
             lines.push(Line::new(Role::Pin(2 * i + k + 1), format!("{title}, {quantity}"), points));
         }
     }
-    let axis = |title: &str| Axis { title: title.to_owned(), run: Run::Logarithmic };
+    let axis = |title: &str| ChartAxis { title: title.to_owned(), run: Run::Logarithmic };
     let caption = format!(
         "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
          number of rings N. The observed orders at the finest meshes are {}.",

@@ -1,6 +1,6 @@
 //! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value.
 
-use super::chart::{Axis, Chart, Run};
+use super::chart::{Chart, ChartAxis, Run};
 use super::map::{MapError, distinct, is_logarithmic};
 use crate::figure::{Line, Mark, Role, Sign};
 use crate::sweep::Results;
@@ -22,7 +22,7 @@ pub fn chart(results: &Results, axis: &str, quantity: &str) -> Result<Chart, Map
     let values = distinct(&along);
     let run = if is_logarithmic(&values) { Run::Logarithmic } else { Run::Linear };
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
-    let [x, y] =
-        [(axis, run), (quantity, Run::Linear)].map(|(name, run)| Axis { title: results.title(name), run });
+    let [x, y] = [(axis, run), (quantity, Run::Linear)]
+        .map(|(name, run)| ChartAxis { title: results.title(name), run });
     Ok(Chart { marks, ..Chart::new(x, y, vec![Line::new(Role::Body, "", points)]) })
 }

@@ -1,7 +1,7 @@
 //! A chart as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
 
 use super::Width;
-use super::chart::{Axis, Chart, Run};
+use super::chart::{Chart, ChartAxis, Run};
 use super::ink::{self, Stroke};
 use crate::figure::{Bounds, Line, Mark, Role};
 use kuva::plot::fill_pattern::FillPattern;
@@ -66,7 +66,7 @@ pub(super) fn frame(
 ) -> Layout {
     let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
     let [x, y] = titles;
-    let axis = |title: String, k: usize| Axis { title, run: run(logarithmic[k]) };
+    let axis = |title: String, k: usize| ChartAxis { title, run: run(logarithmic[k]) };
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
     let chart = Chart { bounds, ..Chart::new(axis(x, 0), axis(y, 1), Vec::new()) };
     let wide = width.get() * UNITS_PER_MM;
@@ -313,7 +313,7 @@ mod tests {
     use crate::figure::{Area, Role, Sign};
 
     fn chart(lines: Vec<Line>) -> Chart {
-        Chart::new(Axis::default(), Axis::default(), lines)
+        Chart::new(ChartAxis::default(), ChartAxis::default(), lines)
     }
 
     #[test]
@@ -342,7 +342,7 @@ mod tests {
         let mut full = chart(vec![broken]);
         full.areas.push(Area { outline: vec![(0.0, 0.0), (nan, 1.0), (1.0, 1.0)], lost: None });
         full.marks.push(Mark { sign: Sign::Limit, at: (0.5, nan) });
-        let log = Axis { title: String::new(), run: Run::Logarithmic };
+        let log = ChartAxis { title: String::new(), run: Run::Logarithmic };
         let negative =
             Chart::new(log.clone(), log, vec![Line::new(Role::Body, "", vec![(-1.0, 2.0), (1.0, 0.0)])]);
         for chart in [

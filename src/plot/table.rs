@@ -42,11 +42,11 @@ pub fn is_header(line: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::chart::Axis;
+    use crate::plot::chart::ChartAxis;
 
     #[test]
     fn a_table_is_known_by_its_first_line() {
-        let axis = |title: &str| Axis { title: title.to_owned(), ..Axis::default() };
+        let axis = |title: &str| ChartAxis { title: title.to_owned(), ..ChartAxis::default() };
         let chart = Chart::new(axis("E*, \"quoted\" (µm)"), axis("P/Pc"), Vec::new());
         let text = csv(&chart).unwrap();
         assert!(is_header(text.lines().next().unwrap()));

@@ -14,7 +14,7 @@ use toml::de::DeValue;
 
 /// A key and its values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct SweepAxis {
     /// A dotted key that [`Preset::set`] takes.
     pub key: String,
     pub points: Points,
@@ -61,7 +61,7 @@ const KINDS: [&str; 4] = ["values", "linear", "logarithmic", "distribution"];
 /// The kinds of distributions.
 const DISTRIBUTIONS: [&str; 4] = ["uniform", "log-uniform", "normal", "integers"];
 
-impl Axis {
+impl SweepAxis {
     /// Reads `[[axis]]`; `preset` checks its values. With `fixed` no axis changes which keys the preset has.
     pub(super) fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
         section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;

@@ -17,7 +17,7 @@ pub struct SpecError {
 
 /// The text of a file with its name.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Document<'a> {
+pub(super) struct SpecText<'a> {
     pub(super) name: &'a str,
     pub(super) text: &'a str,
 }
@@ -25,7 +25,7 @@ pub(super) struct Document<'a> {
 /// A table of the document.
 #[derive(Debug, Clone)]
 pub(super) struct Section<'a> {
-    document: Document<'a>,
+    document: SpecText<'a>,
     /// Its dotted name; empty for the document itself.
     name: String,
     table: &'a DeTable<'a>,
@@ -35,13 +35,13 @@ pub(super) struct Section<'a> {
 /// A key with its value.
 #[derive(Debug, Clone)]
 pub(super) struct Entry<'a> {
-    document: Document<'a>,
+    document: SpecText<'a>,
     pub(super) name: String,
     pub(super) value: &'a DeValue<'a>,
     at: usize,
 }
 
-impl<'a> Document<'a> {
+impl<'a> SpecText<'a> {
     pub(super) fn parse(self) -> Result<DeTable<'a>, SpecError> {
         match DeTable::parse(self.text) {
             Ok(table) => Ok(table.into_inner()),

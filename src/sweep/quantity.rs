@@ -30,123 +30,50 @@ pub(super) enum Stage {
     Passed,
 }
 
-const fn row(name: &'static str, unit: Unit, meaning: &'static str, of: Stage) -> Quantity {
-    Quantity { name, unit, meaning, of }
+/// Makes [`QUANTITIES`] of the table: name, unit, meaning, and from what it is computed.
+macro_rules! quantities {
+    ($($name:literal $unit:ident $meaning:literal: $of:expr;)*) => {
+        /// The quantities.
+        pub static QUANTITIES: &[Quantity] =
+            &[$(Quantity { name: $name, unit: Unit::$unit, meaning: $meaning, of: $of }),*];
+    };
 }
 
-/// The quantities.
-pub static QUANTITIES: &[Quantity] = &[
-    row(
-        "pull_off_force",
-        Unit::Force,
-        "force at the pull-off, negative: a pull",
-        Stage::Unloading(|path| path.pull_off(|state| state.force)),
-    ),
-    row(
-        "pull_off_approach",
-        Unit::Length,
-        "approach at the pull-off",
-        Stage::Unloading(|path| path.pull_off(|state| state.approach)),
-    ),
-    row(
-        "pull_off_radius",
-        Unit::Length,
-        "contact radius at the pull-off",
-        Stage::Unloading(|path| path.pull_off(|state| state.contact_radius)),
-    ),
-    row("snaps", Unit::Number, "jumps before the pull-off", Stage::Unloading(|path| Some(path.snaps()))),
-    row(
-        "snap_loss",
-        Unit::Energy,
-        "energy lost in all of them",
-        Stage::Unloading(|path| Some(path.snap_loss())),
-    ),
-    row(
-        "pull_off_loss",
-        Unit::Energy,
-        "energy lost at the pull-off; none under a dead load",
-        Stage::Unloading(UnloadingPath::pull_off_loss),
-    ),
-    row(
-        "inadmissible_share",
-        Unit::Number,
-        "share of the path, by contact radius, on which the next crest would already touch",
-        Stage::Passed,
-    ),
-    row("limit_points", Unit::Number, "limit points of the control on the curve", Stage::Limits),
-    row(
-        "start_contact_radius",
-        Unit::Length,
-        "contact radius at the start, the largest of the curve",
-        Stage::Start(|start| Some(start.contact_radius())),
-    ),
-    row(
-        "least_force",
-        Unit::Force,
-        "smallest force of the curve",
-        Stage::Curve(|line| line.least(|s| s.force)),
-    ),
-    row(
-        "least_force_radius",
-        Unit::Length,
-        "contact radius at the smallest force",
-        Stage::Curve(|line| line.least(|s| s.contact_radius)),
-    ),
-    row(
-        "least_approach",
-        Unit::Length,
-        "smallest approach of the curve",
-        Stage::Curve(CurveMinima::least_approach),
-    ),
-    row(
-        "enhancement",
-        Unit::Number,
-        "smallest force over that of the smooth sphere, P_min/P_c in size",
-        Stage::Curve(CurveMinima::enhancement),
-    ),
-    row(
-        "waves",
-        Unit::Number,
-        "waves in the disc at the smallest force, s/lambda",
-        Stage::Curve(CurveMinima::waves),
-    ),
-    row(
-        "critical_force",
-        Unit::Force,
-        "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere",
-        Stage::Preset(PresetValues::critical_force),
-    ),
-    row(
-        "kesari_lew",
-        Unit::Number,
-        "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves",
-        Stage::Preset(PresetValues::kesari_lew),
-    ),
-    row(
-        "johnson",
-        Unit::Number,
-        "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))",
-        Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number)),
-    ),
-    row(
-        "adhesion",
-        Unit::Number,
-        "gamma' = 2 pi gamma/(E* R)",
-        Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number)),
-    ),
-    row(
-        "connectivity",
-        Unit::Number,
-        "lambda^2/(A R); above 8.58 the gap rises monotonically",
-        Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number)),
-    ),
-    row(
-        "tabor",
-        Unit::Number,
-        "Tabor's mu, where the range of action is known",
-        Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number)),
-    ),
-];
+quantities! {
+    "pull_off_force" Force "force at the pull-off, negative: a pull":
+        Stage::Unloading(|path| path.pull_off(|state| state.force));
+    "pull_off_approach" Length "approach at the pull-off":
+        Stage::Unloading(|path| path.pull_off(|state| state.approach));
+    "pull_off_radius" Length "contact radius at the pull-off":
+        Stage::Unloading(|path| path.pull_off(|state| state.contact_radius));
+    "snaps" Number "jumps before the pull-off": Stage::Unloading(|path| Some(path.snaps()));
+    "snap_loss" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
+    "pull_off_loss" Energy "energy lost at the pull-off; none under a dead load":
+        Stage::Unloading(UnloadingPath::pull_off_loss);
+    "inadmissible_share" Number "share of the path, by contact radius, on which the next crest would already touch":
+        Stage::Passed;
+    "limit_points" Number "limit points of the control on the curve": Stage::Limits;
+    "start_contact_radius" Length "contact radius at the start, the largest of the curve":
+        Stage::Start(|start| Some(start.contact_radius()));
+    "least_force" Force "smallest force of the curve": Stage::Curve(|line| line.least(|s| s.force));
+    "least_force_radius" Length "contact radius at the smallest force":
+        Stage::Curve(|line| line.least(|s| s.contact_radius));
+    "least_approach" Length "smallest approach of the curve": Stage::Curve(CurveMinima::least_approach);
+    "enhancement" Number "smallest force over that of the smooth sphere, P_min/P_c in size":
+        Stage::Curve(CurveMinima::enhancement);
+    "waves" Number "waves in the disc at the smallest force, s/lambda": Stage::Curve(CurveMinima::waves);
+    "critical_force" Force "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere":
+        Stage::Preset(PresetValues::critical_force);
+    "kesari_lew" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves":
+        Stage::Preset(PresetValues::kesari_lew);
+    "johnson" Number "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))":
+        Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number));
+    "adhesion" Number "gamma' = 2 pi gamma/(E* R)": Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number));
+    "connectivity" Number "lambda^2/(A R); above 8.58 the gap rises monotonically":
+        Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number));
+    "tabor" Number "Tabor's mu, where the range of action is known":
+        Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number));
+}
 
 /// The quantities of a spec that names none.
 pub const USUAL: [&str; 6] =

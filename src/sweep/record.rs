@@ -2,7 +2,7 @@
 //!
 //! Numbers have every digit, so the values of a row bring back its problem. A line never holds a line end but its own.
 
-use super::axis::Axis;
+use super::axis::SweepAxis;
 use super::fault::Fault;
 use super::measure::Measured;
 use super::spec::{Design, Spec, values};
@@ -17,7 +17,7 @@ pub const ERROR: &str = "error";
 /// What is known of the rows without computing them: the values of the axes in each, and the names of all columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     pub design: Design,
     pub columns: Vec<String>,
 }
@@ -55,7 +55,7 @@ pub fn names(spec: &Spec) -> Vec<String> {
 }
 
 /// What the line of a row begins with: its number and the values of its axes.
-fn known(axes: &[Axis], design: Design, row: u64) -> Vec<String> {
+fn known(axes: &[SweepAxis], design: Design, row: u64) -> Vec<String> {
     let values = values(axes, design, row);
     std::iter::once(row.to_string()).chain(values.iter().map(ToString::to_string)).collect()
 }

@@ -3,7 +3,7 @@
 //! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
 //! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
 
-use super::document::Document;
+use super::document::SpecText;
 use super::record::{self, Layout};
 use super::shard::Shard;
 use super::spec::{Spec, of_canonical};
@@ -232,7 +232,7 @@ impl Sidecar {
     /// The layout of the results beside `text`, that of this file.
     pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SidecarError> {
         let path = path(results);
-        let document = Document { name: &path.to_string_lossy(), text };
+        let document = SpecText { name: &path.to_string_lossy(), text };
         let (axes, design) = of_canonical(document)
             .map_err(|error| SidecarError::Unknown { path: error.origin.to_string(), what: error.what })?;
         let columns = self.columns.iter().map(|column| column.name.clone()).collect();

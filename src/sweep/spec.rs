@@ -1,8 +1,8 @@
 //! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
 
 use super::MOST_ROWS;
-use super::axis::{Axis, Points, overrides, rival};
-use super::document::{Document, Entry, Section, SpecError};
+use super::axis::{Points, SweepAxis, overrides, rival};
+use super::document::{Entry, Section, SpecError, SpecText};
 use super::fault::Fault;
 use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
@@ -41,7 +41,7 @@ pub enum Design {
 pub struct Spec {
     pub preset: Preset,
     /// The axes; at least one.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     pub design: Design,
     /// The quantities wanted; at least one.
     pub columns: Vec<Column>,
@@ -83,7 +83,7 @@ impl Spec {
 
     /// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
     pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = Document { name, text };
+        let document = SpecText { name, text };
         let table = document.parse()?;
         let section = document.section(&table);
         section.only(&["preset", "set", "combine", "random", "quantities", "axis"])?;
@@ -96,9 +96,9 @@ impl Spec {
         let key =
             |table: &Section<'_>| table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned));
         let fixed = !tables.iter().filter_map(key).any(|key| CHOOSERS.contains(&&*key));
-        let mut read: Vec<Axis> = Vec::new();
+        let mut read: Vec<SweepAxis> = Vec::new();
         for table in &tables {
-            let axis = Axis::read(table, &preset, fixed)?;
+            let axis = SweepAxis::read(table, &preset, fixed)?;
             if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
                 return Err(table.fault(&format!("the axis {} is at odds with the axis {other}", axis.key)));
             }
@@ -197,7 +197,7 @@ impl Spec {
 }
 
 /// The values of the axes in a row, in the order of the axes.
-pub(super) fn values(axes: &[Axis], design: Design, row: u64) -> Vec<Value> {
+pub(super) fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
     let mut index = row;
     let mut random = match design {
         Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
@@ -205,7 +205,7 @@ pub(super) fn values(axes: &[Axis], design: Design, row: u64) -> Vec<Value> {
     };
     // Drawn in the order of the axes; counted from the last, which runs fastest.
     if let Some(random) = &mut random {
-        let draw = |axis: &Axis| match &axis.points {
+        let draw = |axis: &SweepAxis| match &axis.points {
             Points::Drawn(distribution) => Some(distribution.draw(random)),
             _ => None,
         };
@@ -223,11 +223,11 @@ pub(super) fn values(axes: &[Axis], design: Design, row: u64) -> Vec<Value> {
 }
 
 /// The axes of a canonical form, as [`Spec::canonical`] writes it, and how they make rows.
-pub(super) fn of_canonical(document: Document<'_>) -> Result<(Vec<Axis>, Design), SpecError> {
+pub(super) fn of_canonical(document: SpecText<'_>) -> Result<(Vec<SweepAxis>, Design), SpecError> {
     let table = document.parse()?;
     let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;
     let axes = sweep.need("axis", "tables")?.array("tables")?;
-    let axes = axes.iter().map(|entry| Axis::of_canonical(&entry.section("a table")?));
+    let axes = axes.iter().map(|entry| SweepAxis::of_canonical(&entry.section("a table")?));
     Ok((axes.collect::<Result<_, _>>()?, design(&sweep)?))
 }
 
@@ -325,8 +325,8 @@ fn design(section: &Section<'_>) -> Result<Design, SpecError> {
 }
 
 /// The number of rows; every axis must fit the design.
-fn rows(design: Design, axes: &[Axis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
-    let counts: Vec<Option<u64>> = axes.iter().map(Axis::count).collect();
+fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
+    let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
     let mut product = 1_u64;
     for ((axis, table), count) in axes.iter().zip(tables).zip(&counts) {
         let key = &axis.key;

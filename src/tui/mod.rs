@@ -64,7 +64,7 @@ pub struct Settings {
 
 /// What the explorer begins with.
 #[derive(Debug)]
-pub enum Start {
+pub enum Opening {
     /// A preset, and what is to be said about sessions, if anything.
     Preset(Box<Loaded>, Option<String>),
     /// A preset, with the offer to resume a session that was cut off.
@@ -86,20 +86,20 @@ fn describe(held: &Held) -> String {
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(start: Start, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
+fn begin(start: Opening, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
     match start {
-        Start::Preset(loaded, notice) => {
+        Opening::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
             app.model.message = notice.map(|notice| (Level::Info, notice));
             (app, effects, None)
         }
-        Start::Offer(loaded, held) => {
+        Opening::Offer(loaded, held) => {
             let (mut app, effects) = App::new(*loaded, theme);
             let when = ago(held.summary.saved_at);
             app.offer(&format!("A session was cut off {when} ({}).", describe(&held)), held.snapshot.clone());
             (app, effects, Some(held))
         }
-        Start::Resume(held) => {
+        Opening::Resume(held) => {
             let mut text = format!("resumed {} ({})", held.claim.name(), describe(&held));
             let (mut app, effects) = App::resumed(held.snapshot, theme);
             if let Some((_, note)) = app.model.message.take() {
@@ -116,7 +116,7 @@ fn begin(start: Start, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, 
 pub fn run(
     store: Store,
     archive: Archive,
-    start: Start,
+    start: Opening,
     look: Look,
     settings: Settings,
 ) -> io::Result<ExitCode> {

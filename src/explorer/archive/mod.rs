@@ -103,7 +103,7 @@ fn failed(path: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> Archive
 
 /// One line of the list of sessions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
+pub struct SessionFile {
     pub name: String,
     pub written: SystemTime,
     pub bytes: u64,
@@ -148,21 +148,21 @@ impl Archive {
     }
 
     /// The sessions, the newest first.
-    pub fn list(&self) -> Result<Vec<Entry>, ArchiveError> {
+    pub fn list(&self) -> Result<Vec<SessionFile>, ArchiveError> {
         let Some(folder) = &self.folder else { return Ok(Vec::new()) };
         let files = match fs::read_dir(folder) {
             Ok(files) => files,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
             Err(error) => return Err(failed(folder, "list the sessions")(error)),
         };
-        let mut entries: Vec<Entry> = files
+        let mut entries: Vec<SessionFile> = files
             .filter_map(Result::ok)
             .filter_map(|file| {
                 let path = PathBuf::from(file.file_name());
                 let name = path.file_stem()?.to_str().filter(|name| is_well_formed(name))?.to_owned();
                 let metadata = file.metadata().ok().filter(fs::Metadata::is_file)?;
                 (path.extension()? == ENDING).then_some(())?;
-                Some(Entry { name, written: metadata.modified().ok()?, bytes: metadata.len() })
+                Some(SessionFile { name, written: metadata.modified().ok()?, bytes: metadata.len() })
             })
             .collect();
         // Of two of one moment the later number is the newer.

@@ -50,7 +50,7 @@ pub use parse::{for_script, parse};
 pub use permissions::Permission;
 pub use play::{Failed, play};
 pub use print::line;
-pub use read::{LARGEST, Line, MOST_LINES, ScriptError, read};
+pub use read::{LARGEST, MOST_LINES, ScriptError, ScriptLine, read};
 
 #[cfg(test)]
 mod tests;

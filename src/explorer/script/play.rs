@@ -2,7 +2,7 @@
 
 use super::line;
 use super::permissions::{Permission, allowed};
-use super::read::Line;
+use super::read::ScriptLine;
 use crate::explorer::command::{Command, by_name};
 use crate::explorer::driver::Inline;
 use crate::explorer::effect::Effect;
@@ -29,9 +29,9 @@ pub fn play(
     model: &mut Model,
     driver: &Inline,
     effects: Vec<Effect>,
-    lines: &[Line],
+    lines: &[ScriptLine],
     permission: Permission,
-    told: &mut dyn FnMut(&Line, &Model),
+    told: &mut dyn FnMut(&ScriptLine, &Model),
 ) -> Result<(), Failed> {
     // A script that opens a preset of its own needs no curve of the one before.
     if !lines.first().is_some_and(|line| opens(&line.command) && !line.may_fail) {
@@ -59,7 +59,7 @@ pub fn opens(command: &Command) -> bool {
     matches!(command, Command::Open(_) | Command::OpenWith { .. })
 }
 
-fn obey(model: &mut Model, driver: &Inline, line: &Line, permission: Permission) -> Result<(), Reason> {
+fn obey(model: &mut Model, driver: &Inline, line: &ScriptLine, permission: Permission) -> Result<(), Reason> {
     let command = allowed(model, line.command.clone(), permission).map_err(Reason::mendable)?;
     let effects = update(model, command);
     driver.settle(model, effects);

@@ -18,7 +18,7 @@ pub(super) const FAULTS: usize = 20;
 
 /// One line of a script.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct ScriptLine {
     /// Its number, from 1.
     pub number: usize,
     /// Whether the script goes on when it fails.
@@ -46,7 +46,7 @@ impl fmt::Display for ScriptError {
 }
 
 /// Reads a script; `name` names it in messages. Nothing of it is done.
-pub fn read(name: &str, text: &str) -> Result<Vec<Line>, ScriptError> {
+pub fn read(name: &str, text: &str) -> Result<Vec<ScriptLine>, ScriptError> {
     let (mut lines, mut faults) = (Vec::new(), Vec::new());
     for (i, text) in text.lines().enumerate() {
         let number = i + 1;
@@ -55,7 +55,7 @@ pub fn read(name: &str, text: &str) -> Result<Vec<Line>, ScriptError> {
             break;
         }
         match parse::script_line(text) {
-            Ok(Some((may_fail, command))) => lines.push(Line { number, may_fail, command }),
+            Ok(Some((may_fail, command))) => lines.push(ScriptLine { number, may_fail, command }),
             Ok(None) => {}
             Err(fault) => faults.push((number, fault)),
         }

@@ -7,7 +7,7 @@ use super::problems::{Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
 use super::unreadable::{FORMAT, Unreadable};
-use crate::explorer::journal::{Kept, Replay, Start};
+use crate::explorer::journal::{Beginning, Kept, Replay};
 use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
 use pulloff_engine::preset::Preset;
@@ -105,7 +105,8 @@ impl Script {
     }
 
     fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<Kept, Unreadable> {
-        let start = self.start.map(|(source, at)| Ok(Start { source: source.back()?, preset: preset(at)? }));
+        let start =
+            self.start.map(|(source, at)| Ok(Beginning { source: source.back()?, preset: preset(at)? }));
         let replay =
             self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
         let (lines, left_out) = script::without_former(self.lines);

@@ -39,7 +39,7 @@ const READING: &[&str] = &[
 const MEANING: usize = 20;
 
 /// A line as long as it may be: broken between words where it is shown, each row under the first.
-struct Entry {
+struct HelpLine {
     /// What stands before it, as wide as its indent.
     label: String,
     text: String,
@@ -48,7 +48,7 @@ struct Entry {
     name: &'static str,
 }
 
-impl Entry {
+impl HelpLine {
     fn new(label: &str, text: impl Into<String>, style: Style) -> Self {
         Self { label: label.to_owned(), text: text.into(), style, name: "" }
     }
@@ -76,8 +76,8 @@ impl Entry {
 }
 
 /// What narrow screens cut elsewhere, whole: the status, warnings, notes.
-fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<Entry> {
-    let entry = |text: &str, style| Entry::new("  ", theme.text(text), style);
+fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<HelpLine> {
+    let entry = |text: &str, style| HelpLine::new("  ", theme.text(text), style);
     let mut entries = vec![entry(&keymap.spelled(&model.status().1), Style::new())];
     if let Some(curve) = &model.curve {
         entries.extend(curve.base.warnings.iter().map(|text| entry(&format!("! {text}"), theme.error())));
@@ -86,11 +86,12 @@ fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<Entry> {
     entries
 }
 
-fn entries(app: &App) -> Vec<Entry> {
+fn entries(app: &App) -> Vec<HelpLine> {
     let (theme, keymap) = (app.theme, &app.keymap);
-    let section = |title: &str| [Entry::new("", "", Style::new()), Entry::new("", title, theme.strong())];
-    let spelled = |text: &str| Entry::new("  ", theme.text(&keymap.spelled(text)), Style::new());
-    let mut entries = vec![Entry::new("", "First steps", theme.strong()), spelled(FIRST_STEPS)];
+    let section =
+        |title: &str| [HelpLine::new("", "", Style::new()), HelpLine::new("", title, theme.strong())];
+    let spelled = |text: &str| HelpLine::new("  ", theme.text(&keymap.spelled(text)), Style::new());
+    let mut entries = vec![HelpLine::new("", "First steps", theme.strong()), spelled(FIRST_STEPS)];
     entries.extend(section("Now"));
     entries.extend(now(theme, keymap, &app.model));
     let mut current = "";
@@ -100,10 +101,11 @@ fn entries(app: &App) -> Vec<Entry> {
             entries.extend(section(current));
         }
         let label = format!("  {:<1$}", keymap.label(row.id), MEANING - 2);
-        entries.push(Entry { name: row.name, ..Entry::new(&label, theme.text(row.help), Style::new()) });
+        entries
+            .push(HelpLine { name: row.name, ..HelpLine::new(&label, theme.text(row.help), Style::new()) });
     }
     let label = format!("  {:<1$}", "Ctrl-Z", MEANING - 2);
-    entries.push(Entry::new(&label, "back to the shell; fg returns", Style::new()));
+    entries.push(HelpLine::new(&label, "back to the shell; fg returns", Style::new()));
     entries.extend(section("How to read it"));
     entries.extend(READING.iter().map(|text| spelled(text)));
     entries
