@@ -73,7 +73,8 @@ impl Late {
                 | Effect::File(_)
                 | Effect::StopCurve(_)
                 | Effect::StopPins
-                | Effect::Pin(..) => {}
+                | Effect::Pin(..)
+                | Effect::Loop(_) => {}
             }
             self.pending.push_back(effect);
         }

@@ -9,6 +9,7 @@ use super::curve::{CurveData, ProblemCurve};
 use super::effect::{Check, Effect, Reply, Wish};
 use super::files;
 use super::job::Job;
+use super::loops::LoopWish;
 use super::model::Model;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
@@ -54,6 +55,9 @@ impl Inline {
         match effect {
             Effect::Curve(wish) => compute(&wish, |_| true),
             Effect::Check(check) => check.run(|| true),
+            Effect::Loop(wish) => {
+                wish.is_shown.then(|| wish.run(&|| true)).flatten().map(|found| Reply::Loop(Arc::new(found)))
+            }
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -105,6 +109,7 @@ const CHUNK: Duration = Duration::from_millis(30);
 pub struct Workers {
     curve: Arc<Slot<Task>>,
     profile: Arc<Slot<Box<Ask>>>,
+    loops: Arc<Slot<Box<LoopWish>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
@@ -162,7 +167,7 @@ impl Workers {
         store: Store,
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
-        let (curve, profile) = (Slot::empty(), Slot::empty());
+        let (curve, profile, loops) = (Slot::empty(), Slot::empty(), Slot::empty());
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
@@ -172,6 +177,8 @@ impl Workers {
         thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
         let (slot, send) = (Arc::clone(&profile), reply.clone());
         thread::Builder::new().name("profile".to_owned()).spawn(move || profiles(&slot, &send))?;
+        let (slot, send) = (Arc::clone(&loops), reply.clone());
+        thread::Builder::new().name("loop".to_owned()).spawn(move || loop_lane(&slot, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -189,7 +196,7 @@ impl Workers {
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, walks, files, pins, pins_given_up, stopped, given_up })
+        Ok(Self { curve, profile, loops, walks, files, pins, pins_given_up, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -207,6 +214,7 @@ impl Workers {
             Effect::Check(check) => self.curve.put(Task::Check(check)),
             Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
             Effect::Profile(ask) => self.profile.put(ask),
+            Effect::Loop(wish) => self.loops.put(wish),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Pin(number, preset) => {
@@ -262,6 +270,17 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
 fn profiles(slot: &Slot<Box<Ask>>, reply: &dyn Fn(Reply)) {
     loop {
         reply(Reply::Profile(Arc::new(Inside::compute(&slot.take()))));
+    }
+}
+
+fn loop_lane(slot: &Slot<Box<LoopWish>>, reply: &dyn Fn(Reply)) {
+    loop {
+        let wish = slot.take();
+        let begun = Instant::now();
+        let go_on = || !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
+        if let Some(found) = wish.run(&go_on) {
+            reply(Reply::Loop(Arc::new(found)));
+        }
     }
 }
 

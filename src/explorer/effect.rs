@@ -2,6 +2,7 @@
 
 use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
+use super::loops::{LoopData, LoopWish};
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::walk::{Made, Outcome, Request};
@@ -18,6 +19,8 @@ pub enum Effect {
     StopCurve(u64),
     /// Check which states of a curve are admissible; dropped when another curve is wanted.
     Check(Check),
+    /// Compute a loop of loading and unloading; an older one still waiting is forgotten.
+    Loop(Box<LoopWish>),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
@@ -62,6 +65,7 @@ pub enum Reply {
         id: u64,
         curve: Arc<CurveData>,
     },
+    Loop(Arc<LoopData>),
     Profile(Arc<Inside>),
     Walked {
         id: u64,

@@ -24,6 +24,7 @@
 //! | [`curve`] | the equilibrium curve of a problem, and what belongs to its control |
 //! | [`progress`] | how far the computation of a curve has come |
 //! | [`background_jobs`] | pinned curves, admissibility checks, the profile of the current state |
+//! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -54,6 +55,7 @@ pub mod history;
 pub mod job;
 pub mod journal;
 pub mod look;
+pub mod loops;
 pub mod model;
 pub mod node;
 pub mod nudge;

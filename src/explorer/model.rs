@@ -5,6 +5,7 @@ use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
 use super::history::{History, Mark};
 use super::journal::Journal;
+use super::loops::{self, LoopData, LoopWish};
 use super::node::{Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
@@ -113,6 +114,10 @@ pub struct Model {
     pub progress: Option<Progress>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<Checking>,
+    /// The loop of loading and unloading, where the gap has crests; it can be that of values before.
+    pub cycle: Option<Arc<LoopData>>,
+    /// The newest loop asked for.
+    pub cycle_wanted: Option<Box<LoopWish>>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -182,6 +187,8 @@ impl Model {
             curve_shown: 0,
             progress: None,
             checking: None,
+            cycle: None,
+            cycle_wanted: None,
             stiffness: None,
             device: None,
             history: History::default(),
@@ -374,6 +381,10 @@ impl Model {
     pub fn shown_events(&self) -> Vec<EventReport> {
         match self.events {
             EventSource::Walked => self.walked_events().into_iter().map(|(_, event)| event).collect(),
+            EventSource::Cycle => {
+                let report = self.cycle.as_ref().and_then(|cycle| cycle.report());
+                report.map_or_else(Vec::new, |report| report.events.iter().map(loops::event).collect())
+            }
             EventSource::Curve => self
                 .curve
                 .as_ref()

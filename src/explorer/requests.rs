@@ -2,8 +2,10 @@
 
 use super::effect::{Check, Effect, Wish};
 use super::job::Job;
+use super::loops::{LoopWish, has_crests, same_loop};
 use super::model::{Checking, Level, Model};
 use super::node::NodeKind;
+use super::view::EventSource;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
@@ -34,6 +36,28 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
     let id = model.number();
     model.checking = Some(Checking::Asked(id));
     Some(Effect::Check(Check { id, curve }))
+}
+
+/// Asks for the loop of the values as they are, once their curve is there; gaps without crests have none.
+pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
+    let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing()).cloned()?;
+    if !has_crests(&curve) {
+        (model.cycle, model.cycle_wanted) = (None, None);
+        return None;
+    }
+    let is_shown = model.events == EventSource::Cycle;
+    let is_there = model.cycle.as_ref().is_some_and(|cycle| cycle.is_of(&model.preset));
+    // A script computes only the loop that is looked at, and so asks again for one that was not.
+    let is_asked = model
+        .cycle_wanted
+        .as_ref()
+        .is_some_and(|wanted| same_loop(&wanted.preset, &model.preset) && (wanted.is_shown || !is_shown));
+    if is_there || is_asked {
+        return None;
+    }
+    let wish = LoopWish { id: model.number(), preset: model.preset.clone(), curve, is_shown };
+    model.cycle_wanted = Some(Box::new(wish.clone()));
+    Some(Effect::Loop(Box::new(wish)))
 }
 
 /// Takes the parameters of the walker's state where the curve on the screen has others.

@@ -17,9 +17,10 @@ use super::availability::{is_available, why_unavailable};
 use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
 use super::job::Job;
+use super::loops::has_crests;
 use super::model::{Level, Model};
 use super::nudge::Amount;
-use super::requests::{browse, file, stop, take_back, want_check, want_curve};
+use super::requests::{browse, file, stop, take_back, want_check, want_curve, want_loop};
 use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
 use super::{background_jobs, look};
@@ -58,6 +59,7 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     let mut effects = allowed(model, command);
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
+    effects.extend(want_loop(model));
     effects
 }
 
@@ -169,6 +171,14 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             checked(model, id, curve);
             Vec::new()
         }
+        Reply::Loop(found) => {
+            if model.cycle_wanted.as_ref().is_some_and(|wanted| found.id <= wanted.id) {
+                model.cycle = Some(found);
+                let lines = model.shown_events().len() + model.shown_inadmissible().len();
+                model.event = model.event.min(lines.saturating_sub(1));
+            }
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -185,6 +195,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     };
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
+    effects.extend(want_loop(model));
     effects
 }
 
@@ -227,8 +238,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Pin => look::pin(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },
         Id::Events => {
-            model.events =
-                if model.events == EventSource::Curve { EventSource::Walked } else { EventSource::Curve };
+            let has_loop = model.curve.as_ref().is_some_and(|curve| has_crests(curve));
+            model.events = model.events.next(has_loop);
             model.event = 0;
         }
         Id::Device => model.device = Some(!model.shows_device()),
@@ -362,6 +373,9 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
         // The state before the jump, as it was walked.
         return travel_to(model, parent);
     }
+    if model.events == EventSource::Cycle {
+        return go_to_loop_event(model);
+    }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
     if model.is_busy() {
@@ -380,4 +394,21 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
     let event = model.event;
     nearest.map_or_else(Vec::new, |limit| walk(model, Action::MoveToEvent { event, limit }))
+}
+
+/// The walker goes to the state before an event of the loop, where that is one disc.
+fn go_to_loop_event(model: &mut Model) -> Vec<Effect> {
+    let before = model.cycle.as_ref().and_then(|cycle| {
+        let event = cycle.report()?.events.get(model.event)?;
+        event.before.as_ref().map(|before| (before.contacts.clone(), before.contact_radius))
+    });
+    match before {
+        Some((contacts, radius)) if contacts.len() == 1 && contacts[0][0] == 0.0 => move_to(model, radius),
+        Some(_) => {
+            let text = "that state has rings of contact, and the walker is on the curve of one disc";
+            model.tell(Level::Info, text);
+            Vec::new()
+        }
+        None => Vec::new(),
+    }
 }

@@ -35,7 +35,21 @@ pub enum Axes {
 #[serde(rename_all = "kebab-case")]
 pub enum EventSource {
     Curve,
+    /// The loop of loading and unloading.
+    Cycle,
     Walked,
+}
+
+impl EventSource {
+    /// The one that comes after it; the loop only where there is one.
+    #[must_use]
+    pub fn next(self, has_loop: bool) -> Self {
+        match self {
+            Self::Curve if has_loop => Self::Cycle,
+            Self::Curve | Self::Cycle => Self::Walked,
+            Self::Walked => Self::Curve,
+        }
+    }
 }
 
 /// The views of a problem and its walker.

@@ -8,6 +8,7 @@ use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::pins::Pin;
+use pulloff_engine::report::cycle::PathStateReport;
 use pulloff_engine::report::number::{fixed, significant};
 
 /// Builds a view of the curve.
@@ -18,6 +19,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
     theory(subject, scale, &mut figure);
+    cycle(subject, scale, &mut figure);
     // Below the curve: what lies on it is known.
     branches(subject, scale, &mut figure);
     let pinned = pins(subject, &mut figure);
@@ -30,6 +32,36 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
     figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned));
     figure
+}
+
+/// The loop, loading and unloading apart: of each contact its edges, where radii are shown.
+fn cycle(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
+    let Some(report) = subject.cycle else { return };
+    let view = figure.view;
+    let pieces = report.states.chunk_by(|a, b| {
+        (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
+    });
+    for piece in pieces {
+        let (role, name) = if piece[0].direction == "loading" {
+            (Role::Loading, "loading")
+        } else {
+            (Role::Unloading, "unloading")
+        };
+        let place = |at: &PathStateReport, r: f64| scale.place(view, [at.state.approach, at.state.force, r]);
+        // Without a radius on the axes there is one line, however many contacts.
+        let contacts = if view == View::ForceApproach { 1 } else { piece[0].state.contacts.len() };
+        for contact in 0..contacts {
+            for edge in [1, 0] {
+                let radius =
+                    |at: &PathStateReport| at.state.contacts.get(contact).map_or(0.0, |edges| edges[edge]);
+                if edge == 0 && (view == View::ForceApproach || radius(&piece[0]) == 0.0) {
+                    continue;
+                }
+                let points = piece.iter().map(|at| place(at, radius(at))).collect();
+                figure.lines.push(Line::new(role, name, points));
+            }
+        }
+    }
 }
 
 /// δ, P and s of a point of the curve.

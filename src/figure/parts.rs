@@ -15,6 +15,10 @@ pub enum Role {
     Pin(usize),
     Branch,
     Exact,
+    /// The loop on its way down.
+    Unloading,
+    /// The loop on its way up.
+    Loading,
     Unstable,
     Stable,
     /// Equilibrium that cannot be: the next crest would already touch.

@@ -7,6 +7,7 @@ use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
 use pulloff_engine::preset::Preset;
+use pulloff_engine::report::CycleReport;
 
 /// What figures are built from.
 #[derive(Debug, Clone)]
@@ -19,6 +20,8 @@ pub struct Subject<'a> {
     pub inside: Option<&'a Inside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
+    /// The loop of loading and unloading, where there is one.
+    pub cycle: Option<&'a CycleReport>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -36,6 +39,7 @@ impl<'a> Subject<'a> {
             branches: branches(&model.history).into_iter().filter(|branch| !branch.is_here).collect(),
             inside: model.shown_profile(),
             device: device::line(model),
+            cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -51,6 +55,7 @@ impl<'a> Subject<'a> {
             branches: Vec::new(),
             inside: None,
             device: None,
+            cycle: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,

@@ -60,6 +60,8 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Pin(number) => NUMBERED[number.saturating_sub(1) % NUMBERED.len()],
         // Over the curve: the dots stand on the line that they agree with.
         Role::Exact => stroke(BLACK, 1.0, "0.8 3.2"),
+        Role::Loading => stroke(GREEN, 1.2, "6 1.5 1 1.5"),
+        Role::Unloading => stroke(ORANGE, 1.2, "5 1 1 1 1 1"),
         Role::Unstable => stroke(VERMILLION, 1.0, "3 2"),
         Role::Stable => stroke(BLUE, 1.6, ""),
         Role::Inadmissible => stroke(PURPLE, 3.0, "0.8 2.4"),
@@ -100,7 +102,15 @@ mod tests {
     #[test]
     fn lines_that_meet_differ_without_their_colours() {
         let curve = [Role::Smooth, Role::Envelope, Role::Exact, Role::Unstable, Role::Stable];
-        let more = [Role::Branch, Role::Inadmissible, Role::Device, Role::Undeformed, Role::Barrier];
+        let more = [
+            Role::Loading,
+            Role::Unloading,
+            Role::Branch,
+            Role::Inadmissible,
+            Role::Device,
+            Role::Undeformed,
+            Role::Barrier,
+        ];
         let looks: Vec<(String, &str)> = curve
             .into_iter()
             .chain(more)

@@ -4,9 +4,10 @@ use super::parts::{is_selected, panel};
 use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
-use pulloff_engine::report::OverlapReport;
+use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
 use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::report::{OverlapReport, cycle_table};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -20,6 +21,7 @@ const WIDE: u16 = 112;
 /// Draws the list of instabilities.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
+    let units = &model.preset.units;
     let events = model.shown_events();
     let selected = is_selected(app, Panel::Events);
     let title = theme.text(&title(model, &app.keymap));
@@ -68,6 +70,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         })
         .collect();
     // Where there is room; the documents have it too.
+    if model.events == EventSource::Cycle {
+        let found = model.cycle.iter().filter_map(|cycle| cycle.report());
+        let rings =
+            found.flat_map(|report| report.events.get(model.event)).map(|event| contacts(event, units));
+        lines.extend(rings.map(|text| Line::styled(format!(" {}", theme.text(&text)), theme.dim())));
+    }
     let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);
     let notes = notes.flat_map(|curve| &curve.base.notes);
     lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
@@ -87,6 +95,16 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
     let below = usize::from(row.checked_sub(area.y + 2)?);
     let line = first(model, count, rows) + below;
     (below < rows && line < count).then_some(line)
+}
+
+/// The contacts before and after an event of the loop.
+fn contacts(event: &CycleEventReport, units: &UnitSystem) -> String {
+    let of = |state: &Option<CycleStateReport>| {
+        state
+            .as_ref()
+            .map_or_else(|| "apart".to_owned(), |state| cycle_table::contacts(units, &state.contacts))
+    };
+    format!("contact {} -> {}", of(&event.before), of(&event.after))
 }
 
 /// An inadmissible part of the curve: no event, so it has no number.
@@ -112,15 +130,29 @@ fn title(model: &Model, keymap: &Keymap) -> String {
     let named = [Quantity::Length, Quantity::Force, Quantity::Energy].map(|quantity| units.unit(quantity));
     let named: Vec<String> = named.into_iter().flatten().map(ToString::to_string).collect();
     let units = if named.is_empty() { String::new() } else { format!(" in {}", named.join(", ")) };
+    let (next, there) = match model.events.next(model.cycle_wanted.is_some()) {
+        EventSource::Curve => ("on the curve", format!(" {on_curve}")),
+        EventSource::Walked => ("walked", format!(" {walked}")),
+        EventSource::Cycle => {
+            let count = model.cycle.as_ref().and_then(|cycle| cycle.report()).map(|r| r.events.len());
+            ("of the loop", count.map_or_else(String::new, |count| format!(" {count}")))
+        }
+    };
     match model.events {
+        EventSource::Cycle => {
+            let count = model.shown_events().len();
+            let old = model.cycle.as_ref().is_some_and(|cycle| !cycle.is_of(&model.preset));
+            let old = if old { ", of the values before" } else { "" };
+            format!("Events of the loop: {count}{old}{units} ({key}: {next}{there})")
+        }
         EventSource::Curve => {
             let parts = match model.shown_inadmissible().len() {
                 0 => String::new(),
                 count => format!(", {count} inadmissible"),
             };
-            format!("Events on the curve: {on_curve}{parts}{units} ({key}: walked {walked})")
+            format!("Events on the curve: {on_curve}{parts}{units} ({key}: {next}{there})")
         }
-        EventSource::Walked => format!("Events walked: {walked}{units} ({key}: on the curve {on_curve})"),
+        EventSource::Walked => format!("Events walked: {walked}{units} ({key}: {next}{there})"),
     }
 }
 
@@ -143,6 +175,11 @@ fn headline(model: &Model, room: usize) -> String {
         let events = model.walked_events();
         let total = events.iter().filter_map(|(_, e)| e.dissipated).fold(0.0, |a, b| a + b);
         return lost(total, events.iter().all(|(_, e)| e.dissipated.is_some()));
+    }
+    if model.events == EventSource::Cycle {
+        let report = model.cycle.as_ref().and_then(|cycle| cycle.report());
+        let total = report.map(|report| (report.totals.dissipated, report.totals.dissipated_before_pull_off));
+        return total.map_or_else(String::new, |(all, before)| lost(all.unwrap_or(before), all.is_some()));
     }
     let Some(report) = &curve.report else { return String::new() };
     let least = shown(Quantity::Force, report.min_force);
@@ -174,6 +211,10 @@ fn empty(model: &Model, keymap: &Keymap) -> String {
         (Some(_), EventSource::Walked) => {
             format!(" none yet: {limit} runs to a limit point, {jump} takes the jump")
         }
+        (Some(_), EventSource::Cycle) => match model.cycle.as_ref().map(|cycle| &cycle.report) {
+            Some(Err(reason)) => format!(" no loop: {reason}"),
+            _ => " computing the loop".to_owned(),
+        },
         (Some(curve), EventSource::Curve) => match (&curve.unloading, &curve.report) {
             (Err(reason), _) => format!(" no path: {reason}"),
             (Ok(_), report) => format!(" none: {}", report.as_ref().map_or("", |report| &report.stop)),
@@ -288,9 +329,10 @@ fn long(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -
     let [share, share_after] = forces(units, event, critical);
     let agreement = match event.losses_agree() {
         Some(true) => "agrees".to_owned(),
-        _ => event
-            .dissipated_by_area
-            .map_or_else(|| "dead load".to_owned(), |x| loss(units.shown(Quantity::Energy, x).number)),
+        _ => event.dissipated_by_area.map_or_else(
+            || if event.dissipated.is_none() { "dead load".to_owned() } else { dash() },
+            |x| loss(units.shown(Quantity::Energy, x).number),
+        ),
     };
     vec![
         number.to_string(),

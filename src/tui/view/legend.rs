@@ -48,7 +48,7 @@ fn rank(role: Role, theme: Theme) -> u8 {
         | Role::Undeformed
         | Role::Barrier
         | Role::Device => 1,
-        Role::Smooth | Role::Branch => 3,
+        Role::Smooth | Role::Branch | Role::Loading | Role::Unloading => 3,
         Role::Walk | Role::Jump => 5,
         _ => 4,
     }

@@ -15,6 +15,8 @@ pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
         Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
         Role::Branch => (Stroke::Lettered("b"), styles.smooth),
         Role::Envelope => (Stroke::LongDashed, styles.exact),
+        Role::Loading => (Stroke::Lettered("l"), styles.aid),
+        Role::Unloading => (Stroke::Lettered("u"), styles.aid),
         Role::Exact => (Stroke::Dashed, styles.exact),
         Role::Pin(number) => {
             let at = number.saturating_sub(1) % DIGITS.len();

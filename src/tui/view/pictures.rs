@@ -4,6 +4,7 @@
 //! is that of the whole screen, and what it is. Large things are the same when they are the same in memory, which the
 //! scene keeps alive, or by the number that the history counts its changes with.
 
+use crate::explorer::loops::LoopData;
 use crate::explorer::pins::Pin;
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, EventSource, Model, Overlays, View, Window};
@@ -108,6 +109,7 @@ struct Scene {
     curve: Option<Arc<CurveData>>,
     /// What stands in place of a curve.
     is_computing: bool,
+    cycle: Option<Arc<LoopData>>,
     inside: Option<Arc<Inside>>,
     pins: Vec<Pin>,
     /// By which the pins are named.
@@ -149,6 +151,7 @@ impl Scene {
             revision: model.history.revision(),
             curve: model.curve.clone(),
             is_computing: model.is_computing(),
+            cycle: model.cycle.clone(),
             inside: inside(model).cloned(),
             pins: model.pins.all().to_vec(),
             preset: naming(model).cloned(),
@@ -168,7 +171,7 @@ impl Scene {
         let model = &app.model;
         // Named one by one, so that none is forgotten.
         let Self { session, revision, curve, is_computing, inside: shown, pins, preset, units, .. } = self;
-        let Self { overlays, device, axes, events, is_inward, length, theme, keymap, .. } = self;
+        let Self { cycle, overlays, device, axes, events, is_inward, length, theme, keymap, .. } = self;
         let is_pinned =
             |(a, b): (&Pin, &Pin)| a.number == b.number && is_same(Some(&a.curve), Some(&b.curve));
         let all = model.pins.all();
@@ -176,6 +179,7 @@ impl Scene {
             && is_same(curve.as_ref(), model.curve.as_ref())
             && *is_computing == model.is_computing()
             && is_same(shown.as_ref(), inside(model))
+            && is_same(cycle.as_ref(), model.cycle.as_ref())
             && pins.len() == all.len()
             && pins.iter().zip(all).all(is_pinned)
             && preset.as_ref() == naming(model)

@@ -1,0 +1,110 @@
+//! The whole loop of loading and unloading, computed in the background for gaps with more than one crest.
+//!
+//! It takes longer than the curve, which never waits for it. While values are turned the loop on the screen may be that of
+//! values before: it says so.
+
+use super::curve::CurveData;
+use super::setting::same_curve;
+use crate::mend::Reason;
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::quasistatic::admissible::falls;
+use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::report::CycleReport;
+use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
+use pulloff_engine::report::unload::{EventReport, StateReport};
+use std::sync::Arc;
+
+/// A loop that is wanted.
+#[derive(Debug, Clone)]
+pub struct LoopWish {
+    pub id: u64,
+    /// The preset with its control and its turn.
+    pub preset: Preset,
+    /// The curve of the same problem.
+    pub curve: Arc<CurveData>,
+    /// Whether the person looks at the loop itself: a script computes no other.
+    pub is_shown: bool,
+}
+
+/// A loop, or why there is none.
+#[derive(Debug, Clone)]
+pub struct LoopData {
+    /// The number it was asked for under.
+    pub id: u64,
+    pub preset: Preset,
+    pub report: Result<CycleReport, Reason>,
+}
+
+impl LoopWish {
+    /// Computes it; `None` when `go_on`, which is asked before each step, said no.
+    #[must_use]
+    pub fn run(&self, go_on: &dyn Fn() -> bool) -> Option<LoopData> {
+        let base = &self.curve.case;
+        let units = base.units();
+        let turn = self.preset.path.turn;
+        let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
+        let case = Case { turn, ..base.clone() };
+        let report = match case.cycle(case.control, None, Areas::No, &|_| go_on()) {
+            Err(CaseError::Cancelled) => return None,
+            Err(error) => Err(Reason::of("", &error)),
+            Ok(cycle) => Ok(CycleReport::new(&self.preset, &case, &cycle)),
+        };
+        Some(LoopData { id: self.id, preset: self.preset.clone(), report })
+    }
+}
+
+impl LoopData {
+    /// Whether it is the loop of `preset`.
+    #[must_use]
+    pub fn is_of(&self, preset: &Preset) -> bool {
+        same_loop(&self.preset, preset)
+    }
+
+    /// The loop.
+    #[must_use]
+    pub fn report(&self) -> Option<&CycleReport> {
+        self.report.as_ref().ok()
+    }
+}
+
+/// Whether two presets have the same loop.
+pub(super) fn same_loop(a: &Preset, b: &Preset) -> bool {
+    same_curve(a, b) && (a.path.control, a.path.turn) == (b.path.control, b.path.turn)
+}
+
+/// Whether the gap of a curve has crests further out: else the loop is the first touch and the unloading.
+#[must_use]
+pub fn has_crests(curve: &CurveData) -> bool {
+    let reduced = &curve.case.reduced;
+    reduced.gap.wavelength().is_some() || falls(&reduced.gap, curve.case.start)
+}
+
+/// An event of a loop as a line of the list of events.
+#[must_use]
+pub fn event(event: &CycleEventReport) -> EventReport {
+    let state = |state: &CycleStateReport| StateReport {
+        contact_radius: state.contact_radius,
+        approach: state.approach,
+        force: state.force,
+        wave: state.wave,
+    };
+    let after = event.after.as_ref().map(state);
+    // Apart the bodies bear nothing; the approach is that of the touch.
+    let apart = StateReport {
+        contact_radius: 0.0,
+        approach: after.map_or(0.0, |after| after.approach),
+        force: 0.0,
+        wave: after.and_then(|after| after.wave.map(|_| 0)),
+    };
+    EventReport {
+        kind: event.kind,
+        control_value: event.control_value,
+        before: event.before.as_ref().map_or(apart, state),
+        after,
+        dissipated: event.dissipated,
+        dissipated_by_area: event.dissipated_by_area,
+        reason: String::new(),
+        admissible: None,
+    }
+}
