@@ -56,7 +56,10 @@ pub fn warning(passes: &str, overlaps: &[OverlapReport], units: &UnitSystem) -> 
         told.push(format!("and {more} more"));
     }
     let intervals = if overlaps.len() == 1 { "1 interval" } else { &format!("{} intervals", overlaps.len()) };
-    Some(format!("{passes} crosses {intervals} of inadmissible states: {}", told.join(", ")))
+    // Where a crest touches, contact goes on in rings.
+    let touches = overlaps.iter().any(|overlap| overlap.crest_radius.is_some());
+    let rings = if touches { "; the real path has rings of contact there (pulloff cycle)" } else { "" };
+    Some(format!("{passes} crosses {intervals} of inadmissible states: {}{rings}", told.join(", ")))
 }
 
 #[cfg(test)]
@@ -78,7 +81,8 @@ mod tests {
         assert!(one.ends_with("pull"), "{one}");
         let many = warning("the curve", &[overlap(Some(0.5)); 9], &UnitSystem::Reduced).unwrap();
         assert!(
-            many.contains("9 intervals") && many.ends_with("at the crest r = 0.5000, and 6 more"),
+            many.contains("9 intervals")
+                && many.contains("at the crest r = 0.5000, and 6 more; the real path"),
             "{many}"
         );
         assert_eq!(many.lines().count(), 1);

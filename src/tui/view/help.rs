@@ -24,7 +24,8 @@ const READING: &[&str] = &[
     "v marks a limit point of that control: there the edge lets go and runs, at constant control, to the next stable \
      part, and the energy between is lost. d and p mark the limit points of displacement and force. Not every limit \
      point is on the quasi-static path: the events are those where the edge lets go on it.",
-    "! marks states that cannot be: outside the disc the next crest would touch. They stand behind the events.",
+    "! marks states that cannot be: outside the disc the next crest would touch. They stand behind the events. \
+     The real path has rings of contact there: its loop is drawn with l (loading) and u (unloading), and \u{1}events\u{1} lists it.",
     "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap \
      outside it and the potential over the radius at the walker's state, and the unloading with its losses hatched. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
@@ -32,7 +33,7 @@ const READING: &[&str] = &[
     "Along the curve w marks the states walked, j a jump and b what branches off; letters and dashes tell lines apart \
      without colour.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
-    "The digits are an estimate of how far force and contact radius can be trusted; more rings give more.",
+    "The digits are an estimate of how far force and contact radius can be trusted; in the basis of rings, more rings give more.",
 ];
 
 /// Where what a key does begins.
