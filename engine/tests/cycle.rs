@@ -1,9 +1,12 @@
 //! Whole loops against those of another program, and what holds for every loop.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
 use pulloff_engine::annuli::{Around, Contacts, Ground};
 use pulloff_engine::disc::Table;
 use pulloff_engine::gap::shapes::random_waves::RandomWaves;
 use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::gap::{shapes::Harmonic, shapes::Harmonics};
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::quasistatic::cycle::{
@@ -30,7 +33,10 @@ fn reference(name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-fn numbers(state: &Value) -> (f64, f64, Vec<[f64; 2]>) {
+/// δ, P and the contacts.
+type Numbers = (f64, f64, Vec<[f64; 2]>);
+
+fn numbers(state: &Value) -> Numbers {
     let number = |key: &str| state[key].as_f64().unwrap();
     let rings = state["annuli"].as_array().unwrap().iter();
     let rings = rings.map(|ring| [ring[0].as_f64().unwrap(), ring[1].as_f64().unwrap()]);
@@ -51,7 +57,7 @@ fn agrees(found: &Cycle, reference: &Value, tolerance: f64, losses: f64) {
         .filter(|state| !state.is_null())
         .map(numbers)
         .collect();
-    let range = |of: &dyn Fn(&(f64, f64, Vec<[f64; 2]>)) -> f64| {
+    let range = |of: &dyn Fn(&Numbers) -> f64| {
         let (lo, hi) = states
             .iter()
             .map(of)
@@ -149,15 +155,6 @@ fn without_adhesion_the_loop_is_that_of_the_table() {
         ("merge", 0.125_386_6, 0.079_783_254_20, 0.028_848_303_5, 0.169_422_3),
         ("merge", 0.175_369_5, 0.095_343_532_88, 0.038_109_438_6, 0.218_373_5),
     ];
-    for event in &found.events {
-        println!(
-            "{} {:?} {:.11} {:?}",
-            event.kind.name(),
-            event.radius,
-            event.control_value,
-            event.after.as_ref().map(|state| (state.force, &state.contacts))
-        );
-    }
     let up: Vec<_> = found.events.iter().take_while(|event| event.kind != EventKind::Turn).skip(1).collect();
     assert_eq!(up.len(), expected.len());
     for (event, (kind, radius, delta, force, disc)) in up.iter().zip(expected) {
@@ -277,7 +274,7 @@ fn random_loops(numbers: std::ops::Range<u64>, areas: Areas) {
             Ok((found, name)) => {
                 let gains =
                     found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-18));
-                let off = found.totals.balance.is_some_and(|balance| !(balance < 1e-7));
+                let off = found.totals.balance.is_some_and(|balance| balance.is_nan() || balance > 1e-7);
                 let lines = found.warnings.iter().any(|warning| matches!(warning, Warning::Area { .. }));
                 let apart = found.events.last().map(|event| event.kind) == Some(EventKind::PullOff);
                 if gains || off || lines || !apart {
@@ -426,4 +423,114 @@ fn without_adhesion_solving_afresh_finds_the_same() {
             assert!(balance.least_gap(&held).is_none_or(|crest| crest.gap > -1e-10), "{number} {name}");
         }
     }
+}
+
+#[test]
+fn a_wave_with_a_corner_is_that_of_another_program() {
+    let text = "r^2/2+0.0025*(1-cos(2*pi*r/0.05))+0.05*max(r-0.1,0)";
+    let none: Vec<FormulaParameter> = Vec::new();
+    let gap: Arc<dyn Gap> = Arc::new(Shape::Formula(Arc::new(TypedGap::new(text, none, Some(0.6)).unwrap())));
+    let table = Arc::new(Table::new(gap, 0.4, &mut || true).unwrap());
+    let ground = Ground::new(table, 0.4, &mut || true).unwrap();
+    let setting = Setting {
+        control: Control::Displacement,
+        turn: Turn::Approach(0.03),
+        areas: Areas::Yes,
+        mobility: EVEN,
+    };
+    let found = cycle_on(&ground, 1e-4, &setting, &|_| true).unwrap();
+    println!("{:?} {:?}", found.totals, found.warnings);
+    assert!(found.totals.balance.unwrap() < 1e-6);
+    // Within r < 0.1 this gap is that of the smooth wave, and so is the second touch; the other program took its least gap from a
+    // series across the corner, and let it touch a little early: its landing there is held at its own control value.
+    let mut expected = reference("corner-cycle");
+    let smooth = reference("fig9-weak");
+    let [ours, theirs] = [&found.events[2], &found.events[2]].map(|event| event.before.as_ref().unwrap());
+    let (delta, p, contacts) = numbers(&smooth["events"][2]["before"]);
+    assert!((ours.approach - delta).abs() < 1e-13 && (theirs.force - p).abs() < 1e-13);
+    for (ours, theirs) in ours.contacts.iter().flatten().zip(contacts.iter().flatten()) {
+        assert!((ours - theirs).abs() < 1e-12);
+    }
+    let balance = Balance { ground: &ground, work_of_adhesion: 1e-4, control: Control::Displacement };
+    let solved = |state: &Value| {
+        let (delta, force, contacts) = numbers(state);
+        let contacts = Contacts { disc: contacts[0][1], rings: contacts[1..].to_vec() };
+        (balance.solve(&contacts, delta).unwrap(), force, contacts)
+    };
+    let (early, _, _) = solved(&expected["events"][2]["before"]);
+    assert!(balance.least_gap(&early).unwrap().gap > 1e-7);
+    let (landed, force, contacts) = solved(&expected["events"][2]["after"]);
+    assert!((landed.force - force).abs() < 1e-11, "{} {force}", landed.force);
+    for (ours, theirs) in landed.state.contacts.edges().iter().zip(contacts.edges()) {
+        assert!((ours.radius - theirs.radius).abs() < 1e-9);
+    }
+    let events = expected["events"].as_array_mut().unwrap();
+    events.remove(2);
+    let mut rest = found.clone();
+    let touch = rest.events.remove(2);
+    let sum: f64 = events.iter().map(|event| event["lost"].as_f64().unwrap()).sum();
+    expected["checks"]["sum_of_losses"] = sum.into();
+    rest.totals.work_of_loading -= touch.dissipated.unwrap();
+    rest.totals.dissipated = rest.totals.dissipated.map(|all| all - touch.dissipated.unwrap());
+    agrees(&rest, &expected, 1e-8, 1e-8);
+}
+
+/// Waves with one corner or kink, or two far enough apart.
+fn broken_loop(number: u64) -> Result<(Cycle, String), String> {
+    let mut random = fastrand::Rng::with_seed(number);
+    let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
+    let wavelength = between(&mut random, 0.05, 0.12);
+    let amplitude = wavelength * wavelength / between(&mut random, 1.0, 8.0);
+    let at = between(&mut random, 0.06, 0.18);
+    let (rise, bend) = (between(&mut random, 0.01, 0.1), between(&mut random, 0.5, 5.0));
+    let broken = match random.usize(0..3) {
+        0 => format!("{rise}*max(r-{at}, 0)"),
+        1 => format!("{bend}*max(r-{at}, 0)^2"),
+        _ => format!("{rise}*max(r-{at}, 0)+{bend}*max(r-{}, 0)^2", at + 0.05),
+    };
+    let text = format!("r^2/2+{amplitude}*(1-cos(2*pi*r/{wavelength}))+{broken}");
+    let gamma = 1e-5 * 500.0_f64.powf(random.f64());
+    let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
+    let approach = 0.01 + 0.04 * random.f64();
+    let name = format!("{number}: {text} γ {gamma:e} {control} to {approach}");
+    let none: Vec<FormulaParameter> = Vec::new();
+    let gap: Arc<dyn Gap> =
+        Arc::new(Shape::Formula(Arc::new(TypedGap::new(&text, none, Some(0.6)).unwrap())));
+    let table = Arc::new(Table::new(gap, 0.5, &mut || true).unwrap());
+    let ground = Ground::new(table, 0.7, &mut || true).unwrap();
+    let setting = Setting { control, turn: Turn::Approach(approach), areas: Areas::Yes, mobility: EVEN };
+    let found = cycle_on(&ground, gamma, &setting, &|_| true).map_err(|error| format!("{name}: {error}"))?;
+    Ok((found, name))
+}
+
+/// All close within 1e-6 of their losses, but for some that say so themselves; these are returned.
+fn broken_loops(numbers: std::ops::Range<u64>) -> Vec<u64> {
+    let (mut failures, mut warned) = (Vec::new(), Vec::new());
+    for number in numbers {
+        match broken_loop(number) {
+            Ok((found, name)) => {
+                let gains =
+                    found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-15));
+                let balance = found.totals.balance.unwrap();
+                println!("{number} {balance:.1e} {:?}", found.warnings);
+                let said = found.warnings.iter().any(|warning| matches!(warning, Warning::Balance { .. }));
+                if said {
+                    warned.push(number);
+                }
+                if gains || said == (balance < 1e-6) || balance > 1e-3 {
+                    failures.push(format!("{name}: gains {gains} {:?}", found.totals));
+                }
+            }
+            Err(error) => failures.push(error),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    warned
+}
+
+#[test]
+#[ignore = "a minute"]
+fn twenty_loops_with_corners_and_kinks_close() {
+    let warned = broken_loops(0..20);
+    assert!(warned.len() <= 1, "{warned:?}");
 }

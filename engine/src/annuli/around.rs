@@ -174,7 +174,8 @@ impl<'a> Around<'a> {
         let at = |k: usize| if k == count { to } else { from + step * k as f64 };
         let gaps: Vec<f64> = (0..=count).map(|k| self.gap(at(k))).collect();
         if from == 0.0 && gaps[0] <= gaps[1] {
-            found.push(Crest { radius: 0.0, gap: gaps[0] });
+            let dimple = self.ground.is_dimpled();
+            found.push(if dimple { self.minimum([0.0, at(1)]) } else { Crest { radius: 0.0, gap: gaps[0] } });
         }
         for k in 1..count {
             if gaps[k] <= gaps[k - 1] && gaps[k] < gaps[k + 1] {
@@ -192,8 +193,18 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// The minimum between two radii, by a Chebyshev series.
+    /// The minimum between two radii, by a Chebyshev series; around a corner of the gap by one on each side.
     pub fn minimum(&self, [lo, hi]: [f64; 2]) -> Crest {
+        let corners = self.ground.stops();
+        let inside = corners.partition_point(|r| *r <= lo)..corners.partition_point(|r| *r < hi);
+        let inner = corners.get(inside).unwrap_or_default();
+        let borders: Vec<f64> = std::iter::once(lo).chain(inner.iter().copied()).chain([hi]).collect();
+        let parts = borders.windows(2).map(|pair| self.smooth_minimum([pair[0], pair[1]]));
+        parts.min_by(|a, b| a.gap.total_cmp(&b.gap)).unwrap_or(Crest { radius: lo, gap: f64::NAN })
+    }
+
+    /// The same where no corner lies between.
+    fn smooth_minimum(&self, [lo, hi]: [f64; 2]) -> Crest {
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
         let series = crate::disc::chebyshev::Rule::of(POINTS).series(|x| self.gap(middle + half * x));
         let slope = crate::disc::chebyshev::derivative(&series);

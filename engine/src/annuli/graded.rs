@@ -99,9 +99,9 @@ impl Graded {
         for _ in 0..60 {
             let u = 0.5 * (lo + hi);
             if place(u, width, j == 0, j == last).from_lower < theta - self.borders[j] {
-                lo = u
+                lo = u;
             } else {
-                hi = u
+                hi = u;
             }
         }
         let u = 0.5 * (lo + hi);

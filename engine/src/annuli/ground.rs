@@ -48,6 +48,8 @@ pub struct Ground {
     pub(super) entire: Option<f64>,
     /// The smallest g from the inner end of each panel on, less what samples may miss.
     pub(super) least: Vec<f64>,
+    /// Those of the breaks where h' itself jumps.
+    pub corners: Vec<f64>,
     /// Whether the breaks are knots of a spline.
     pub(super) spline: bool,
     /// The radii where h' or a higher derivative jumps, ascending.
@@ -134,14 +136,25 @@ impl Ground {
         };
         let least = least(&panels);
         let spline = matches!(gap.form(), Form::Cubic(_));
-        let [standin, crest] = lengths(&*gap, reach, &breaks);
+        let (corners, [standin, crest]) = lengths(&*gap, reach, &breaks);
         let wave = gap.feature_length().unwrap_or(standin);
-        Ok(Self { gap, table, panels, wave, crest, entire, least, spline, breaks })
+        Ok(Self { gap, table, panels, wave, crest, entire, least, corners, spline, breaks })
     }
 
     /// The largest radius that is tabulated.
     pub fn reach(&self) -> f64 {
         self.panels.reach()
+    }
+
+    /// The breaks at which steps of a path end: all of them, but corners alone where they are many or the knots of a spline.
+    pub fn stops(&self) -> &[f64] {
+        const MANY: usize = 100;
+        if self.spline || self.breaks.len() > MANY { &self.corners } else { &self.breaks }
+    }
+
+    /// Whether the gap falls from the axis: a corner of the body there, which presses last and never without adhesion.
+    pub fn is_dimpled(&self) -> bool {
+        self.gap.jet(1e-9 * self.wave).first < -1e-7
     }
 
     /// The breaks inside a ring, so far from its edges that they are none of these.
@@ -205,14 +218,14 @@ fn least(panels: &Panels) -> Vec<f64> {
     least
 }
 
-/// Stand-ins for λ and ρ up to the radius `reach`.
+/// The corners up to the radius `reach`, and stand-ins for λ and ρ.
 ///
 /// ```text
 /// λ = 2π max|h' − cr|/max|h'' − c|,  c the least-squares slope of h';      ρ = 1/max h''
 /// ```
 ///
 /// λ is at most twice the least distance of corners and a fourth of the reach.
-fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> [f64; 2] {
+fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
     let radii = (0..SAMPLES).map(|k| reach * (f64::from(k) + 0.5) / f64::from(SAMPLES));
     let jets: Vec<(f64, [f64; 2])> = radii
         .map(|r| {
@@ -242,5 +255,5 @@ fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> [f64; 2] {
     let apart = before.zip(&corners).map(|(a, b)| b - a).fold(f64::INFINITY, f64::min);
     let own = if bend > 1e-9 * slope.abs() { TAU * rise / bend } else { f64::INFINITY };
     let wave = own.min(2.0 * apart).min(0.25 * reach);
-    [wave, if sharpest > 0.0 { sharpest.recip() } else { reach }]
+    (corners, [wave, if sharpest > 0.0 { sharpest.recip() } else { reach }])
 }

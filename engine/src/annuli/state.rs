@@ -383,7 +383,7 @@ impl Ground {
         let under = (s > 0.0).then(|| self.under(s, contacts.rings[0][0]));
         if let Some(None) = under {
             for (value, r) in values.iter_mut().zip(&points.r) {
-                *value = -FRAC_PI_4 * outside::gap_from(&self.panels, s, 0.0, *r);
+                *value = -FRAC_PI_4 * outside::gap_from_fine(&self.panels, s, 0.0, *r);
             }
             if rates {
                 slopes = points.r.iter().map(|r| -0.5 * outside::slope_from(&self.panels, s, *r)).collect();

@@ -110,7 +110,7 @@ fn check_derivatives(ground: &Ground, contacts: &Contacts, delta: f64, gamma: f6
             let h = |i: usize, j: usize| edges[i].radius * kappa[i] * jacobian[(i, j)];
             let largest = jacobian.amax() * edges[i].radius * kappa[i].abs().max(kappa[j].abs());
             assert!(
-                (h(i, j) - h(j, i)).abs() < 1e-3 * tolerance * largest,
+                (h(i, j) - h(j, i)).abs() < 0.1 * tolerance * largest,
                 "{i} {j}: {} {}",
                 h(i, j),
                 h(j, i)
@@ -211,6 +211,22 @@ fn a_graded_angle_converges() {
     let chosen = ground.state(&contacts, Wanted::Values).unwrap().intensities(0.02);
     for ((a, b), c) in exact.iter().zip(at([24, 24])).zip(chosen) {
         assert!((a - b).abs() < 1e-7 && (a - c).abs() < 1e-9, "{a} {b} {c}");
+    }
+    // Breaks close to an edge, and other contacts beside.
+    for (text, inner) in [
+        ("r^2/2 + 0.03*max(r-0.125, 0) + 1.1*max(r-0.1753, 0)^2", 1e-4),
+        ("r^2/2 + 0.03*max(r-0.125, 0) + 1.1*max(r-0.1753, 0)^2", 6e-3),
+        ("r^2/2 + 0.03*max(r-0.125, 0) + 0.1*max(r-0.1753, 0)", 1e-4),
+    ] {
+        let ground = formula(text);
+        let contacts = rings(0.033, &[[0.0673, 0.1208], [0.1753 - inner, 0.1941]]);
+        let first = points(&ground, &Contacts { rings: contacts.rings[..1].to_vec(), ..contacts.clone() });
+        let few = ground.state(&contacts, Wanted::Values).unwrap().intensities(0.02);
+        let many = Resolution::of(vec![vec![2 * first.count()], vec![120, 120]]);
+        let many = ground.state_with(&contacts, &many, Wanted::Values).unwrap().intensities(0.02);
+        for (a, b) in few.iter().zip(&many) {
+            assert!((a - b).abs() < 1e-8, "{text} {inner} {a} {b}");
+        }
     }
     // The pressure of a graded ring sums up to its force, that of the disc added.
     let state = ground.state(&contacts, Wanted::Values).unwrap();

@@ -81,10 +81,22 @@ fn stretch_outside(
     r: f64,
     [lo, hi]: [f64; 2],
 ) -> f64 {
+    stretch_by(panels, index, panel, delta, r, [lo, hi], rule(r - hi, hi - lo))
+}
+
+/// The same by a rule.
+fn stretch_by(
+    panels: &Panels,
+    index: usize,
+    panel: &Panel,
+    delta: f64,
+    r: f64,
+    [lo, hi]: [f64; 2],
+    rule: &[[f64; 2]],
+) -> f64 {
     if hi <= lo {
         return 0.0;
     }
-    let rule = rule(r - hi, hi - lo);
     let [centre, half] = panel.span.line();
     let value =
         |v: f64| panels.value(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) }) - delta;
@@ -117,6 +129,20 @@ fn stretch_outside(
     }
 }
 
+/// The same to the last digits of the table, with as many nodes on far panels as on near ones: for what is differentiated.
+pub fn gap_from_fine(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
+    if r <= s {
+        return 0.0;
+    }
+    let (first, last) = (panels.place(s).panel, panels.place(r).panel);
+    let part = |i: usize| {
+        let panel = &*panels.list()[i];
+        let ends = [panel.span.lo.max(s), panel.span.hi.min(r)];
+        stretch_by(panels, i, panel, delta, r, ends, &RULES[0])
+    };
+    FRAC_2_PI * (first..=last).map(part).sum::<f64>()
+}
+
 /// d/dr ∫_s^r g/√(r² − a²) da at `r > s`; the panels must reach to `r`.
 ///
 /// ```text
@@ -139,7 +165,7 @@ fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f
         return 0.0;
     }
     let span = panels.list()[index].span;
-    let rule = rule(r - hi, hi - lo);
+    let rule = &RULES[0];
     let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()

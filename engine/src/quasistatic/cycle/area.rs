@@ -14,8 +14,8 @@
 
 use super::balance::Balance;
 use super::event::CycleState;
+use crate::annuli::Contacts;
 use crate::annuli::ground::gauss;
-use crate::annuli::{Contacts, points};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Nodes of one way, and more for each wave that an edge passes.
@@ -33,6 +33,17 @@ enum Way {
     Line([f64; 2], [f64; 2]),
     /// A ring from nothing at a radius.
     Open(f64, [f64; 2]),
+}
+
+impl Way {
+    /// Both edges and their rates at t.
+    fn at(&self, t: f64) -> [[f64; 2]; 2] {
+        let [from, to] = match self {
+            Self::Line(from, to) => [*from, *to],
+            Self::Open(point, to) => [[*point; 2], *to],
+        };
+        [0, 1].map(|k| [from[k] + t * (to[k] - from[k]), to[k] - from[k]])
+    }
 }
 
 /// Edges with their rates.
@@ -97,20 +108,19 @@ impl Balance<'_> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let more = (NODES_PER_WAVE * farthest / self.ground.wave).min(480.0) as usize;
         let mut sum = 0.0;
-        for [x, weight] in gauss(NODES + more) {
-            let u = 0.5 * (1.0 + x);
-            let t = (FRAC_PI_2 * u).sin().powi(2);
-            let speed = 0.5 * PI * (PI * u).sin();
-            let at = |way: &Way| match way {
-                Way::Line(from, to) => [0, 1].map(|k| [from[k] + t * (to[k] - from[k]), to[k] - from[k]]),
-                Way::Open(point, to) => [0, 1].map(|k| [point + t * (to[k] - point), to[k] - point]),
-            };
-            let mut edges: Vec<[[f64; 2]; 2]> = ways.iter().map(at).collect();
-            edges.extend(vanishing.iter().map(|ring| ring.map(|edge| [edge, 0.0])));
-            if edges.iter().flatten().all(|[_, rate]| *rate == 0.0) {
-                continue;
+        for pair in self.borders(&ways).windows(2) {
+            let (from, width) = (pair[0], pair[1] - pair[0]);
+            for [x, weight] in gauss(NODES + more) {
+                let u = 0.5 * (1.0 + x);
+                let t = from + width * (FRAC_PI_2 * u).sin().powi(2);
+                let speed = 0.5 * PI * width * (PI * u).sin();
+                let mut edges: Moving = ways.iter().map(|way| way.at(t)).collect();
+                edges.extend(vanishing.iter().map(|ring| ring.map(|edge| [edge, 0.0])));
+                if ways.is_empty() {
+                    continue;
+                }
+                sum += 0.5 * weight * speed * self.rate(edges, value)?;
             }
-            sum += 0.5 * weight * speed * self.rate(edges, value)?;
         }
         let mut stays: Vec<[f64; 2]> = small.to_vec();
         for ring in &vanishing {
@@ -118,6 +128,22 @@ impl Balance<'_> {
             stays.push(*ring);
         }
         Some(sum)
+    }
+
+    /// The times at which an edge passes a break of the gap, with 0 and 1: there G goes like the root of the time.
+    fn borders(&self, ways: &[Way]) -> Vec<f64> {
+        let mut times = vec![0.0, 1.0];
+        for way in ways {
+            for [start, rate] in way.at(0.0) {
+                if rate.abs() > 0.0 {
+                    let passed = self.ground.stops().iter().map(|stop| (stop - start) / rate);
+                    times.extend(passed.filter(|t| *t > 1e-9 && *t < 1.0 - 1e-9));
+                }
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|a, b| *a - *b < 1e-9);
+        times
     }
 
     /// Σ 2πe (G − γ) de/dt for edges [radius, rate] of contacts, in any order.
@@ -128,14 +154,14 @@ impl Balance<'_> {
             disc: disc.first().map_or(0.0, |[_, outer]| outer[0]),
             rings: rings.iter().map(|[inner, outer]| [inner[0], outer[0]]).collect(),
         };
-        let held = self.held(&contacts, &points(self.ground, &contacts), value).ok()?;
+        let kappa = self.intensities(&contacts, value).ok()?;
         let root = self.work_of_adhesion.sqrt();
         let rates = disc.iter().map(|[_, outer]| outer[1]).chain(rings.iter().flatten().map(|edge| edge[1]));
-        let terms = contacts.edges().into_iter().zip(held.excess.iter()).zip(rates);
+        let terms = contacts.edges().into_iter().zip(kappa).zip(rates);
         Some(
             terms
-                .map(|((edge, excess), rate)| {
-                    2.0 * PI * edge.radius * excess * (excess + 2.0 * root) * edge.sign * rate
+                .map(|((edge, kappa), rate)| {
+                    2.0 * PI * edge.radius * (kappa - root) * (kappa + root) * edge.sign * rate
                 })
                 .sum(),
         )

@@ -80,11 +80,7 @@ impl Balance<'_> {
     pub fn held(&self, contacts: &Contacts, points: &Resolution, value: f64) -> Result<Held, AnnuliError> {
         let state = self.ground.state_with(contacts, points, Wanted::Rates)?;
         let [p0, p1] = state.force;
-        let (delta, factor, by_value) = match self.control {
-            Control::Displacement => (value, 0.0, 1.0),
-            Control::Force => ((value - p0) / p1, p1.recip(), p1.recip()),
-            Control::Stiffness(k) => ((k * value - p0) / (p1 + k), (p1 + k).recip(), k / (p1 + k)),
-        };
+        let (delta, factor, by_value) = self.approach(&state, value);
         let mut jacobian = state.jacobian(delta, self.ground.slope(contacts.disc));
         let edges = contacts.edges();
         let kappa = state.intensities(delta);
@@ -102,6 +98,26 @@ impl Balance<'_> {
             DVector::from_iterator(edges.len(), state.intensity.iter().map(|[_, slope]| slope * by_value));
         let force = p0 + p1 * delta;
         Ok(Held { state, control_value: value, approach: delta, force, excess, jacobian, by_control })
+    }
+
+    /// δ at the control value, f and ∂δ/∂c.
+    fn approach(&self, state: &State, value: f64) -> (f64, f64, f64) {
+        let [p0, p1] = state.force;
+        match self.control {
+            Control::Displacement => (value, 0.0, 1.0),
+            Control::Force => ((value - p0) / p1, p1.recip(), p1.recip()),
+            Control::Stiffness(k) => ((k * value - p0) / (p1 + k), (p1 + k).recip(), k / (p1 + k)),
+        }
+    }
+
+    /// κ of every edge at the control value.
+    ///
+    /// # Errors
+    /// [`AnnuliError`].
+    pub fn intensities(&self, contacts: &Contacts, value: f64) -> Result<Vec<f64>, AnnuliError> {
+        let state = self.ground.state(contacts, Wanted::Values)?;
+        let (delta, ..) = self.approach(&state, value);
+        Ok(state.intensities(delta))
     }
 
     /// The equilibrium at the control value with the same contacts, by Newton's method from these edges; they need not be near an

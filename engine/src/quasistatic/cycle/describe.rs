@@ -1,7 +1,7 @@
 //! Errors and warnings of a loop in the user's units and in words.
 
 use super::error::{CycleError, Warning};
-use super::path::Turn;
+use super::setting::Turn;
 use crate::problem::{Control, Units};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};

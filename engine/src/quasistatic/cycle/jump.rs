@@ -124,12 +124,13 @@ impl Balance<'_> {
                 }
             }
             last = f64::INFINITY;
-            contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
-            if sense > 0.0 {
-                let tidy = self.tidied(contacts, sense, passed);
-                let held = self.held(&tidy, &points(self.ground, &tidy), value)?;
-                contacts = self.touched(&held, value, passed)?.unwrap_or(tidy);
+            if sense > 0.0
+                && let Some(touched) = self.touched(&held, value, passed)?
+            {
+                contacts = touched;
+                continue;
             }
+            contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
         }
         Err(CycleError::NoLanding { control_value: value, steps: STEPS })
     }
@@ -192,7 +193,9 @@ impl Balance<'_> {
             let inner = if k > 0 { contacts.rings[k - 1][1] } else { contacts.disc };
             let [a, b] = contacts.rings[k];
             let width = if inner > 0.0 { a - inner } else { 0.5 * a };
-            if width >= narrow {
+            // Without adhesion a dimple at the axis stays open.
+            let dimple = inner <= 0.0 && self.work_of_adhesion == 0.0 && self.ground.is_dimpled();
+            if width >= narrow || dimple {
                 k += 1;
                 continue;
             }

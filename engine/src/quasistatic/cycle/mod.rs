@@ -18,8 +18,10 @@
 //! | [`jump`] | where edges land that run at held control |
 //! | [`event`] | events and states |
 //! | [`error`] | why there is none, and what is to be known about one |
+//! | [`setting`] | what a loop is asked for, and what it answers |
 //! | `describe` | both in the user's units, in words |
 //! | [`path`] | the loop |
+//! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
 //! | `zero` | the loop without adhesion |
 
@@ -28,14 +30,17 @@ pub mod balance;
 mod describe;
 pub mod error;
 pub mod event;
+mod follow;
 pub mod jump;
 pub mod path;
 pub mod point;
+pub mod setting;
 mod zero;
 
 pub use balance::{Balance, Held, NotFound};
 pub use error::{CycleError, Warning};
 pub use event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 pub use jump::{EVEN, Mobility};
-pub use path::{Areas, Cycle, Setting, Totals, Turn, TurnReached, cycle, cycle_on};
+pub use path::{cycle, cycle_on};
 pub use point::{Point, Step};
+pub use setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};

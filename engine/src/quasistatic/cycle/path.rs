@@ -3,29 +3,13 @@
 use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
 use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
-use super::jump::Mobility;
-use super::point::{Point, Step};
-use crate::annuli::ground::gauss;
-use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground};
+use super::follow::End;
+use super::setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
+use crate::annuli::{AnnuliError, Contacts, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::Control;
-use nalgebra::DVector;
 use std::sync::Arc;
-
-/// Steps of a loop at most.
-const STEPS: usize = 200_000;
-
-/// The first step of a stretch, the longest and the shortest, in the units of the arc length.
-const FIRST: f64 = 0.02;
-const LONGEST: f64 = 0.15;
-const SHORTEST: f64 = 1e-9;
-
-/// Nodes of an area on a step.
-const NODES: usize = 9;
-
-/// A gap that is nothing, in waves.
-const ROUNDING: f64 = 1e-11;
 
 /// What the balance of a loop may leave of its losses.
 const BALANCED: f64 = 1e-6;
@@ -35,110 +19,6 @@ const AGREE: f64 = 1e-6;
 
 /// Digits below which a loop warns.
 const DIGITS: f64 = 9.0;
-
-/// Where the control turns round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Turn {
-    /// At the first stable state with at least this approach, a length.
-    Approach(f64),
-    /// With at least this force.
-    Force(f64),
-    /// With an outermost edge of at least this radius, a length.
-    Radius(f64),
-    /// At this control value: an approach, a force, or the way of the device.
-    Control(f64),
-}
-
-impl Turn {
-    /// Its number.
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
-        }
-    }
-
-    fn measure(self, held: &Held, control: Control) -> f64 {
-        match self {
-            Self::Approach(_) => held.approach,
-            Self::Force(_) => held.force,
-            Self::Radius(_) => held.state.contacts.outermost(),
-            Self::Control(_) => control.value(held.approach, held.force),
-        }
-    }
-}
-
-/// Whether losses are computed by area as well.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Areas {
-    /// By energy alone.
-    No,
-    /// Twice; the balance is checked.
-    Yes,
-}
-
-/// What a loop is asked for.
-#[derive(Clone, Copy)]
-pub struct Setting<'a> {
-    /// The device.
-    pub control: Control,
-    /// Where it turns round.
-    pub turn: Turn,
-    /// Whether losses are computed twice.
-    pub areas: Areas,
-    /// How fast edges move at a radius: nothing that lasts depends on it.
-    pub mobility: Mobility<'a>,
-}
-
-/// Where the control turned round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TurnReached {
-    /// What was asked for.
-    pub asked: Turn,
-    /// What the state there has of it: more than asked for where loading jumped over it.
-    pub reached: f64,
-}
-
-/// The sums of a loop; `None` where a dead load leaves no bound, or what was not asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Totals {
-    /// All losses.
-    pub dissipated: Option<f64>,
-    /// The same by area.
-    pub dissipated_by_area: Option<f64>,
-    /// The losses up to the pull-off, without it.
-    pub dissipated_before_pull_off: f64,
-    /// The work done by the device on the way up, its own elastic energy counted with the bodies.
-    pub work_of_loading: f64,
-    /// The same on the way down.
-    pub work_of_unloading: Option<f64>,
-    /// |Π(last) − Σ areas + Σ losses| over the losses, from the first touch to before the pull-off.
-    pub balance: Option<f64>,
-}
-
-/// A whole loop, in reduced units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cycle {
-    /// What was controlled.
-    pub control: Control,
-    /// Where it turned.
-    pub turn: TurnReached,
-    /// The events in order.
-    pub events: Vec<Event>,
-    /// Stable states in order, dense enough to be drawn: those before and after events among them.
-    pub states: Vec<CycleState>,
-    /// The sums.
-    pub totals: Totals,
-    /// What is to be known about it.
-    pub warnings: Vec<Warning>,
-}
-
-/// What ends a stretch of stable states.
-#[derive(Debug)]
-enum End {
-    Limit(DVector<f64>),
-    Touch(Crest),
-    Turn,
-}
 
 /// A loop while it runs.
 pub(super) struct Path<'a, 'b> {
@@ -196,23 +76,26 @@ pub fn cycle(
             continue;
         }
         match cycle_on(&ground, gamma, setting, go_on) {
-            Err(CycleError::BeyondGap { .. } | CycleError::RadiusBeyondGap { .. }) if !whole => {
+            Err(
+                CycleError::BeyondGap { .. }
+                | CycleError::RadiusBeyondGap { .. }
+                | CycleError::State(AnnuliError::BeyondGap { .. }),
+            ) if !whole => {
                 reach = 2.0 * ground.reach();
             }
             // A crest further out would have touched unseen.
-            Ok(cycle)
-                if !whole
-                    && cycle
-                        .states
-                        .iter()
-                        .any(|state| BEYOND * ground.can_touch_up_to(state.approach) > ground.reach()) =>
-            {
+            Ok(cycle) if !whole && BEYOND * ground.can_touch_up_to(highest(&cycle)) > ground.reach() => {
                 reach = 1.5 * ground.reach();
             }
             other => return other,
         }
     }
     Err(CycleError::NeverTouches { searched: reach })
+}
+
+/// The largest approach of a loop.
+fn highest(cycle: &Cycle) -> f64 {
+    cycle.states.iter().map(|state| state.approach).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The loop of a gap with the work of adhesion `gamma` (E* = 1), as far out as `ground` goes: a loop that comes to its end is an error.
@@ -258,7 +141,7 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
     let radii = grid.chain(ground.breaks.iter().copied());
     let (best, _) =
         radii.map(|r| (r, value(r))).filter(|(_, h)| h.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    if best <= 0.0 {
+    if best <= 0.0 && !ground.is_dimpled() {
         return Some(Crest { radius: 0.0, gap: value(0.0) });
     }
     // h' changes its sign at a smooth minimum; at a corner the bisection ends on it.
@@ -533,172 +416,5 @@ impl Path<'_, '_> {
             self.record(held);
         }
         Ok(landed)
-    }
-
-    /// Follows stable states from `held` to what ends them.
-    fn stretch(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
-        let sense = self.direction.sense();
-        let lost = CycleError::Lost { control_value: held.control_value };
-        let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
-        let mut length = FIRST;
-        loop {
-            self.counted(&point.held)?;
-            let step = Step::new(self.balance, &point);
-            let Some(next) = step.taken(length) else {
-                length *= 0.5;
-                if length < SHORTEST {
-                    return Err(self.stopped(&point.held));
-                }
-                continue;
-            };
-            let (length_taken, next, end) = self.ended(&step, &point, length, next)?;
-            if self.setting.areas == Areas::Yes {
-                self.area += self.area_of(&step, length_taken, &next);
-            }
-            self.record(&next.held);
-            if let Some(end) = end {
-                return Ok((end, next.held));
-            }
-            point = next;
-            length = (1.5 * length).min(LONGEST);
-        }
-    }
-
-    /// Counts a step, and asks whether to go on.
-    pub(super) fn counted(&mut self, held: &Held) -> Result<(), CycleError> {
-        self.steps += 1;
-        if self.steps > STEPS {
-            return Err(CycleError::TooLong { steps: STEPS, control_value: held.control_value });
-        }
-        // What could touch may lie beyond the table, where the gap goes on.
-        let ground = self.balance.ground;
-        if ground.reach() < ground.table.end() * (1.0 - 1e-9)
-            && ground.can_touch_up_to(held.approach) >= ground.reach()
-        {
-            return Err(CycleError::BeyondGap {
-                radius: ground.reach(),
-                approach: held.approach,
-                force: held.force,
-            });
-        }
-        if (self.go_on)(self.progress(held)) { Ok(()) } else { Err(CycleError::Cancelled) }
-    }
-
-    /// Why no further step could be taken.
-    pub(super) fn stopped(&self, held: &Held) -> CycleError {
-        let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
-        if known - radius < 1e-3 * self.balance.ground.wave {
-            CycleError::BeyondGap { radius: known, approach: held.approach, force: held.force }
-        } else {
-            CycleError::Lost { control_value: held.control_value }
-        }
-    }
-
-    /// How much of the loop is done, roughly.
-    fn progress(&self, held: &Held) -> f64 {
-        let turn = self.setting.turn;
-        let share = self.measure(held) / turn.value();
-        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
-        match self.direction {
-            Direction::Loading => 0.5 * share,
-            Direction::Unloading => 1.0 - 0.5 * share,
-        }
-    }
-
-    /// The first event on a step, which then ends there.
-    fn ended(
-        &self,
-        step: &Step<'_, '_>,
-        from: &Point,
-        mut length: f64,
-        mut next: Point,
-    ) -> Result<(f64, Point, Option<End>), CycleError> {
-        let sense = self.direction.sense();
-        let lost = || CycleError::Lost { control_value: from.held.control_value };
-        let mut end = None;
-        if next.along_control() * sense <= 0.0 {
-            let mut slope = |point: &Point| Some(point.along_control() * sense);
-            (length, next) =
-                step.located((length, &next), from.along_control() * sense, &mut slope).ok_or_else(lost)?;
-            let edges = next.held.excess.len();
-            end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
-        }
-        if self.direction == Direction::Unloading {
-            return Ok((length, next, end));
-        }
-        let crest;
-        (length, next, crest) = self.touching(step, from, length, next)?;
-        end = crest.map(End::Touch).or(end);
-        let turn = self.setting.turn;
-        if self.measure(&next.held) >= turn.value() {
-            let mut left = |point: &Point| Some(self.measure(&point.held) - turn.value());
-            let at_start = self.measure(&from.held) - turn.value();
-            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
-            end = Some(End::Turn);
-        }
-        Ok((length, next, end))
-    }
-
-    /// The first crest that touches on a step, which then ends there.
-    pub(super) fn touching(
-        &self,
-        step: &Step<'_, '_>,
-        from: &Point,
-        mut length: f64,
-        mut next: Point,
-    ) -> Result<(f64, Point, Option<Crest>), CycleError> {
-        let lost = || CycleError::Lost { control_value: from.held.control_value };
-        let mut touched = None;
-        let ground = self.balance.ground;
-        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
-        let mut overlap = 0.0;
-        for _ in 0..8 {
-            let crest = self.balance.least_gap(&next.held).filter(|crest| crest.gap < overlap);
-            let Some(crest) = crest else { break };
-            overlap = -ROUNDING * ground.wave;
-            let mut at = crest;
-            let mut reach = ground.wave / 14.0;
-            let mut gap = |point: &Point| {
-                let around = Around::new(ground, &point.held.state, point.held.approach);
-                at = if crest.radius > 0.0 {
-                    around.minimum([(at.radius - reach).max(0.0), at.radius + reach])
-                } else {
-                    Crest { radius: 0.0, gap: around.gap(0.0) }
-                };
-                reach = ground.wave / 28.0;
-                Some(at.gap)
-            };
-            let at_start = gap(from).unwrap_or(f64::NAN);
-            if at_start.is_nan() || at_start <= 0.0 {
-                // Rounding: the start of the step touches.
-                return Ok((0.0, from.clone(), Some(at)));
-            }
-            (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
-            touched = Some(at);
-        }
-        Ok((length, next, touched))
-    }
-
-    /// ∫ (dΠ/dc) dc over a step.
-    fn area_of(&self, step: &Step<'_, '_>, length: f64, next: &Point) -> f64 {
-        if length <= 0.0 {
-            return 0.0;
-        }
-        let offset = step.offset(next);
-        let line = step.tangent() * length;
-        let curve = &offset - &line;
-        let n = offset.len() - 1;
-        let mut sum = 0.0;
-        for [x, weight] in gauss(NODES) {
-            let share = 0.5 * (1.0 + x);
-            let guess = &line * share + &curve * (share * share);
-            let Some((point, rate)) = step.to(length * share, &guess) else { return f64::NAN };
-            let slope = match self.setting.control {
-                Control::Force => -point.held.approach,
-                Control::Displacement | Control::Stiffness(_) => point.held.force,
-            };
-            sum += 0.5 * length * weight * slope * rate[n] * self.balance.unit();
-        }
-        sum
     }
 }

@@ -38,12 +38,13 @@ impl Point {
     }
 }
 
-/// A step from a point: its points on the rings are held.
+/// A step from a point: its points on the rings are held. Its length is measured along the tangent, or along one edge.
 #[derive(Debug)]
 pub struct Step<'a, 'b> {
     balance: &'a Balance<'b>,
     from: &'a Point,
     points: Resolution,
+    row: DVector<f64>,
 }
 
 impl Balance<'_> {
@@ -89,17 +90,37 @@ impl Balance<'_> {
 impl<'a, 'b> Step<'a, 'b> {
     /// Steps from `from`.
     pub fn new(balance: &'a Balance<'b>, from: &'a Point) -> Self {
-        Self { balance, from, points: points(balance.ground, from.contacts()) }
+        let row = from.tangent.clone();
+        Self { balance, from, points: points(balance.ground, from.contacts()), row }
     }
 
-    /// The tangent at the start.
-    pub fn tangent(&self) -> &DVector<f64> {
-        &self.from.tangent
+    /// Steps measured by the way of one edge, in waves, on the side to which it goes along the tangent: close to a corner of the gap
+    /// the tangent turns without bound, and only this way is regular.
+    pub fn of_edge(balance: &'a Balance<'b>, from: &'a Point, edge: usize) -> Self {
+        let mut row = DVector::zeros(from.tangent.len());
+        row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
+        Self { balance, from, points: points(balance.ground, from.contacts()), row }
+    }
+
+    /// What lies at the distance `length` by the tangent.
+    pub fn line(&self, length: f64) -> DVector<f64> {
+        let along = self.from.tangent.dot(&self.row);
+        &self.from.tangent * (length / along.max(1e-6))
+    }
+
+    /// The length of a step to a point.
+    pub fn length_to(&self, point: &Point) -> f64 {
+        self.row.dot(&self.offset(point))
     }
 
     /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
     /// the arc length; with the tangent scaled to 1 along that of the start, times which dℓ is.
     pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(Point, DVector<f64>)> {
+        self.within(length, guess, CONVERGED)
+    }
+
+    /// The same with a last step of Newton's method of `converged` at most.
+    pub fn within(&self, length: f64, guess: &DVector<f64>, converged: f64) -> Option<(Point, DVector<f64>)> {
         let (balance, from) = (self.balance, self.from);
         let n = from.held.excess.len();
         let (wave, unit) = (balance.ground.wave, balance.unit());
@@ -114,14 +135,14 @@ impl<'a, 'b> Step<'a, 'b> {
             let held = balance.held(&contacts, &self.points, value).ok()?;
             let mut right = DVector::zeros(n + 1);
             right.rows_mut(0, n).copy_from(&-&held.excess);
-            right[n] = length - from.tangent.dot(&offset);
-            let lu = balance.bordered(&held, &from.tangent).lu();
+            right[n] = length - self.row.dot(&offset);
+            let lu = balance.bordered(&held, &self.row).lu();
             let step = lu.solve(&right)?;
             let size = step.amax();
             if !size.is_finite() {
                 return None;
             }
-            if size <= CONVERGED || (size <= STALLED && size > 0.3 * last) {
+            if size <= converged || (size <= STALLED && size > 0.3 * last) {
                 let mut unit = DVector::zeros(n + 1);
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;
@@ -138,7 +159,7 @@ impl<'a, 'b> Step<'a, 'b> {
 
     /// The point at the distance `length`, from the tangent; `None` where the step is too long for its rules.
     pub fn taken(&self, length: f64) -> Option<Point> {
-        let (point, _) = self.to(length, &(&self.from.tangent * length))?;
+        let (point, _) = self.to(length, &self.line(length))?;
         self.allowed(&point).then_some(point)
     }
 
@@ -178,7 +199,7 @@ impl<'a, 'b> Step<'a, 'b> {
             return Some(best);
         }
         let mut side = 0;
-        let curve = self.offset(end.1) - &self.from.tangent * end.0;
+        let curve = self.offset(end.1) - self.line(end.0);
         for _ in 0..80 {
             if (hi - lo).abs() <= ROUNDING * end.0.max(1e-3) {
                 break;
@@ -191,9 +212,9 @@ impl<'a, 'b> Step<'a, 'b> {
             let share = length / end.0;
             let guess = if (best.0 - length).abs() < 1e-3 * end.0 {
                 self.offset(&best.1)
-                    + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.from.tangent))
+                    + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.row).max(1e-6))
             } else {
-                &self.from.tangent * length + &curve * (share * share)
+                self.line(length) + &curve * (share * share)
             };
             let (point, _) = self.to(length, &guess)?;
             let f = measure(&point)?;

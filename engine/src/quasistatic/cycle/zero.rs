@@ -7,8 +7,9 @@
 use super::balance::Held;
 use super::error::CycleError;
 use super::event::{CycleState, Direction, Event, EventKind};
-use super::path::{Cycle, Path, Totals, Turn, TurnReached};
+use super::path::Path;
 use super::point::Step;
+use super::setting::{Cycle, Totals, Turn, TurnReached};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
 
@@ -177,8 +178,7 @@ impl Path<'_, '_> {
             if self.measure(&next.held) >= turn.value() {
                 let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
                 let at_start = self.measure(&point.held) - turn.value();
-                let offset = step.offset(&next);
-                let length = step.tangent().dot(&offset);
+                let length = step.length_to(&next);
                 let (_, end) =
                     step.located((length, &next), at_start, &mut left).ok_or_else(|| lost(&point.held))?;
                 self.record(&end.held);
@@ -205,7 +205,9 @@ impl Path<'_, '_> {
         let (k, [lo, hi]) =
             gaps.into_iter().enumerate().min_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))?;
         let wave = self.balance.ground.wave;
-        if hi - lo > CLOSING * wave {
+        // A dimple with a corner at the axis never closes: its pressure there would have no bound.
+        let dimple = lo <= 0.0 && self.balance.ground.is_dimpled();
+        if hi - lo > CLOSING * wave || dimple {
             return None;
         }
         let mut merged = contacts.clone();

@@ -1,0 +1,327 @@
+//! Following stable states to what ends them: a limit point, a touch, the turn; past corners of the gap; with the areas on the way.
+
+use super::balance::{Balance, Held};
+use super::error::CycleError;
+use super::event::Direction;
+use super::path::Path;
+use super::point::{Point, Step};
+use super::setting::Areas;
+use crate::annuli::ground::gauss;
+use crate::annuli::{Around, Crest};
+use crate::problem::Control;
+use nalgebra::DVector;
+
+/// Steps of a loop at most.
+const STEPS: usize = 200_000;
+
+/// The first step of a stretch, the longest and the shortest, in the units of the arc length.
+const FIRST: f64 = 0.02;
+const LONGEST: f64 = 0.15;
+const SHORTEST: f64 = 1e-9;
+
+/// Nodes of an area on a step.
+const NODES: usize = 9;
+const NODES_AT_CORNERS: usize = 12;
+
+/// A gap that is nothing, in waves.
+const ROUNDING: f64 = 1e-11;
+
+/// What ends a stretch of stable states.
+#[derive(Debug)]
+pub(super) enum End {
+    Limit(DVector<f64>),
+    Touch(Crest),
+    Turn,
+}
+
+/// Where a step is singular.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Smooth,
+    From,
+    Towards,
+}
+
+impl Path<'_, '_> {
+    /// Follows stable states from `held` to what ends them.
+    pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
+        let sense = self.direction.sense();
+        let lost = CycleError::Lost { control_value: held.control_value };
+        let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
+        let mut length = FIRST;
+        loop {
+            self.counted(&point.held)?;
+            if let Some((edge, way)) = self.corner_ahead(&point, length) {
+                let (end, next) = self.past_corner(&point, edge, way)?;
+                if let Some(end) = end {
+                    return Ok((end, next.held));
+                }
+                (point, length) = (next, FIRST);
+                continue;
+            }
+            let step = Step::new(self.balance, &point);
+            let Some(next) = step.taken(length) else {
+                length *= 0.5;
+                if length < SHORTEST {
+                    return Err(self.stopped(&point.held));
+                }
+                continue;
+            };
+            if self.crosses(&point, &next) {
+                // Faster than its tangent said: shorter steps see it coming.
+                length *= 0.5;
+                if length < SHORTEST {
+                    return Err(self.stopped(&point.held));
+                }
+                continue;
+            }
+            let (length_taken, next, end) = self.ended(&step, &point, length, next)?;
+            if self.setting.areas == Areas::Yes {
+                self.area += self.area_of(&step, length_taken, &next, Side::Smooth);
+            }
+            self.record(&next.held);
+            if let Some(end) = end {
+                return Ok((end, next.held));
+            }
+            point = next;
+            length = (1.5 * length).min(LONGEST);
+        }
+    }
+
+    /// Whether an edge meets a corner of the gap between two points, one that it has not just left.
+    fn crosses(&self, from: &Point, to: &Point) -> bool {
+        let margin = 1e-7 * self.balance.ground.wave;
+        let edges = from.contacts().edges().into_iter().zip(to.contacts().edges());
+        edges.into_iter().any(|(a, b)| {
+            let (lo, hi) = (a.radius.min(b.radius), a.radius.max(b.radius));
+            self.balance
+                .ground
+                .stops()
+                .iter()
+                .any(|stop| *stop > lo && *stop < hi && (stop - a.radius).abs() > margin)
+        })
+    }
+
+    /// The edge that meets a corner of the gap within a step of this length, and how far it is, in waves.
+    fn corner_ahead(&self, point: &Point, length: f64) -> Option<(usize, f64)> {
+        /// An edge that has just left a corner is not led back to it, nor beyond what a step is.
+        const LEFT: f64 = 1e-7;
+        let ground = self.balance.ground;
+        let (wave, corners) = (ground.wave, ground.stops());
+        let edges = point.contacts().edges();
+        let ahead = edges.iter().enumerate().filter_map(|(i, edge)| {
+            let speed = point.tangent[i];
+            let outward = edge.sign * speed > 0.0;
+            let margin = LEFT * wave;
+            let corner = if outward {
+                corners.iter().find(|r| **r > edge.radius + margin)?
+            } else {
+                corners.iter().rev().find(|r| **r < edge.radius - margin)?
+            };
+            let way = (corner - edge.radius).abs() / wave;
+            (way <= 1.2 * (speed.abs() * length).max(2e-3)).then_some((i, way, way / speed.abs()))
+        });
+        ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way))
+    }
+
+    /// Leads an edge to a corner of the gap and a little beyond, by its own way: where the contact covers a corner κ goes like the root of
+    /// the distance from it.
+    fn past_corner(
+        &mut self,
+        from: &Point,
+        edge: usize,
+        way: f64,
+    ) -> Result<(Option<End>, Point), CycleError> {
+        /// How far beyond, in waves.
+        const BEYOND_CORNER: f64 = 1e-3;
+        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let sense = self.direction.sense();
+        let step = Step::of_edge(self.balance, from, edge);
+        let (mut at, mut target) = (None, way);
+        for _ in 0..20 {
+            at = step.to(target, &step.line(target).map(|x| x.clamp(-0.2, 0.2)));
+            if at.is_some() {
+                break;
+            }
+            target *= 0.5;
+        }
+        let (next, _) = at.ok_or_else(lost)?;
+        let (length, corner, end) = self.ended(&step, from, target, next)?;
+        if self.setting.areas == Areas::Yes {
+            self.area += self.area_of(&step, length, &corner, Side::Towards);
+        }
+        self.record(&corner.held);
+        if end.is_some() || target < way {
+            return Ok((end, corner));
+        }
+        let step = Step::of_edge(self.balance, &corner, edge);
+        let (mut beyond, mut length) = (None, BEYOND_CORNER);
+        for _ in 0..20 {
+            beyond = step.to(length, &step.line(length).map(|x| x.clamp(-0.02, 0.02)));
+            if beyond.is_some() {
+                break;
+            }
+            length *= 0.5;
+        }
+        let (next, _) = beyond.ok_or_else(lost)?;
+        let forth = (next.held.control_value - corner.held.control_value) * sense;
+        if forth <= 0.0 || Balance::least_eigenvalue(&next.held) <= 0.0 {
+            // The limit point sits on the corner.
+            let edges = next.held.excess.len();
+            let null = next.tangent.rows(0, edges).into_owned();
+            return Ok((Some(End::Limit(null)), corner));
+        }
+        let (length, next, end) = self.ended(&step, &corner, length, next)?;
+        if self.setting.areas == Areas::Yes {
+            self.area += self.area_of(&step, length, &next, Side::From);
+        }
+        self.record(&next.held);
+        Ok((end, next))
+    }
+
+    /// Counts a step, and asks whether to go on.
+    pub(super) fn counted(&mut self, held: &Held) -> Result<(), CycleError> {
+        self.steps += 1;
+        if self.steps > STEPS {
+            return Err(CycleError::TooLong { steps: STEPS, control_value: held.control_value });
+        }
+        // What could touch may lie beyond the table, where the gap goes on.
+        let ground = self.balance.ground;
+        if ground.reach() < ground.table.end() * (1.0 - 1e-9)
+            && ground.can_touch_up_to(held.approach) >= ground.reach()
+        {
+            return Err(CycleError::BeyondGap {
+                radius: ground.reach(),
+                approach: held.approach,
+                force: held.force,
+            });
+        }
+        if (self.go_on)(self.progress(held)) { Ok(()) } else { Err(CycleError::Cancelled) }
+    }
+
+    /// Why no further step could be taken.
+    pub(super) fn stopped(&self, held: &Held) -> CycleError {
+        let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
+        if known - radius < 1e-3 * self.balance.ground.wave {
+            CycleError::BeyondGap { radius: known, approach: held.approach, force: held.force }
+        } else {
+            CycleError::Lost { control_value: held.control_value }
+        }
+    }
+
+    /// How much of the loop is done, roughly.
+    fn progress(&self, held: &Held) -> f64 {
+        let turn = self.setting.turn;
+        let share = self.measure(held) / turn.value();
+        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
+        match self.direction {
+            Direction::Loading => 0.5 * share,
+            Direction::Unloading => 1.0 - 0.5 * share,
+        }
+    }
+
+    /// The first event on a step, which then ends there.
+    fn ended(
+        &self,
+        step: &Step<'_, '_>,
+        from: &Point,
+        mut length: f64,
+        mut next: Point,
+    ) -> Result<(f64, Point, Option<End>), CycleError> {
+        let sense = self.direction.sense();
+        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let mut end = None;
+        if next.along_control() * sense <= 0.0 {
+            let mut slope = |point: &Point| Some(point.along_control() * sense);
+            (length, next) =
+                step.located((length, &next), from.along_control() * sense, &mut slope).ok_or_else(lost)?;
+            let edges = next.held.excess.len();
+            end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
+        }
+        if self.direction == Direction::Unloading {
+            return Ok((length, next, end));
+        }
+        let crest;
+        (length, next, crest) = self.touching(step, from, length, next)?;
+        end = crest.map(End::Touch).or(end);
+        let turn = self.setting.turn;
+        if self.measure(&next.held) >= turn.value() {
+            let mut left = |point: &Point| Some(self.measure(&point.held) - turn.value());
+            let at_start = self.measure(&from.held) - turn.value();
+            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
+            end = Some(End::Turn);
+        }
+        Ok((length, next, end))
+    }
+
+    /// The first crest that touches on a step, which then ends there.
+    pub(super) fn touching(
+        &self,
+        step: &Step<'_, '_>,
+        from: &Point,
+        mut length: f64,
+        mut next: Point,
+    ) -> Result<(f64, Point, Option<Crest>), CycleError> {
+        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let mut touched = None;
+        let ground = self.balance.ground;
+        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
+        let mut overlap = 0.0;
+        for _ in 0..8 {
+            let crest = self.balance.least_gap(&next.held).filter(|crest| crest.gap < overlap);
+            let Some(crest) = crest else { break };
+            overlap = -ROUNDING * ground.wave;
+            let mut at = crest;
+            let mut reach = ground.wave / 14.0;
+            let mut gap = |point: &Point| {
+                let around = Around::new(ground, &point.held.state, point.held.approach);
+                at = if crest.radius > 0.0 {
+                    around.minimum([(at.radius - reach).max(0.0), at.radius + reach])
+                } else {
+                    Crest { radius: 0.0, gap: around.gap(0.0) }
+                };
+                reach = ground.wave / 28.0;
+                Some(at.gap)
+            };
+            let at_start = gap(from).unwrap_or(f64::NAN);
+            if at_start.is_nan() || at_start <= 0.0 {
+                // Rounding: the start of the step touches.
+                return Ok((0.0, from.clone(), Some(at)));
+            }
+            (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
+            touched = Some(at);
+        }
+        Ok((length, next, touched))
+    }
+
+    /// ∫ (dΠ/dc) dc over a step, in the root of the distance from a corner.
+    fn area_of(&self, step: &Step<'_, '_>, length: f64, next: &Point, side: Side) -> f64 {
+        /// What is left of an area's places: their errors enter as products.
+        const NEAR: f64 = 1e-11;
+        if length <= 0.0 {
+            return 0.0;
+        }
+        let offset = step.offset(next);
+        let line = step.line(length);
+        let curve = &offset - &line;
+        let n = offset.len() - 1;
+        let mut sum = 0.0;
+        for [x, weight] in gauss(if side == Side::Smooth { NODES } else { NODES_AT_CORNERS }) {
+            let u = 0.5 * (1.0 + x);
+            let [share, stretch] = match side {
+                Side::Smooth => [u, 1.0],
+                Side::From => [u * u, 2.0 * u],
+                Side::Towards => [u * (2.0 - u), 2.0 * (1.0 - u)],
+            };
+            let bent = if side == Side::Smooth { share * share } else { share };
+            let guess = &line * share + &curve * bent;
+            let Some((point, rate)) = step.within(length * share, &guess, NEAR) else { return f64::NAN };
+            let slope = match self.setting.control {
+                Control::Force => -point.held.approach,
+                Control::Displacement | Control::Stiffness(_) => point.held.force,
+            };
+            sum += 0.5 * length * weight * stretch * slope * rate[n] * self.balance.unit();
+        }
+        sum
+    }
+}

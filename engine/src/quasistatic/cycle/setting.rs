@@ -1,0 +1,103 @@
+//! What a loop is asked for, and what it answers.
+
+use super::balance::Held;
+use super::error::Warning;
+use super::event::{CycleState, Event};
+use super::jump::Mobility;
+use crate::problem::Control;
+
+/// Where the control turns round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Turn {
+    /// At the first stable state with at least this approach, a length.
+    Approach(f64),
+    /// With at least this force.
+    Force(f64),
+    /// With an outermost edge of at least this radius, a length.
+    Radius(f64),
+    /// At this control value: an approach, a force, or the way of the device.
+    Control(f64),
+}
+
+impl Turn {
+    /// Its number.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
+        }
+    }
+
+    pub(super) fn measure(self, held: &Held, control: Control) -> f64 {
+        match self {
+            Self::Approach(_) => held.approach,
+            Self::Force(_) => held.force,
+            Self::Radius(_) => held.state.contacts.outermost(),
+            Self::Control(_) => control.value(held.approach, held.force),
+        }
+    }
+}
+
+/// Whether losses are computed by area as well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Areas {
+    /// By energy alone.
+    No,
+    /// Twice; the balance is checked.
+    Yes,
+}
+
+/// What a loop is asked for.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The device.
+    pub control: Control,
+    /// Where it turns round.
+    pub turn: Turn,
+    /// Whether losses are computed twice.
+    pub areas: Areas,
+    /// How fast edges move at a radius: nothing that lasts depends on it.
+    pub mobility: Mobility<'a>,
+}
+
+/// Where the control turned round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnReached {
+    /// What was asked for.
+    pub asked: Turn,
+    /// What the state there has of it: more than asked for where loading jumped over it.
+    pub reached: f64,
+}
+
+/// The sums of a loop; `None` where a dead load leaves no bound, or what was not asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Totals {
+    /// All losses.
+    pub dissipated: Option<f64>,
+    /// The same by area.
+    pub dissipated_by_area: Option<f64>,
+    /// The losses up to the pull-off, without it.
+    pub dissipated_before_pull_off: f64,
+    /// The work done by the device on the way up, its own elastic energy counted with the bodies.
+    pub work_of_loading: f64,
+    /// The same on the way down.
+    pub work_of_unloading: Option<f64>,
+    /// |Π(last) − Σ areas + Σ losses| over the losses, from the first touch to before the pull-off.
+    pub balance: Option<f64>,
+}
+
+/// A whole loop, in reduced units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// What was controlled.
+    pub control: Control,
+    /// Where it turned.
+    pub turn: TurnReached,
+    /// The events in order.
+    pub events: Vec<Event>,
+    /// Stable states in order, dense enough to be drawn: those before and after events among them.
+    pub states: Vec<CycleState>,
+    /// The sums.
+    pub totals: Totals,
+    /// What is to be known about it.
+    pub warnings: Vec<Warning>,
+}
