@@ -44,6 +44,7 @@ pub struct Arguments {
 /// Where the loop turns round; instead of what the preset says.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
+#[expect(clippy::struct_field_names, reason = "clap makes the flags of these names")]
 struct TurnArguments {
     /// Turn round at the first stable state with at least this approach
     #[arg(long, value_name = "APPROACH", allow_hyphen_values = true)]
@@ -106,7 +107,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let areas = if arguments.no_area { Areas::No } else { Areas::Yes };
     let bar = bar();
     let cycle = case.cycle(case.control, turn, areas, &|share| {
-        bar.set_position((share * 100.0) as u64);
+        // A share of a hundred.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
         true
     });
     bar.finish_and_clear();

@@ -28,7 +28,7 @@ const NODES: usize = 16;
 const GRID: usize = 12;
 
 /// Parts of a piece for the integral of a loss: between two corners g bends more than h does.
-const PARTS: f64 = 4.0;
+const PARTS: u32 = 4;
 
 /// A feature is resolved out to so many of its widths, from there on in steps that double.
 const STEPS: [f64; 12] = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
@@ -594,8 +594,8 @@ impl Disc {
             }
             let base = if piece.root { piece.lo } else { 0.0 };
             let ends = [lo, hi].map(|a| if piece.root { (a - base).sqrt() } else { a });
-            let half = 0.5 * (ends[1] - ends[0]) / PARTS;
-            for part in 0..PARTS as u32 {
+            let half = 0.5 * (ends[1] - ends[0]) / f64::from(PARTS);
+            for part in 0..PARTS {
                 let middle = ends[0] + (2.0 * f64::from(part) + 1.0) * half;
                 for [x, weight] in &self.rule {
                     let v = middle + half * x;

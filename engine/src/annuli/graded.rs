@@ -13,28 +13,13 @@
 //!
 //! R. Kress, J. Comput. Appl. Math. 61, 345 (1995), for the substitution.
 
-use super::nodes::Nodes;
+use super::nodes::{Graded, Nodes};
 use super::rule::Rule;
 use std::f64::consts::PI;
 use wide::f64x4;
 
 /// p.
 const POWER: f64 = 8.0;
-
-/// A graded angle.
-#[derive(Debug, Clone)]
-pub struct Graded {
-    n: usize,
-    /// θ at the edges and breaks, and the points on each piece between.
-    borders: Vec<f64>,
-    pieces: Vec<usize>,
-    /// |r − r'| of all pairs.
-    apart: Vec<f64>,
-    /// |cos θ − cos θ'| over |cos t − cos t'|.
-    lift: Vec<f64>,
-    /// (v − v')/(r − r') for both edges, dv/dr on the diagonal.
-    pub speeds: [Vec<f64>; 2],
-}
 
 /// S and S'.
 fn sigmoid(u: f64) -> [f64; 2] {

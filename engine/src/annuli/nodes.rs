@@ -1,6 +1,5 @@
 //! The points of one ring.
 
-use super::graded::Graded;
 use super::rule::Rule;
 
 /// The points of one ring.
@@ -22,6 +21,21 @@ pub struct Nodes {
     pub stretch: [f64; 2],
     /// The angle graded towards breaks inside.
     pub graded: Option<Graded>,
+}
+
+/// A graded angle.
+#[derive(Debug, Clone)]
+pub struct Graded {
+    pub(super) n: usize,
+    /// θ at the edges and breaks, and the points on each piece between.
+    pub(super) borders: Vec<f64>,
+    pub(super) pieces: Vec<usize>,
+    /// |r − r'| of all pairs.
+    pub(super) apart: Vec<f64>,
+    /// |cos θ − cos θ'| over |cos t − cos t'|.
+    pub(super) lift: Vec<f64>,
+    /// (v − v')/(r − r') for both edges, dv/dr on the diagonal.
+    pub speeds: [Vec<f64>; 2],
 }
 
 impl Nodes {

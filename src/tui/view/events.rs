@@ -73,7 +73,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if model.events == EventSource::Cycle {
         let found = model.cycle.iter().filter_map(|cycle| cycle.report());
         let rings =
-            found.flat_map(|report| report.events.get(model.event)).map(|event| contacts(event, units));
+            found.filter_map(|report| report.events.get(model.event)).map(|event| contacts(event, units));
         lines.extend(rings.map(|text| Line::styled(format!(" {}", theme.text(&text)), theme.dim())));
     }
     let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);

@@ -3,13 +3,12 @@
 use super::balance::{Balance, Held};
 use super::error::CycleError;
 use super::event::Direction;
-use super::path::Path;
+use super::path::{End, Path};
 use super::point::{Point, Step};
 use super::setting::Areas;
 use crate::annuli::ground::gauss;
 use crate::annuli::{Around, Crest};
 use crate::problem::Control;
-use nalgebra::DVector;
 
 /// Steps of a loop at most.
 const STEPS: usize = 200_000;
@@ -25,14 +24,6 @@ const NODES_AT_CORNERS: usize = 12;
 
 /// A gap that is nothing, in waves.
 const ROUNDING: f64 = 1e-11;
-
-/// What ends a stretch of stable states.
-#[derive(Debug)]
-pub(super) enum End {
-    Limit(DVector<f64>),
-    Touch(Crest),
-    Turn,
-}
 
 /// Where a step is singular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,12 +3,12 @@
 use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
 use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
-use super::follow::End;
 use super::setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
 use crate::annuli::{AnnuliError, Contacts, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::Control;
+use nalgebra::DVector;
 use std::sync::Arc;
 
 /// What the balance of a loop may leave of its losses.
@@ -19,6 +19,14 @@ const AGREE: f64 = 1e-6;
 
 /// Digits below which a loop warns.
 const DIGITS: f64 = 9.0;
+
+/// What ends a stretch of stable states.
+#[derive(Debug)]
+pub(super) enum End {
+    Limit(DVector<f64>),
+    Touch(Crest),
+    Turn,
+}
 
 /// A loop while it runs.
 pub(super) struct Path<'a, 'b> {
