@@ -6,20 +6,20 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`system`] | the equations with their Jacobian, and second derivatives where they have them |
-//! | [`second`] | second derivatives along a direction, by the system or by differences |
-//! | [`closed`] | the equations closed by one more: a square system, factored |
-//! | [`tangent`] | tangent, curvature and the orientation sign |
-//! | [`branch`] | points with tangent and curvature |
-//! | [`convergence`] | when Newton's method has converged, and when it is given up |
-//! | [`settings`] | every number of this module, with its reason |
-//! | [`tracer`] | what follows a curve: system, settings, room to compute in |
-//! | [`corrector`] | correct: Newton-Raphson to the sphere, a plane, or a control value |
-//! | [`step_size`] | the length of the next step |
-//! | [`step`] | step: predict, correct, judge, retry |
-//! | [`trace`] | trace: steps until the end value, and why it stopped |
-//! | [`events`] | brackets: where a control turns, sign changes and grazing pairs |
-//! | [`locate`] | locate: guarded Newton on a limit point, or on a control value |
+//! | `system` | the equations with their Jacobian, and second derivatives where they have them |
+//! | `second` | second derivatives along a direction, by the system or by differences |
+//! | `closed` | the equations closed by one more: a square system, factored |
+//! | `tangent` | tangent, curvature and the orientation sign |
+//! | `branch` | points with tangent and curvature |
+//! | `convergence` | when Newton's method has converged, and when it is given up |
+//! | `settings` | every number of this module, with its reason |
+//! | `tracer` | what follows a curve: system, settings, room to compute in |
+//! | `corrector` | correct: Newton-Raphson to the sphere, a plane, or a control value |
+//! | `step_size` | the length of the next step |
+//! | `step` | step: predict, correct, judge, retry |
+//! | `trace` | trace: steps until the end value, and why it stopped |
+//! | `events` | brackets: where a control turns, sign changes and grazing pairs |
+//! | `locate` | locate: guarded Newton on a limit point, or on a control value |
 //!
 //! A control is a row c: the controlled quantity is c·y, and its limit points are where c·t = 0 for the
 //! unit tangent t. All controls share one branch.
