@@ -15,7 +15,9 @@ use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::Preset;
+use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
 use std::fs::File;
@@ -128,9 +130,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     } else {
         None
     };
+    let cycle =
+        if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &|_| true)?) } else { None };
+    warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
-    let subject = Subject { inside: inside.as_ref(), axes, ..Subject::alone(&curve, overlays) };
+    let subject =
+        Subject { inside: inside.as_ref(), cycle: cycle.as_ref(), axes, ..Subject::alone(&curve, overlays) };
     let chart = arguments.part(Chart::of(&subject.figure(view), &Window::WHOLE))?;
     let picture = svg::svg(&chart, arguments.width);
     output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;

@@ -5,7 +5,7 @@ use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
 use super::model::{Checking, Level, Model};
 use super::node::NodeKind;
-use super::view::EventSource;
+use super::view::{EventSource, View};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
@@ -45,7 +45,8 @@ pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
         (model.cycle, model.cycle_wanted) = (None, None);
         return None;
     }
-    let is_shown = model.events == EventSource::Cycle;
+    let is_shown =
+        model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
     let is_there = model.cycle.as_ref().is_some_and(|cycle| cycle.is_of(&model.preset));
     // A script computes only the loop that is looked at, and so asks again for one that was not.
     let is_asked = model

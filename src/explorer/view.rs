@@ -70,11 +70,15 @@ pub enum View {
     Energy,
     /// The quasi-static path with what its jumps dissipate, Fig. 10.
     Unloading,
+    /// The whole loop of loading and unloading with its losses, P over δ.
+    Cycle,
+    /// The contacts over the way of the control.
+    ContactMap,
 }
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::ForceApproach,
         Self::RadiusForce,
         Self::RadiusApproach,
@@ -82,6 +86,8 @@ impl View {
         Self::Gap,
         Self::Energy,
         Self::Unloading,
+        Self::Cycle,
+        Self::ContactMap,
     ];
 
     /// Its name.
@@ -94,12 +100,19 @@ impl View {
             Self::Gap => "gap",
             Self::Energy => "energy",
             Self::Unloading => "unloading",
+            Self::Cycle => "cycle",
+            Self::ContactMap => "contact-map",
         }
     }
 
     /// Whether it shows the equilibrium curve, on which walker, pins and overlays have a place.
     pub fn is_curve(self) -> bool {
         matches!(self, Self::ForceApproach | Self::RadiusForce | Self::RadiusApproach)
+    }
+
+    /// Whether it shows the whole loop of loading and unloading.
+    pub fn is_cycle(self) -> bool {
+        matches!(self, Self::Cycle | Self::ContactMap)
     }
 
     /// Whether it shows the inside of one state, which a worker has to compute.
@@ -116,9 +129,13 @@ impl View {
 
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
-        use View::{Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce, Unloading};
+        use View::{
+            ContactMap, Cycle, Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce, Unloading,
+        };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
+            Cycle => [ContactMap, ForceApproach, Pressure],
+            ContactMap => [Cycle, ForceApproach, RadiusForce],
             RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
@@ -262,7 +279,7 @@ mod tests {
             view = view.further(1);
         }
         assert_eq!(view, View::ForceApproach);
-        assert_eq!(view.further(View::ALL.len() - 1), View::Unloading);
+        assert_eq!(view.further(View::ALL.len() - 1), View::ContactMap);
     }
 
     #[test]

@@ -11,12 +11,16 @@
 //! | [`curves`] | P over δ, s over P, s over δ |
 //! | [`walk`] | the states walked, the jumps, the walker |
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
+//! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
+//! | [`contact_map`] | the contacts over the way of the control |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
 pub mod bounds;
+pub mod contact_map;
 pub mod curves;
+pub mod loops;
 pub mod parts;
 pub mod reading;
 pub mod scale;
@@ -28,7 +32,7 @@ pub mod walk;
 
 pub use crate::explorer::View;
 pub use bounds::Bounds;
-pub use parts::{Area, Axis, Figure, Line, Mark, Role, Sign};
+pub use parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
 pub use reading::{Nearest, nearest};
 pub use scale::Scale;
 pub use subject::Subject;
@@ -39,6 +43,8 @@ impl Subject<'_> {
         match view {
             View::ForceApproach | View::RadiusForce | View::RadiusApproach => curves::figure(self, view),
             View::Unloading => unloading::figure(self),
+            View::Cycle => loops::figure(self),
+            View::ContactMap => contact_map::figure(self),
             View::Pressure | View::Gap | View::Energy => state::figure(self, view),
         }
     }

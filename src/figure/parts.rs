@@ -15,17 +15,18 @@ pub enum Role {
     Pin(usize),
     Branch,
     Exact,
-    /// The loop on its way down.
-    Unloading,
-    /// The loop on its way up.
-    Loading,
     Unstable,
     Stable,
+    /// The whole loop while the control goes down, and while it goes up.
+    Unloading,
+    Loading,
     /// Equilibrium that cannot be: the next crest would already touch.
     Inadmissible,
     /// A computed profile or landscape: pressure, deformed gap, potential.
     Body,
     Contact,
+    /// The edges of contacts over the control.
+    Edges,
     /// From the walker's level up to the barrier.
     Barrier,
     /// The line of the loading device through the walker.
@@ -54,6 +55,10 @@ pub enum Sign {
     /// The last limit point of a path: the bodies come apart.
     PullOff,
     Landing,
+    /// A crest touches.
+    Touch,
+    /// The control turns round.
+    Turn,
     Crest,
     Edge,
     Minimum,
@@ -74,9 +79,29 @@ pub struct Mark {
     pub at: (f64, f64),
 }
 
+/// What an area is. A renderer gives each a filling of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Meaning {
+    /// Energy that is lost.
+    Lost,
+    /// The bodies are in contact there.
+    Contact,
+}
+
+impl Meaning {
+    /// Its name in a legend.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lost => "energy lost",
+            Self::Contact => "in contact",
+        }
+    }
+}
+
 /// A closed outline in axis values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
+    pub meaning: Meaning,
     /// Its corners; the last is joined to the first.
     pub outline: Vec<(f64, f64)>,
     /// The energy it stands for, in the user's units.

@@ -36,8 +36,7 @@ impl<'a> Scale<'a> {
     /// The place of δ, P and s (in the user's units) in a view of the curve.
     pub fn place(self, view: View, [approach, force, radius]: [f64; 3]) -> (f64, f64) {
         let approach = self.shown(Quantity::Length, approach);
-        let force =
-            self.force.map_or_else(|| self.shown(Quantity::Force, force), |critical| force / critical);
+        let force = self.force(force);
         let radius = self.radius(radius);
         match view {
             View::RadiusForce => (force, radius),
@@ -81,7 +80,13 @@ impl<'a> Scale<'a> {
         }
     }
 
-    fn force_axis(self) -> Axis {
+    /// A force on its axis.
+    pub fn force(self, p: f64) -> f64 {
+        self.force.map_or_else(|| self.shown(Quantity::Force, p), |critical| p / critical)
+    }
+
+    /// The axis of the force.
+    pub fn force_axis(self) -> Axis {
         match self.force {
             Some(_) => Axis::pure("P/Pc".to_owned()),
             None => self.axis("P", "force", Quantity::Force),

@@ -6,7 +6,7 @@
 
 use super::bounds::Bounds;
 use super::curves::{inadmissible, place};
-use super::parts::{Area, Figure, Line, Mark, Role, Sign};
+use super::parts::{Area, Figure, Line, Mark, Meaning, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
 use super::walk::{apart, events_before, quantities};
@@ -100,6 +100,10 @@ impl Path<'_> {
             outline.push(self.scale.place(VIEW, [0.0; 3]));
             outline.push(self.shown(&apart(control, event)));
         }
-        Some(Area { outline, lost: event.dissipated.map(|lost| lost * self.units.energy) })
+        Some(Area {
+            meaning: Meaning::Lost,
+            outline,
+            lost: event.dissipated.map(|lost| lost * self.units.energy),
+        })
     }
 }

@@ -60,11 +60,12 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Pin(number) => NUMBERED[number.saturating_sub(1) % NUMBERED.len()],
         // Over the curve: the dots stand on the line that they agree with.
         Role::Exact => stroke(BLACK, 1.0, "0.8 3.2"),
-        Role::Loading => stroke(GREEN, 1.2, "6 1.5 1 1.5"),
-        Role::Unloading => stroke(ORANGE, 1.2, "5 1 1 1 1 1"),
         Role::Unstable => stroke(VERMILLION, 1.0, "3 2"),
         Role::Stable => stroke(BLUE, 1.6, ""),
         Role::Inadmissible => stroke(PURPLE, 3.0, "0.8 2.4"),
+        Role::Loading => stroke(GREEN, 1.3, "5 1.2"),
+        Role::Unloading => stroke(BLUE, 1.3, "11 1.5"),
+        Role::Edges => stroke(BLUE, 1.0, ""),
         Role::Body => stroke(BLUE, 1.4, ""),
         Role::Contact => stroke(BLACK, 2.0, ""),
         Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
@@ -83,6 +84,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Limit => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
         Sign::PullOff => stamp(MarkerShape::Cross, VERMILLION, 2.8, "pull-off"),
         Sign::Landing => stamp(MarkerShape::Circle, GREEN, 2.2, "landing"),
+        Sign::Touch => stamp(MarkerShape::Pentagon, BLACK, 2.4, "touch"),
+        Sign::Turn => stamp(MarkerShape::Square, BLACK, 2.2, "turn"),
         Sign::Crest => stamp(MarkerShape::Triangle, GREY, 2.2, "crest"),
         Sign::Edge => stamp(MarkerShape::Plus, BLACK, 3.0, "edge"),
         Sign::Minimum => stamp(MarkerShape::Circle, BLUE, 2.4, "minimum"),
@@ -102,15 +105,9 @@ mod tests {
     #[test]
     fn lines_that_meet_differ_without_their_colours() {
         let curve = [Role::Smooth, Role::Envelope, Role::Exact, Role::Unstable, Role::Stable];
-        let more = [
-            Role::Loading,
-            Role::Unloading,
-            Role::Branch,
-            Role::Inadmissible,
-            Role::Device,
-            Role::Undeformed,
-            Role::Barrier,
-        ];
+        let more = [Role::Branch, Role::Inadmissible, Role::Device, Role::Undeformed, Role::Barrier]
+            .into_iter()
+            .chain([Role::Loading, Role::Unloading]);
         let looks: Vec<(String, &str)> = curve
             .into_iter()
             .chain(more)

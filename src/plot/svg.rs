@@ -3,7 +3,7 @@
 use super::Width;
 use super::chart::{Chart, ChartAxis, Run};
 use super::ink::{self, Stroke};
-use crate::figure::{Bounds, Line, Mark, Role};
+use crate::figure::{Bounds, Line, Mark, Meaning, Role};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -217,8 +217,11 @@ fn legend(chart: &Chart) -> Vec<LegendEntry> {
     for stamp in shown.map(|mark| ink::stamp(mark.sign)).filter(|stamp| !stamp.name.is_empty()) {
         add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
     }
-    if !chart.areas.is_empty() {
-        add(hatched("energy lost"));
+    for area in &chart.areas {
+        add(match area.meaning {
+            Meaning::Lost => hatched(Meaning::Lost.name()),
+            Meaning::Contact => entry(Meaning::Contact.name(), CONTACT, LegendShape::Rect, ""),
+        });
     }
     entries
 }
@@ -227,6 +230,8 @@ fn legend(chart: &Chart) -> Vec<LegendEntry> {
 const PATTERN: FillPattern = FillPattern::DiagonalForward;
 /// The tint under the hatches of an energy.
 const LOST: &str = "#f3d9e6";
+/// The tint of contact, without hatches.
+const CONTACT: &str = "#b9d7ea";
 
 pub(super) fn hatched(name: &str) -> LegendEntry {
     entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
@@ -283,34 +288,37 @@ pub(super) fn outline(points: &[(f64, f64)], field: &ComputedLayout) -> String {
 pub(super) fn hatches(areas: impl Iterator<Item = String>, tint: &str, scene: &mut Scene) -> Vec<Primitive> {
     scene.defs.push(PATTERN.svg_def().to_owned());
     let fills = [Color::from(tint), Color::from(format!("url(#{})", PATTERN.id()))];
-    let paths = areas.flat_map(|area| {
-        fills.clone().map(|fill| {
-            Primitive::Path(Box::new(PathData {
-                d: area.clone(),
-                fill: Some(fill),
-                stroke: Color::None,
-                stroke_width: 0.0,
-                opacity: None,
-                stroke_dasharray: None,
-            }))
-        })
-    });
-    paths.collect()
+    areas.flat_map(|area| fills.clone().map(|fill| filled(area.clone(), fill))).collect()
 }
 
-/// Puts the hatched areas below the lines.
+fn filled(d: String, fill: Color) -> Primitive {
+    Primitive::Path(Box::new(PathData {
+        d,
+        fill: Some(fill),
+        stroke: Color::None,
+        stroke_width: 0.0,
+        opacity: None,
+        stroke_dasharray: None,
+    }))
+}
+
+/// Puts the areas below the lines.
 fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
     let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
     let (Some(begin), false) = (begin, chart.areas.is_empty()) else { return };
-    let areas = chart.areas.iter().map(|area| outline(&area.outline, field));
-    let paths = hatches(areas, LOST, scene);
+    let of = |meaning| chart.areas.iter().filter(move |area| area.meaning == meaning);
+    let contact = of(Meaning::Contact).map(|area| filled(outline(&area.outline, field), CONTACT.into()));
+    let mut paths: Vec<Primitive> = contact.collect();
+    if of(Meaning::Lost).next().is_some() {
+        paths.extend(hatches(of(Meaning::Lost).map(|area| outline(&area.outline, field)), LOST, scene));
+    }
     scene.elements.splice(begin + 1..=begin, paths);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Area, Role, Sign};
+    use crate::figure::{Area, Sign};
 
     fn chart(lines: Vec<Line>) -> Chart {
         Chart::new(ChartAxis::default(), ChartAxis::default(), lines)
@@ -340,7 +348,10 @@ mod tests {
         let broken =
             Line::new(Role::Stable, "a < b & \"c\"", vec![(0.0, 1.0), (nan, 2.0), (1.0, 2.0), (2.0, 1e300)]);
         let mut full = chart(vec![broken]);
-        full.areas.push(Area { outline: vec![(0.0, 0.0), (nan, 1.0), (1.0, 1.0)], lost: None });
+        for meaning in [Meaning::Lost, Meaning::Contact] {
+            let outline = vec![(0.0, 0.0), (nan, 1.0), (1.0, 1.0)];
+            full.areas.push(Area { meaning, outline, lost: None });
+        }
         full.marks.push(Mark { sign: Sign::Limit, at: (0.5, nan) });
         let log = ChartAxis { title: String::new(), run: Run::Logarithmic };
         let negative =

@@ -21,7 +21,7 @@ pub fn csv(chart: &Chart) -> Result<String, csv::Error> {
         row(&line.name, &line.points)?;
     }
     for area in &chart.areas {
-        row("energy lost", &area.outline)?;
+        row(area.meaning.name(), &area.outline)?;
     }
     for mark in &chart.marks {
         row(ink::stamp(mark.sign).name, &[mark.at])?;

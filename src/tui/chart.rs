@@ -3,7 +3,7 @@
 //! No two strokes look alike without their colour: a line, a line with letters, close dots, dots far apart, dashes,
 //! dots with digits between. No number that is not finite reaches the canvas, and nothing outside the window is drawn.
 
-use super::hatch::hatch;
+use super::hatch::{Texture, hatch};
 use super::stroke::{Stroke, letters, spots};
 use super::theme::Theme;
 use crate::figure::Bounds;
@@ -26,6 +26,15 @@ pub struct Series {
     pub stroke: Stroke,
 }
 
+/// A closed outline that is filled.
+#[derive(Debug, Clone)]
+pub struct Region {
+    pub outline: Vec<(f64, f64)>,
+    pub style: Style,
+    /// What it is filled with.
+    pub texture: Texture,
+}
+
 /// A letter at a point.
 #[derive(Debug, Clone)]
 pub struct Mark {
@@ -42,7 +51,7 @@ pub struct Chart {
     pub note: String,
     /// The name of the x axis, at its right end.
     pub x_title: String,
-    pub areas: Vec<Vec<(f64, f64)>>,
+    pub areas: Vec<Region>,
     /// The curves, in the order of drawing.
     pub series: Vec<Series>,
     /// The marks, the last on top.
@@ -168,10 +177,11 @@ impl Chart {
     /// Areas and curves, whole lines over dots and dashes.
     fn draw_lines(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
         let hatching = theme.hatch_marker();
-        let lost: Vec<(f64, f64)> =
-            self.areas.iter().flat_map(|outline| hatch(outline, &self.bounds, plot, hatching)).collect();
         self.canvas(buffer, plot, hatching, |context| {
-            context.draw(&Points::new(&lost, color(theme.styles().lost)));
+            for region in &self.areas {
+                let dots = hatch(&region.outline, region.texture, &self.bounds, plot, hatching);
+                context.draw(&Points::new(&dots, color(region.style)));
+            }
         });
         let (broken, lines): (Vec<&Series>, Vec<&Series>) =
             self.series.iter().partition(|series| !series.stroke.is_line());

@@ -1,4 +1,4 @@
-//! A closed outline filled with slanting lines, by rows of dots.
+//! A closed outline filled with slanting lines or with dots.
 
 use crate::figure::Bounds;
 use ratatui::layout::Rect;
@@ -7,8 +7,22 @@ use ratatui::symbols::Marker;
 /// Every so many dots across a line begins, in braille and in characters.
 const APART: [usize; 2] = [6, 2];
 
-/// The dots of the slanting lines inside `outline`, in axis values.
-pub fn hatch(outline: &[(f64, f64)], bounds: &Bounds, plot: Rect, marker: Marker) -> Vec<(f64, f64)> {
+/// What an outline is filled with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Texture {
+    Slanting,
+    /// Dots in straight rows.
+    Dotted,
+}
+
+/// The dots inside `outline`, in axis values.
+pub fn hatch(
+    outline: &[(f64, f64)],
+    texture: Texture,
+    bounds: &Bounds,
+    plot: Rect,
+    marker: Marker,
+) -> Vec<(f64, f64)> {
     let braille = marker == Marker::Braille;
     let (across, upwards, apart) = if braille { (2, 4, APART[0]) } else { (1, 1, APART[1]) };
     let columns = usize::from(plot.width) * across;
@@ -21,7 +35,11 @@ pub fn hatch(outline: &[(f64, f64)], bounds: &Bounds, plot: Rect, marker: Marker
         let up = (row as f64 + 0.5) / rows as f64;
         let (_, y) = bounds.at((0.0, up));
         let crossings = crossings(outline, y);
-        for column in (0..columns).filter(|column| (column + apart * rows - row) % apart == 0) {
+        let is_filled = |column: &usize| match texture {
+            Texture::Slanting => (column + apart * rows - row) % apart == 0,
+            Texture::Dotted => row % 2 == 0 && column % 2 == 0,
+        };
+        for column in (0..columns).filter(is_filled) {
             let right = (column as f64 + 0.5) / columns as f64;
             let (x, _) = bounds.at((right, 0.0));
             // Inside when an odd number of sides lies to the left.
@@ -55,14 +73,19 @@ mod tests {
         // A square with a notch.
         let outline = [(1.0, 1.0), (3.0, 1.0), (3.0, 3.0), (2.0, 1.5), (1.0, 3.0)];
         for marker in [Marker::Braille, Marker::Custom('/')] {
-            let dots = hatch(&outline, &bounds, plot, marker);
-            assert!(dots.len() > 40, "{}", dots.len());
-            for (x, y) in &dots {
-                let notch = 1.5 + 1.5 * (x - 2.0).abs();
-                assert!((1.0..=3.0).contains(x) && *y >= 1.0 && *y <= notch, "{x} {y}");
+            for texture in [Texture::Slanting, Texture::Dotted] {
+                let dots = hatch(&outline, texture, &bounds, plot, marker);
+                assert!(dots.len() > 40, "{}", dots.len());
+                for (x, y) in &dots {
+                    let notch = 1.5 + 1.5 * (x - 2.0).abs();
+                    assert!((1.0..=3.0).contains(x) && *y >= 1.0 && *y <= notch, "{x} {y}");
+                }
             }
         }
-        assert!(hatch(&[(f64::NAN, 0.0), (1.0, 1.0)], &bounds, plot, Marker::Braille).is_empty());
-        assert!(hatch(&[], &bounds, plot, Marker::Braille).is_empty());
+        assert!(
+            hatch(&[(f64::NAN, 0.0), (1.0, 1.0)], Texture::Slanting, &bounds, plot, Marker::Braille)
+                .is_empty()
+        );
+        assert!(hatch(&[], Texture::Slanting, &bounds, plot, Marker::Braille).is_empty());
     }
 }

@@ -4,9 +4,10 @@ use super::legend::legend;
 use super::marks::{letter, look};
 use super::parts::is_selected;
 use crate::explorer::{Id, Panel, View, Window};
-use crate::figure::{Bounds, Figure, Mark as Placed, Sign, Subject, nearest};
+use crate::figure::{Area, Bounds, Figure, Mark as Placed, Meaning, Sign, Subject, nearest};
 use crate::tui::app::App;
-use crate::tui::chart::{Chart, Mark, Series};
+use crate::tui::chart::{Chart, Mark, Region, Series};
+use crate::tui::hatch::Texture;
 use crate::tui::theme::{Styles, Theme};
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
@@ -67,7 +68,7 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
         title: format!("{}{zoom}", figure.title),
         note: figure.notes.join(", "),
         x_title: figure.x.title(),
-        areas: figure.areas.iter().map(|area| area.outline.clone()).collect(),
+        areas: figure.areas.iter().map(|area| region(area, theme.styles())).collect(),
         series: figure
             .lines
             .iter()
@@ -84,6 +85,14 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
     }
 }
 
+fn region(area: &Area, styles: &Styles) -> Region {
+    let (style, texture) = match area.meaning {
+        Meaning::Lost => (styles.lost, Texture::Slanting),
+        Meaning::Contact => (styles.stable, Texture::Dotted),
+    };
+    Region { outline: area.outline.clone(), style, texture }
+}
+
 /// The cross-hair, and the state of the curve nearest to it.
 fn cross_hair(subject: &Subject<'_>, view: View, app: &App, chart: &mut Chart) {
     chart.cross = app.model.cross.map(|share| chart.bounds.at(share));
@@ -97,9 +106,14 @@ fn mark(mark: &Placed, styles: &Styles) -> Mark {
         Sign::OtherLimit(_) => styles.aid,
         Sign::Landing => styles.landing,
         Sign::Crest | Sign::Edge => styles.smooth,
-        Sign::Limit | Sign::PullOff | Sign::Minimum | Sign::Maximum | Sign::Barrier | Sign::Value => {
-            styles.mark
-        }
+        Sign::Touch
+        | Sign::Turn
+        | Sign::Limit
+        | Sign::PullOff
+        | Sign::Minimum
+        | Sign::Maximum
+        | Sign::Barrier
+        | Sign::Value => styles.mark,
         Sign::Stray => styles.stray,
         Sign::Walker => styles.walker,
     };

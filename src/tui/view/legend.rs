@@ -44,11 +44,13 @@ fn rank(role: Role, theme: Theme) -> u8 {
         Role::Pin(_) => 0,
         Role::Inadmissible
         | Role::Exact
+        | Role::Loading
+        | Role::Unloading
         | Role::Envelope
         | Role::Undeformed
         | Role::Barrier
         | Role::Device => 1,
-        Role::Smooth | Role::Branch | Role::Loading | Role::Unloading => 3,
+        Role::Smooth | Role::Branch => 3,
         Role::Walk | Role::Jump => 5,
         _ => 4,
     }
@@ -63,6 +65,8 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Limit => (1, "limit"),
         Sign::PullOff => (2, "pull-off"),
         Sign::Landing => (2, "landing"),
+        Sign::Touch => (2, "touch"),
+        Sign::Turn => (2, "turn"),
         Sign::Crest => (3, "crest"),
         Sign::Edge => (3, "edge"),
         Sign::Minimum => (2, "minimum"),

@@ -15,15 +15,15 @@ pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
         Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
         Role::Branch => (Stroke::Lettered("b"), styles.smooth),
         Role::Envelope => (Stroke::LongDashed, styles.exact),
-        Role::Loading => (Stroke::Lettered("l"), styles.aid),
-        Role::Unloading => (Stroke::Lettered("u"), styles.aid),
         Role::Exact => (Stroke::Dashed, styles.exact),
         Role::Pin(number) => {
             let at = number.saturating_sub(1) % DIGITS.len();
             (Stroke::Lettered(DIGITS[at]), styles.pins[at])
         }
         Role::Unstable => (Stroke::Dotted, styles.unstable),
-        Role::Stable | Role::Body => (Stroke::Solid, styles.stable),
+        Role::Loading => (Stroke::Marked("l"), styles.exact),
+        Role::Unloading => (Stroke::Marked("u"), styles.stable),
+        Role::Stable | Role::Body | Role::Edges => (Stroke::Solid, styles.stable),
         Role::Inadmissible => (Stroke::Repeated("!"), styles.aid),
         Role::Contact => (Stroke::Marked("c"), styles.walk),
         Role::Walk => (Stroke::Marked("w"), styles.walk),
@@ -41,6 +41,8 @@ pub fn letter(sign: Sign) -> &'static str {
         Sign::Limit => "v",
         Sign::PullOff => "X",
         Sign::Landing => "L",
+        Sign::Touch => "t",
+        Sign::Turn => "T",
         Sign::Crest => "^",
         Sign::Edge => "|",
         Sign::Minimum => "m",

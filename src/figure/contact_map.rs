@@ -1,0 +1,120 @@
+//! The contacts over the way of the control: bands between their edges, loading first, unloading behind it.
+//!
+//! To the right goes the way that the control has gone since the first touch, up to the turn and back; so loading and
+//! unloading stand side by side, and nothing covers anything.
+
+use super::bounds::Bounds;
+use super::loops::NO_LOOP;
+use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
+use super::scale::Scale;
+use super::subject::Subject;
+use crate::explorer::View;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, PathStateReport};
+use pulloff_engine::units::Quantity;
+
+const VIEW: View = View::ContactMap;
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>) -> Figure {
+    let scale = subject.scale();
+    match subject.cycle {
+        Some(report) => contact_map(report, scale),
+        None => Figure { missing: Some(NO_LOOP.to_owned()), ..blank(subject.curve.setting.control, scale) },
+    }
+}
+
+fn blank(control: Control, scale: Scale<'_>) -> Figure {
+    let mut x = match control {
+        Control::Displacement => scale.length("δ"),
+        Control::Force => scale.force_axis(),
+        Control::Stiffness(_) => scale.length("Δ"),
+    };
+    x = Axis { symbol: format!("way of {}", x.symbol), ..x };
+    Figure::empty(VIEW, format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
+}
+
+/// The contacts of the loop of `report` over these divisors.
+pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
+    let mut figure = blank(report.control, scale);
+    let way = Way::of(report, scale);
+    let same = |a: &PathStateReport, b: &PathStateReport| {
+        (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
+    };
+    for stretch in report.states.chunk_by(same) {
+        for contact in 0..stretch[0].state.contacts.len() {
+            let edge = |side: usize| {
+                let at = move |at: &PathStateReport| {
+                    (way.at(at.direction, at.control_value), scale.radius(at.state.contacts[contact][side]))
+                };
+                stretch.iter().map(at).collect::<Vec<_>>()
+            };
+            let (inner, outer) = (edge(0), edge(1));
+            let outline = outer.iter().chain(inner.iter().rev()).copied().collect();
+            figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
+            // The axis is no edge of a disc.
+            let inner = Some(inner).filter(|inner| inner.iter().any(|(_, r)| *r > 0.0));
+            let edges = inner.into_iter().chain([outer]);
+            figure.lines.extend(edges.map(|edge| Line::new(Role::Edges, "edge", edge)));
+        }
+    }
+    let bounds = Bounds::of(figure.areas.iter().flat_map(|area| area.outline.iter().copied()));
+    // No room below the axis of the bodies.
+    figure.bounds = Bounds { y: [0.0, bounds.y[1]], ..bounds };
+    let jumps = report.events.iter().filter(|event| event.before != event.after);
+    figure.lines.extend(jumps.filter_map(|event| jump(event, way, scale)));
+    figure.marks.extend(report.events.iter().filter_map(|event| mark(event, way, scale)));
+    if let Some(turn) = report.events.iter().find(|event| event.kind == "turn") {
+        let at = way.at("loading", turn.control_value);
+        figure.lines.insert(0, Line::new(Role::Zero, "", vec![(at, 0.0), (at, figure.bounds.y[1])]));
+    }
+    figure
+}
+
+/// Where the control stands on the way that it has gone.
+#[derive(Clone, Copy)]
+struct Way<'a> {
+    scale: Scale<'a>,
+    is_force: bool,
+    first: f64,
+    turn: f64,
+}
+
+impl<'a> Way<'a> {
+    fn of(report: &CycleReport, scale: Scale<'a>) -> Self {
+        let value = |kind: &str| report.events.iter().find(|event| event.kind == kind);
+        let first = value("first-touch").or(report.events.first()).map_or(0.0, |event| event.control_value);
+        let turn = value("turn").map_or(first, |event| event.control_value);
+        Self { scale, is_force: report.control == Control::Force, first, turn }
+    }
+
+    fn at(self, direction: &str, control_value: f64) -> f64 {
+        let gone = if direction == "unloading" {
+            (self.turn - self.first) + (self.turn - control_value)
+        } else {
+            control_value - self.first
+        };
+        if self.is_force { self.scale.force(gone) } else { self.scale.shown(Quantity::Length, gone) }
+    }
+}
+
+/// The outermost edge on a jump, upright: the control is held.
+fn jump(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Line> {
+    let x = way.at(event.direction, event.control_value);
+    let edge = |state: &Option<_>| {
+        let radius = |state: &pulloff_engine::report::cycle::CycleStateReport| state.contact_radius;
+        scale.radius(state.as_ref().map_or(0.0, radius))
+    };
+    let (before, after) = (edge(&event.before), edge(&event.after));
+    (before != after).then(|| Line::new(Role::Jump, "jump", vec![(x, before), (x, after)]))
+}
+
+/// Where a crest touches, contacts merge or split, and the bodies come apart.
+fn mark(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Mark> {
+    let (sign, radius) = match event.kind {
+        "pull-off" => (Sign::PullOff, event.before.as_ref().map(|state| state.contact_radius)),
+        "turn" | "advance" | "recede" => return None,
+        _ => (Sign::Touch, event.radius),
+    };
+    Some(Mark { sign, at: (way.at(event.direction, event.control_value), scale.radius(radius?)) })
+}
