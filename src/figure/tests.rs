@@ -2,11 +2,13 @@
 
 use super::reading::What;
 use super::*;
-use crate::explorer::{Axes, Model};
+use crate::explorer::{Axes, CurveData, Model};
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
-use crate::store::Store;
+use crate::store::{Store, shipped};
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::UnitSystem;
 
 /// A session with every effect done inline, and room for every view.
@@ -180,6 +182,81 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
             assert_eq!(area.lost, Some(lost));
         }
         assert!(figure.notes[0].starts_with("lost "), "{:?}", figure.notes);
+    }
+}
+
+/// The loop of a shipped preset with these changes, and its curve.
+fn looped(preset: &str, changes: &[&str]) -> (CycleReport, CurveData) {
+    let preset = shipped(preset, changes).unwrap();
+    let report = CycleReport::compute(&preset, Areas::No, &|_| true).unwrap();
+    (report, CurveData::compute(&preset, |_| true).unwrap())
+}
+
+fn enclosed(outline: &[(f64, f64)]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    outline.iter().zip(next).map(|(a, b)| 0.5 * (a.0 * b.1 - b.0 * a.1)).sum::<f64>().abs()
+}
+
+#[test]
+fn the_areas_of_a_loop_are_its_losses() {
+    let whole = |preset, changes: &[&str]| {
+        let (report, curve) = looped(preset, changes);
+        let overlays = crate::explorer::Overlays::default();
+        let subject = Subject { cycle: Some(&report), axes: Axes::Raw, ..Subject::alone(&curve, overlays) };
+        let figure = subject.figure(View::Cycle);
+        assert!(is_fit(&figure) && figure.missing.is_none());
+        for area in &figure.areas {
+            let lost = area.lost.unwrap();
+            assert!(area.meaning == Meaning::Lost && (enclosed(&area.outline) / lost - 1.0).abs() < 0.02);
+        }
+        let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
+        (report, figure, lost)
+    };
+    // Discs alone: every jump has its area, whatever is controlled.
+    for (control, unbounded) in [("displacement", 0), ("stiffness=0.15", 0), ("force", 1)] {
+        let control = format!("path.control={control}");
+        let (report, figure, lost) = whole("fig-9-cycle", &[&control]);
+        let jumps = report.events.iter().filter(|event| event.before != event.after).count();
+        assert_eq!((figure.areas.len() + unbounded, count(&figure, Role::Jump)), (jumps, jumps), "{control}");
+        assert_eq!((signs(&figure, Sign::PullOff), signs(&figure, Sign::Turn)), (1, 1));
+        let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_pull_off);
+        assert!((lost / all - 1.0).abs() < 1e-9, "{control}: {lost} {all}");
+    }
+    // Rings jump along no curve: one area for all.
+    for control in ["displacement", "stiffness=0.15"] {
+        let control = format!("path.control={control}");
+        let (report, figure, lost) = whole("fig-9-weak", &[&control]);
+        assert_eq!((figure.areas.len(), Some(lost)), (1, report.totals.dissipated), "{control}");
+    }
+}
+
+#[test]
+fn a_contact_map_shows_every_state_once() {
+    for preset in ["fig-9-weak", "crater"] {
+        let (report, curve) = looped(preset, &[]);
+        let overlays = crate::explorer::Overlays::default();
+        let subject = Subject { cycle: Some(&report), axes: Axes::Raw, ..Subject::alone(&curve, overlays) };
+        let figure = subject.figure(View::ContactMap);
+        assert!(is_fit(&figure) && figure.areas.iter().all(|area| area.meaning == Meaning::Contact));
+        let corners: usize = figure.areas.iter().map(|area| area.outline.len()).sum();
+        let contacts: usize = report.states.iter().map(|at| at.state.contacts.len()).sum();
+        assert_eq!(corners, 2 * contacts, "{preset}");
+        // Loading to the left of the turn, unloading to the right, and the first contact of the crater off the axis.
+        let turn = report.events.iter().find(|event| event.kind == "turn").unwrap();
+        let turn = turn.control_value - report.events[0].control_value;
+        let way: Vec<f64> = figure.areas.iter().map(|area| area.outline[0].0).collect();
+        assert!(way.is_sorted() && way[0] >= 0.0 && way[way.len() - 1] > turn, "{preset}");
+        let lowest = figure.areas[0].outline.iter().map(|at| at.1).fold(f64::INFINITY, f64::min);
+        assert_eq!(lowest > 0.0, preset == "crater");
+    }
+}
+
+#[test]
+fn without_a_loop_its_views_say_so() {
+    let session = Session::new("wavy-sphere");
+    for view in [View::Cycle, View::ContactMap] {
+        let figure = session.figure(view);
+        assert!(is_fit(&figure) && figure.missing.as_deref() == Some("no loop yet"), "{view:?}");
     }
 }
 
