@@ -306,8 +306,14 @@ impl Case {
 
     /// What to be careful about, for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
-        let mut warnings = self.problem.shape.notes(&self.shown);
+        let mut warnings = self.warnings_of_problem();
         warnings.extend(self.basis.cautions(&self.reduced, largest));
+        warnings
+    }
+
+    /// The same where no basis is asked.
+    pub fn warnings_of_problem(&self) -> Vec<String> {
+        let mut warnings = self.problem.shape.notes(&self.shown);
         if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
             warnings.push(format!(
                 "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \

@@ -38,15 +38,16 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
     Some(Effect::Check(Check { id, curve }))
 }
 
-/// Asks for the loop of the values as they are, once their curve is there; gaps without crests have none.
+/// Asks for the loop of the values as they are, once their curve is there; where the gap has no crests,
+/// only when it is looked at.
 pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
     let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing()).cloned()?;
-    if !has_crests(&curve) {
+    let is_shown =
+        model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
+    if !is_shown && !has_crests(&curve) {
         (model.cycle, model.cycle_wanted) = (None, None);
         return None;
     }
-    let is_shown =
-        model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
     let is_there = model.cycle.as_ref().is_some_and(|cycle| cycle.is_of(&model.preset));
     // A script computes only the loop that is looked at, and so asks again for one that was not.
     let is_asked = model

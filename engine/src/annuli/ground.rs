@@ -19,6 +19,9 @@ const DIGITS: f64 = 34.6;
 /// Samples of a gap in which stand-ins for its lengths are looked for.
 const SAMPLES: u32 = 4000;
 
+/// The share of a gap that ends up to which its lengths are looked for.
+const INSIDE: f64 = 0.9;
+
 /// Gauss's nodes and weights on (−1, 1), ascending; made once.
 pub fn gauss(n: usize) -> &'static [[f64; 2]] {
     static RULES: [OnceLock<Vec<[f64; 2]>>; MOST_NODES + 1] = [const { OnceLock::new() }; MOST_NODES + 1];
@@ -224,9 +227,11 @@ fn least(panels: &Panels) -> Vec<f64> {
 /// λ = 2π max|h' − cr|/max|h'' − c|,  c the least-squares slope of h';      ρ = 1/max h''
 /// ```
 ///
-/// λ is at most twice the least distance of corners and a fourth of the reach.
+/// λ is at most twice the least distance of corners and a fourth of the reach. Close to where a gap ends, as a sphere at its
+/// equator, h'' may grow without bound, which says nothing about the gap further in.
 fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
-    let radii = (0..SAMPLES).map(|k| reach * (f64::from(k) + 0.5) / f64::from(SAMPLES));
+    let sampled = gap.largest_radius().map_or(reach, |end| reach.min(INSIDE * end));
+    let radii = (0..SAMPLES).map(|k| sampled * (f64::from(k) + 0.5) / f64::from(SAMPLES));
     let jets: Vec<(f64, [f64; 2])> = radii
         .map(|r| {
             let jet = gap.jet(r);

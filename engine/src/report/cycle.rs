@@ -178,8 +178,7 @@ impl CycleReport {
     pub fn new(preset: &Preset, case: &Case, cycle: &Cycle) -> Self {
         let units = case.units();
         let of_control = of_control(cycle.control, units);
-        let largest = cycle.states.iter().map(|state| state.contact_radius).fold(case.start, f64::max);
-        let mut warnings = case.warnings(largest);
+        let mut warnings = case.warnings_of_problem();
         let told = cycle.warnings.iter().map(|w| w.words(cycle.control, units, &preset.units));
         warnings.extend(told);
         let mut notes = case.problem.shape.remarks(&case.shown);
