@@ -210,7 +210,7 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     assert!(session.status().contains("jumps to crest 5"), "{}", session.status());
     assert!(!session.model.is_unsaved());
     // In the walked list it goes back to before the jump.
-    session.all(&[Id::Jump, Id::NextLimit, Id::Events]);
+    session.all(&[Id::Jump, Id::NextLimit, Id::Events, Id::Events]);
     assert_eq!(session.model.events, EventSource::Walked);
     session.does(Id::Edit);
     assert_eq!(session.kind(), NodeKind::Limit);
@@ -408,7 +408,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     session.does(Id::Edit);
     assert!(session.status().contains("crest would touch"), "{}", session.status());
     assert!((session.radius() - before).abs() < f64::EPSILON);
-    session.does(Id::Events);
+    session.all(&[Id::Events, Id::Events]);
     assert!(session.model.shown_inadmissible().is_empty());
 
     // Another control keeps what is known of the curve.

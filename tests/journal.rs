@@ -73,8 +73,9 @@ impl Late {
                 | Effect::File(_)
                 | Effect::StopCurve(_)
                 | Effect::StopPins
-                | Effect::Pin(..)
-                | Effect::Loop(_) => {}
+                | Effect::Pin(..) => {}
+                // Nothing that is walked depends on it.
+                Effect::Loop(_) => continue,
             }
             self.pending.push_back(effect);
         }

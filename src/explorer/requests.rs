@@ -42,8 +42,7 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
 /// only when it is looked at.
 pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
     let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing()).cloned()?;
-    let is_shown =
-        model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
+    let is_shown = model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
     if !is_shown && !has_crests(&curve) {
         (model.cycle, model.cycle_wanted) = (None, None);
         return None;

@@ -187,7 +187,8 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
 
 /// The loop of a shipped preset with these changes, and its curve.
 fn looped(preset: &str, changes: &[&str]) -> (CycleReport, CurveData) {
-    let preset = shipped(preset, changes).unwrap();
+    let text = shipped::find(preset).unwrap().text;
+    let preset = crate::store::read_with(preset, text, changes).unwrap();
     let report = CycleReport::compute(&preset, Areas::No, &|_| true).unwrap();
     (report, CurveData::compute(&preset, |_| true).unwrap())
 }

@@ -26,7 +26,7 @@ fn sentences_name_the_keys_of_a_person() {
     };
     says(&screen, "F2 runs to a limit point, F5 helps");
     says(&screen, "A         0.0025 ( )");
-    says(&screen, "(F7: walked 0)");
+    says(&screen, "(F7: of the loop)");
     screen.press(KeyCode::F(7));
     says(&screen, "none yet: F2 runs to a limit point, J takes the jump");
     screen.keys("f");
