@@ -541,6 +541,36 @@ fn the_quantities_are_listed() {
     }
 }
 
+#[test]
+fn the_loop_is_measured() {
+    let home = Sweeps::new();
+    home.file(
+        "s.toml",
+        r#"
+preset = "fig-9-weak"
+quantities = ["cycle_loss", "cycle_loss_force", "first_touch_force", "first_touch_radius", "touches", "rings_at_most",
+    "contact_share", "touches_force"]
+[[axis]]
+key = "material.work_of_adhesion"
+values = [0.0, 1e-5, 1e-4, 0.0039788735772973835]
+"#,
+    );
+    home.sweep("s.toml", "r.csv", &[]);
+    // Without adhesion nothing is lost, the first touch is a point, and rings last.
+    let loss = home.numbers("r.csv", "cycle_loss");
+    assert!(loss[0] == 0.0 && loss.is_sorted());
+    assert!((loss[2] - 1.297_949_009_46e-4).abs() < 1e-12 && (loss[3] - 2.112_003_387_3e-3).abs() < 1e-12);
+    let radius = home.numbers("r.csv", "first_touch_radius");
+    assert!((radius[2] - 0.007_794_0).abs() < 1e-7 && (radius[3] - 0.261_057_6).abs() < 1e-7);
+    assert!((home.numbers("r.csv", "first_touch_force")[3] + 0.012_934_170_6).abs() < 1e-10);
+    assert_eq!(home.numbers("r.csv", "touches")[1..], [8.0, 7.0, 0.0]);
+    assert_eq!(home.numbers("r.csv", "rings_at_most")[2..], [1.0, 0.0]);
+    let share = home.numbers("r.csv", "contact_share");
+    assert!(share[0] < 0.9 && (share[2] - 1.0).abs() < 1e-12 && (share[3] - 1.0).abs() < 1e-12, "{share:?}");
+    // Under a dead load the pull-off has no bound.
+    assert!(home.columns("r.csv", &["cycle_loss_force"])[0][1..].iter().all(String::is_empty));
+}
+
 /// Rows of many small waves; an assignment in `set` or an axis `start` says where their curves begin.
 fn small_waves(home: &Sweeps, set: &str, start: &str) -> Spec {
     let store = Store::at(home.path("presets"), &[]);

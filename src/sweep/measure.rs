@@ -3,10 +3,11 @@
 
 use super::fault::Fault;
 use super::quantity::{Column, Quantity, Stage};
-use super::stage::{Cell, CurveMinima, PresetValues, StartState, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Loop, PresetValues, StartState, UnloadingPath};
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::overlap::passed_while;
 use pulloff_engine::quasistatic::{Losses, PathStop};
 use pulloff_engine::units::Quantity as Unit;
@@ -27,13 +28,15 @@ struct Work<'a> {
     start: Option<Result<StartState, Fault>>,
     line: Option<Result<CurveMinima, Fault>>,
     paths: Vec<(Control, Result<UnloadingPath, Fault>)>,
+    loops: Vec<(Control, Result<Loop, Fault>)>,
     go_on: &'a dyn Fn() -> bool,
 }
 
 /// The `wanted` quantities of `preset`; `go_on` is asked now and then, `None` when it said no.
 pub fn measure(preset: &Preset, wanted: &[Column], go_on: &dyn Fn() -> bool) -> Option<Measured> {
     let ground = PresetValues::new(preset);
-    let mut work = Work { preset, ground, start: None, line: None, paths: Vec::new(), go_on };
+    let mut work =
+        Work { preset, ground, start: None, line: None, paths: Vec::new(), loops: Vec::new(), go_on };
     let mut measured = Measured { cells: Vec::with_capacity(wanted.len()), fault: None };
     for column in wanted {
         let cell = work.cell(column).unwrap_or_else(|fault| {
@@ -75,6 +78,10 @@ impl Work<'_> {
             Stage::Passed => {
                 let control = self.reduced(column.under.control(own))?;
                 self.inadmissible_share(control)
+            }
+            Stage::Loop(of) => {
+                let control = self.reduced(column.under.control(own))?;
+                self.whole(control).map(of)
             }
         }
     }
@@ -121,6 +128,20 @@ impl Work<'_> {
             self.paths.len() - 1
         });
         self.paths[at].1.as_ref().map_err(Clone::clone)
+    }
+
+    fn whole(&mut self, control: Control) -> Result<&Loop, Fault> {
+        let known = self.loops.iter().position(|(known, _)| *known == control);
+        let at = known.unwrap_or_else(|| {
+            let go_on = self.go_on;
+            let made = self.start().and_then(|start| {
+                let cycle = start.case.cycle(control, None, Areas::No, &|_| go_on());
+                Ok(Loop { cycle: cycle.map_err(|e| Fault::of_case(&e))? })
+            });
+            self.loops.push((control, made));
+            self.loops.len() - 1
+        });
+        self.loops[at].1.as_ref().map_err(Clone::clone)
     }
 
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {

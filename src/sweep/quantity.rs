@@ -1,7 +1,7 @@
 //! What a sweep can compute of a problem: the table of quantities, one row each.
 
 use super::fault::Fault;
-use super::stage::{Cell, CurveMinima, PresetValues, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Loop, PresetValues, UnloadingPath};
 use pulloff_engine::problem::Control;
 use pulloff_engine::text::{closest, quote};
 use pulloff_engine::units::Quantity as Unit;
@@ -16,7 +16,8 @@ pub struct Quantity {
     pub(super) of: Stage,
 }
 
-/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone.
+/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone, and the loop, which
+/// needs the start.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stage {
     Preset(fn(&PresetValues) -> Option<Cell>),
@@ -28,6 +29,8 @@ pub(super) enum Stage {
     Unloading(fn(&UnloadingPath) -> Option<Cell>),
     /// The states it passes that are not admissible: to find them takes longer than all the rest.
     Passed,
+    /// The whole loop of loading and unloading, by energies alone.
+    Loop(fn(&Loop) -> Option<Cell>),
 }
 
 /// Makes [`QUANTITIES`] of the table: name, unit, meaning, and from what it is computed.
@@ -52,6 +55,17 @@ quantities! {
         Stage::Unloading(UnloadingPath::pull_off_loss);
     "inadmissible_share" Number "share of the path, by contact radius, on which the next crest would already touch":
         Stage::Passed;
+    "cycle_loss" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(Loop::loss);
+    "first_touch_force" Force "force after the jump into contact at the first touch":
+        Stage::Loop(|whole| whole.first_touch(|state| state.force));
+    "first_touch_radius" Length "outermost edge of the contact after that jump":
+        Stage::Loop(|whole| whole.first_touch(|state| state.contact_radius));
+    "touches" Number "crests that touched apart from the contact on the way up, after the first touch":
+        Stage::Loop(|whole| Some(whole.touches()));
+    "rings_at_most" Number "rings of contact at most at a time in the stable states of the loop, a disc not counted":
+        Stage::Loop(|whole| Some(whole.rings_at_most()));
+    "contact_share" Number "contact area at the turn over that of the circle in its outermost edge":
+        Stage::Loop(Loop::contact_share);
     "limit_points" Number "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));
@@ -123,7 +137,7 @@ impl Quantity {
     /// under these.
     #[must_use]
     pub fn is_of_control(&self) -> bool {
-        matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed)
+        matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed | Stage::Loop(_))
     }
 
     fn columns(&'static self) -> impl Iterator<Item = Column> {

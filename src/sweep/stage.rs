@@ -1,5 +1,5 @@
 //! What quantities are computed from, each stage from the one before: the values of the preset, its start, its curve, the
-//! unloading under one control.
+//! unloading under one control, the loop under one.
 
 use super::fault::Fault;
 use pulloff_engine::case::{Case, CaseError};
@@ -7,6 +7,7 @@ use pulloff_engine::disc::{ExactSolution, Solution};
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Control, Groups, Problem};
+use pulloff_engine::quasistatic::cycle::{self, Cycle, CycleState};
 use pulloff_engine::quasistatic::monotone::weighted;
 use pulloff_engine::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
 use pulloff_engine::report::number::exact;
@@ -69,6 +70,42 @@ const SMALLER: f64 = 1e-3;
 /// The unloading under one control, reduced.
 pub(super) struct UnloadingPath {
     pub(super) unloading: Unloading,
+}
+
+/// The loop under one control, reduced.
+pub(super) struct Loop {
+    pub(super) cycle: Cycle,
+}
+
+impl Loop {
+    fn event(&self, kind: cycle::EventKind) -> Option<&cycle::Event> {
+        self.cycle.events.iter().find(|event| event.kind == kind)
+    }
+
+    pub(super) fn loss(&self) -> Option<Cell> {
+        self.cycle.totals.dissipated.map(Cell::Number)
+    }
+
+    pub(super) fn first_touch(&self, of: fn(&CycleState) -> f64) -> Option<Cell> {
+        let after = self.event(cycle::EventKind::FirstTouch)?.after.as_ref()?;
+        Some(Cell::Number(of(after)))
+    }
+
+    pub(super) fn touches(&self) -> Cell {
+        let touches = self.cycle.events.iter().filter(|event| event.kind == cycle::EventKind::Touch);
+        Cell::Count(touches.count())
+    }
+
+    pub(super) fn rings_at_most(&self) -> Cell {
+        let rings = |state: &CycleState| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
+        Cell::Count(self.cycle.states.iter().map(rings).max().unwrap_or(0))
+    }
+
+    pub(super) fn contact_share(&self) -> Option<Cell> {
+        let at = self.event(cycle::EventKind::Turn)?.before.as_ref()?;
+        let circle = std::f64::consts::PI * at.contact_radius * at.contact_radius;
+        (circle > 0.0).then_some(Cell::Number(at.contact_area / circle))
+    }
 }
 
 impl PresetValues {

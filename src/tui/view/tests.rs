@@ -188,14 +188,16 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "gap over r/λ",
         "U over s/λ",
         "unloading",
+        "cycle: P/Pc over δ",
+        "contacts over the way of δ",
     ] {
         let text = screen.text(80, 24);
         assert!(text.contains(title), "{title}: {text}");
         screen.keys("t");
     }
-    screen.keys("T");
+    screen.keys("TTT");
     assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
-    screen.keys("t");
+    screen.keys("ttt");
     let text = screen.text(200, 60);
     for title in ["P/Pc over δ", "s/λ over P/Pc", "p/E* over r/λ", "U over s/λ"] {
         assert!(text.contains(title), "{title}: {text}");
@@ -205,7 +207,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
-    screen.keys("T");
+    screen.keys("TTT");
     assert!(strokes(&screen) > before + 5, "{}", screen.text(120, 40));
 }
 

@@ -1,0 +1,310 @@
+//! `pulloff cycle`: its documents, where it turns, and what it refuses.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+#[path = "support/home.rs"]
+mod home;
+
+use home::{Ended, Home};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::process::Stdio;
+use std::time::Duration;
+
+fn keys(value: &Value) -> BTreeSet<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+fn near(value: &Value, expected: f64) -> bool {
+    (number(value) - expected).abs() <= 1e-9 * expected.abs()
+}
+
+/// The kinds of the events in a row, with what stands in a row counted.
+fn kinds(document: &Value) -> Vec<&str> {
+    document["events"].as_array().unwrap().iter().map(|event| event["kind"].as_str().unwrap()).collect()
+}
+
+const STATE: [&str; 7] =
+    ["approach", "contact_area", "contact_radius", "contacts", "energy", "force", "wave"];
+
+#[test]
+fn the_document_has_its_form() {
+    let home = Home::new();
+    let document = home.json(&["cycle", "fig-9-weak"]);
+    let all = [
+        "control",
+        "document",
+        "events",
+        "loop",
+        "notes",
+        "problem",
+        "program_version",
+        "schema",
+        "states",
+        "stop",
+        "turn",
+        "warnings",
+    ];
+    assert_eq!(keys(&document), BTreeSet::from(all));
+    assert_eq!((&document["schema"], &document["document"]), (&1.into(), &"cycle".into()));
+    assert_eq!((&document["control"], &document["turn"]["of"]), (&"displacement".into(), &"approach".into()));
+    assert_eq!(keys(&document["turn"]), BTreeSet::from(["asked", "of", "reached"]));
+    assert_eq!(document["stop"], "the bodies are apart");
+    assert_eq!((&document["warnings"], &document["notes"]), (&Value::Array(vec![]), &Value::Array(vec![])));
+    let unload = home.run(&["unload", "fig-9-weak", "--format", "json"]);
+    let unload: Value = serde_json::from_str(&unload.out).unwrap();
+    assert_eq!(document["problem"], unload["problem"]);
+    let event = [
+        "after",
+        "before",
+        "control_value",
+        "direction",
+        "dissipated",
+        "dissipated_by_area",
+        "kind",
+        "passed",
+        "radius",
+    ];
+    for found in document["events"].as_array().unwrap() {
+        assert_eq!(keys(found), BTreeSet::from(event));
+        for state in [&found["before"], &found["after"]].into_iter().filter(|state| !state.is_null()) {
+            assert_eq!(keys(state), BTreeSet::from(STATE));
+            // The outermost edge, and the area of all contacts.
+            let contacts = state["contacts"].as_array().unwrap();
+            assert_eq!(contacts.last().unwrap()[1], state["contact_radius"]);
+            let area: f64 =
+                contacts.iter().map(|edges| number(&edges[1]).powi(2) - number(&edges[0]).powi(2)).sum();
+            assert!(near(&state["contact_area"], std::f64::consts::PI * area));
+        }
+        for passed in found["passed"].as_array().unwrap() {
+            assert_eq!(keys(passed), BTreeSet::from(["kind", "radius"]));
+        }
+    }
+    let (first, last) = (&document["events"][0], document["events"].as_array().unwrap().last().unwrap());
+    assert!(first["before"].is_null() && first["kind"] == "first-touch" && first["direction"] == "loading");
+    assert!(last["after"].is_null() && last["kind"] == "pull-off" && last["direction"] == "unloading");
+    assert!(first["radius"] == 0.0 && last["radius"].is_null());
+    let sums = [
+        "dissipated",
+        "dissipated_before_pull_off",
+        "dissipated_by_area",
+        "work_of_loading",
+        "work_of_unloading",
+    ];
+    let whole = &document["loop"];
+    assert_eq!(keys(whole), BTreeSet::from(sums));
+    // What the hand gives and does not get back is lost.
+    let lost = number(&whole["dissipated"]);
+    let work = number(&whole["work_of_loading"]) + number(&whole["work_of_unloading"]);
+    assert!((work - lost).abs() < 1e-7 * lost, "{work} {lost}");
+    let states = document["states"].as_array().unwrap();
+    assert!(states.len() > 200);
+    let place = ["control_value", "direction", "piece"];
+    assert_eq!(keys(&states[0]), STATE.into_iter().chain(place).collect());
+    let pieces: Vec<u64> = states.iter().map(|state| state["piece"].as_u64().unwrap()).collect();
+    assert!(pieces.is_sorted());
+}
+
+#[test]
+fn the_loop_of_the_paper_has_its_numbers() {
+    let document = Home::new().json(&["cycle", "fig-9-cycle"]);
+    let expected = [&["first-touch"][..], &["advance"; 5], &["turn"], &["recede"; 7], &["pull-off"]].concat();
+    assert_eq!(kinds(&document), expected);
+    // Two other programs agree on them.
+    assert!((number(&document["loop"]["dissipated"]) - 2.112_003_387_3e-3).abs() < 1e-12);
+    assert!((number(&document["events"][1]["control_value"]) - 0.011_284_022_05).abs() < 1e-10);
+    assert!((number(&document["events"][14]["before"]["force"]) + 0.017_090_567_2).abs() < 1e-10);
+}
+
+#[test]
+fn a_table_and_csv_say_the_same() {
+    let home = Home::new();
+    let table = home.quiet(&["cycle", "fig-9-weak"]);
+    for words in [
+        "Wavy sphere, A/λ = 0.05, weak adhesion\ncontrol: displacement\n",
+        "touch 0.097929  0.01846 [0.03275, 0.06248]  0.06361 [0.08800, 0.1061]",
+        "turn: asked for the approach 0.140000, reached 0.140000",
+        "most rings at a time: 1",
+        "energy lost: 1.298e-4, of it 1.242e-4 before the pull-off",
+    ] {
+        assert!(table.contains(words), "{words}: {table}");
+    }
+    let document = home.json(&["cycle", "fig-9-weak"]);
+    let csv = home.quiet(&["cycle", "fig-9-weak", "--format", "csv"]);
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let columns = "state,piece,direction,control_value,approach,force,energy,contact_area,contact,inner_radius,outer_radius";
+    assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>().join(","), columns);
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let mut next = rows.iter();
+    for (i, state) in document["states"].as_array().unwrap().iter().enumerate() {
+        for (k, edges) in state["contacts"].as_array().unwrap().iter().enumerate() {
+            let row = next.next().unwrap();
+            assert_eq!((&row[0], &row[8]), (&*i.to_string(), &*k.to_string()));
+            assert_eq!(row[2], *state["direction"].as_str().unwrap());
+            for (column, value) in [(5, &state["force"]), (9, &edges[0]), (10, &edges[1])] {
+                assert_eq!(row[column].parse::<f64>().unwrap(), number(value));
+            }
+        }
+    }
+    assert!(next.next().is_none());
+    // By the ending of the file.
+    home.quiet(&["cycle", "fig-9-weak", "-o", "loop.csv"]);
+    assert_eq!(home.text("loop.csv"), csv);
+    home.quiet(&["cycle", "fig-9-weak", "-o", "loop.json"]);
+    assert_eq!(serde_json::from_str::<Value>(&home.text("loop.json")).unwrap(), document);
+}
+
+#[test]
+fn a_loop_turns_where_it_is_told() {
+    let home = Home::new();
+    let turn = |more: &[&str]| {
+        let document = home.json(&[&["cycle", "fig-9-weak", "--no-area"], more].concat());
+        let turn = &document["turn"];
+        (turn["of"].as_str().unwrap().to_owned(), number(&turn["asked"]), number(&turn["reached"]), document)
+    };
+    for (flag, value, of) in [
+        ("--to-approach", "0.05", "approach"),
+        ("--to-force", "0.01", "force"),
+        ("--to-control", "0.05", "control_value"),
+    ] {
+        let (found, asked, reached, _) = turn(&[flag, value]);
+        let value: f64 = value.parse().unwrap();
+        assert_eq!((&*found, asked), (of, value));
+        assert!((reached - value).abs() < 1e-9, "{flag}: {reached}");
+    }
+    // The edge jumps over a radius: the state is the first beyond it.
+    let (of, asked, reached, document) = turn(&["--to-radius", "0.13"]);
+    assert_eq!((&*of, asked), ("contact_radius", 0.13));
+    assert!(reached > 0.15 && document["events"].as_array().unwrap().iter().any(|e| e["kind"] == "turn"));
+    // Controls of other kinds: what is given is what they hold.
+    let (of, _, reached, document) = turn(&["--control", "force", "--to-control", "0.01"]);
+    assert_eq!((&*of, reached, &document["control"]), ("control_value", 0.01, &"force".into()));
+    assert!(document["loop"]["dissipated"].is_null() && document["loop"]["work_of_unloading"].is_null());
+    assert!(number(&document["loop"]["dissipated_before_pull_off"]) > 0.0);
+    let (_, _, reached, document) = turn(&["--control", "stiffness=0.2", "--to-control", "0.06"]);
+    assert!((reached - 0.06).abs() < 1e-12 && near(&document["control"]["stiffness"], 0.2));
+    // Without areas they are null, and nothing else changes.
+    let (.., without) = turn(&[]);
+    let with = home.json(&["cycle", "fig-9-weak"]);
+    assert!(without["loop"]["dissipated_by_area"].is_null());
+    assert!(without["events"].as_array().unwrap().iter().all(|event| event["dissipated_by_area"].is_null()));
+    assert!(near(&with["loop"]["dissipated_by_area"], number(&without["loop"]["dissipated"])));
+    assert_eq!(with["states"], without["states"]);
+}
+
+#[test]
+fn the_turn_of_a_preset_comes_from_the_file_and_is_set() {
+    let home = Home::new();
+    let of = |arguments: &[&str]| {
+        let document = home.json(&[&["cycle", "--no-area"], arguments].concat());
+        (document["turn"]["of"].as_str().unwrap().to_owned(), number(&document["turn"]["asked"]))
+    };
+    // Where nothing is said: the radius at which the unloading starts.
+    assert_eq!(of(&["wavy-sphere"]), ("contact_radius".to_owned(), 0.41));
+    assert_eq!(of(&["fig-9-weak"]), ("approach".to_owned(), 0.14));
+    // One replaces another.
+    assert_eq!(of(&["fig-9-weak", "--set", "path.turn_force=0.01"]), ("force".to_owned(), 0.01));
+    assert_eq!(
+        of(&["fig-9-weak", "--set", "path.turn_contact_radius=0.2"]),
+        ("contact_radius".to_owned(), 0.2)
+    );
+    let text = home.quiet(&["presets", "show", "fig-9-weak"]);
+    home.file("mine.toml", &text.replace("turn_approach = 0.14", "turn_force = 0.02"));
+    assert_eq!(of(&["./mine.toml"]), ("force".to_owned(), 0.02));
+    home.file("two.toml", &format!("{text}turn_force = 0.02\n"));
+    home.refused(&["cycle", "./two.toml"], &["turn_approach", "turn_force"]);
+    // Units, in a preset that has them.
+    let (kind, asked) = of(&["fig-9-si", "--set", "path.turn_approach=10um"]);
+    assert!(kind == "approach" && (asked - 1e-5).abs() < 1e-18, "{asked}");
+    let (kind, asked) = of(&["fig-9-si", "--to-radius", "0.3mm"]);
+    assert!(kind == "contact_radius" && (asked - 3e-4).abs() < 1e-16, "{asked}");
+    home.refused(&["cycle", "fig-9-si", "--to-radius", "3mN"], &["--to-radius"]);
+}
+
+#[test]
+fn what_cannot_be_is_said_with_the_number_that_would_do() {
+    let home = Home::new();
+    home.refused(&["cycle", "fig-9-weak", "--to-approach", "-0.01"], &["-0.01", "0"]);
+    home.refused(&["cycle", "fig-9-weak", "--to-approach", "1", "--to-force", "1"], &["--to-force"]);
+    home.refused(&["cycle", "fig-9-weak", "--to-approach", "x"], &["--to-approach"]);
+    home.refused(&["cycle", "fig-9-weak", "--to-radius", "-1"], &[]);
+    home.refused(&["cycle", "fig-9-weak", "--control", "glue"], &["--control"]);
+    // Beyond the rows of a profile.
+    home.refused(&["cycle", "profile", "--to-radius", "1000"], &["1000"]);
+    home.refused(&["cycle", "profile", "--to-approach", "1000"], &["approach"]);
+    // Without adhesion nothing bears a pull.
+    let zero = ["--set", "material.work_of_adhesion=0"];
+    for flags in
+        [["--control", "force", "--to-force", "-0.01"], ["--control", "force", "--to-control", "-0.01"]]
+    {
+        home.refused(&[&["cycle", "fig-9-weak"], &zero[..], &flags[..]].concat(), &["0"]);
+    }
+    home.refused(&["cycle", "nothing"], &["nothing"]);
+}
+
+#[test]
+fn strict_makes_a_warning_a_failure_and_writes_all_the_same() {
+    let home = Home::new();
+    assert!(home.quiet(&["cycle", "fig-9-weak", "--strict"]).contains("pull-off"));
+    let range = "material.range_of_action=0.1";
+    let ended = home.run(&["cycle", "fig-9-weak", "--set", range, "--strict"]);
+    assert_eq!(ended.status, 3, "{}", ended.err);
+    assert!(ended.out.contains("pull-off") && ended.err.contains("Tabor"), "{}", ended.err);
+    assert_eq!(home.run(&["cycle", "fig-9-weak", "--set", range]).status, 0);
+}
+
+#[test]
+fn a_signal_ends_it_and_leaves_no_file() {
+    let home = Home::new();
+    // Long enough that the signal comes before the end.
+    let long = [
+        "cycle",
+        "fig-9-weak",
+        "--set",
+        "gap.wavelength=0.005",
+        "--set",
+        "gap.amplitude=2.5e-5",
+        "--set",
+        "material.work_of_adhesion=1e-9",
+        "-o",
+        "loop.json",
+    ];
+    let child = home.command(&long).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    let output = child.wait_with_output().unwrap();
+    use std::os::unix::process::ExitStatusExt;
+    let ended = output.status.signal() == Some(2) || output.status.code() == Some(130);
+    assert!(ended, "{:?} {}", output.status, String::from_utf8_lossy(&output.stderr));
+    assert!(!home.path("loop.json").exists());
+    let left = std::fs::read_dir(home.folder()).unwrap().count();
+    assert!(left <= 1, "{left} files left");
+}
+
+#[test]
+fn a_gap_whose_first_touch_is_a_ring() {
+    let document = Home::new().json(&["cycle", "crater"]);
+    let first = &document["events"][0];
+    assert!(number(&first["radius"]) > 0.1 && number(&first["control_value"]) < 0.0);
+    let contacts = first["after"]["contacts"].as_array().unwrap();
+    assert!(contacts.len() == 1 && number(&contacts[0][0]) > 0.05);
+    assert_eq!(kinds(&document), ["first-touch", "advance", "turn", "pull-off"]);
+}
+
+#[test]
+fn without_adhesion_the_way_back_is_the_way_there() {
+    let home = Home::new();
+    let set = ["--set", "material.work_of_adhesion=0", "--to-approach", "0.06"];
+    let document = home.json(&[&["cycle", "fig-9-weak"], &set[..]].concat());
+    let events = document["events"].as_array().unwrap();
+    assert!(events.iter().all(|event| number(&event["dissipated"]) == 0.0));
+    let count = |kind: &str| kinds(&document).into_iter().filter(|found| *found == kind).count();
+    assert_eq!((count("touch"), count("vanish")), (5, 5));
+    let Ended { status, .. } = home.run(&["plot", "fig-9-weak", "--view", "contact-map", set[0], set[1]]);
+    assert_eq!(status, 0);
+}
