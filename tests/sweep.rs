@@ -563,10 +563,10 @@ values = [0.0, 1e-5, 1e-4, 0.0039788735772973835]
     let radius = home.numbers("r.csv", "first_touch_radius");
     assert!((radius[2] - 0.007_794_0).abs() < 1e-7 && (radius[3] - 0.261_057_6).abs() < 1e-7);
     assert!((home.numbers("r.csv", "first_touch_force")[3] + 0.012_934_170_6).abs() < 1e-10);
-    assert_eq!(home.numbers("r.csv", "touches")[1..], [8.0, 7.0, 0.0]);
+    assert_eq!(home.numbers("r.csv", "touches")[1..], [7.0, 7.0, 0.0]);
     assert_eq!(home.numbers("r.csv", "rings_at_most")[2..], [1.0, 0.0]);
     let share = home.numbers("r.csv", "contact_share");
-    assert!(share[0] < 0.9 && (share[2] - 1.0).abs() < 1e-12 && (share[3] - 1.0).abs() < 1e-12, "{share:?}");
+    assert!(share[0] < 0.95 && (share[2] - 1.0).abs() < 1e-12 && (share[3] - 1.0).abs() < 1e-12, "{share:?}");
     // Under a dead load the pull-off has no bound.
     assert!(home.columns("r.csv", &["cycle_loss_force"])[0][1..].iter().all(String::is_empty));
 }

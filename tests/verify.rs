@@ -53,12 +53,16 @@ fn the_groups_are_these() {
     Fig. 9 under displacement control, 200 rings
     Fig. 9 under force control, 200 rings
     Fig. 9 under stiffness=0.15 control, 200 rings
+    Rigid flat annulus, force over 2E*δb
+    Fig. 9: the loop up to δ = 0.14
+    Fig. 9, γ = 1e-4: the loop up to δ = 0.14
     Two of our own numbers: Fig. 9 under displacement control, exact basis
     Two of our own numbers: Fig. 9 under force control, exact basis
     Two of our own numbers: Fig. 9 under stiffness=0.15 control, exact basis
     Two of our own numbers: Fig. 9 under displacement control, 200 rings
     Two of our own numbers: Fig. 9 under force control, 200 rings
     Two of our own numbers: Fig. 9 under stiffness=0.15 control, 200 rings
+    Two of our own numbers: whole loops
     ");
     for group in GROUPS.iter() {
         let heading = group.title.chars().count() + group.measure.chars().count() + 3;

@@ -14,6 +14,7 @@
 //! | [`newton`] | the rounds of Newton-Raphson from a threefold contact radius |
 //! | [`figures`] | the smallest force and approach of Fig. 8 and 9 |
 //! | [`unloading`] | every limit point, landing and loss of Fig. 9 under three controls |
+//! | [`loops`] | a rigid annulus, and the whole loop with and without rings |
 //! | [`balance`] | the work of the device against what is stored and lost |
 //!
 //! All problems have E* = R = 1, so reduced and user's units are the same.
@@ -22,6 +23,7 @@ pub mod balance;
 pub mod cases;
 pub mod convergence;
 pub mod figures;
+pub mod loops;
 pub mod newton;
 pub mod row;
 pub mod settings;
@@ -54,6 +56,11 @@ pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
             own.push(ours);
         }
     }
+    let loops = loops::groups()?;
+    let is_own = |group: &Group| group.rows.iter().any(|row| row.other.is_some());
+    let (own_loops, loops): (Vec<Group>, Vec<Group>) = loops.into_iter().partition(is_own);
+    groups.extend(loops);
     groups.extend(own);
+    groups.extend(own_loops);
     Ok(groups)
 }
