@@ -28,11 +28,12 @@ const PAGES: [&str; 6] = [
     "examples/cluster/README.md",
 ];
 /// The generated parts; each is in some file.
-const PARTS: [&str; 10] = [
+const PARTS: [&str; 11] = [
     "screen",
     "keys",
     "preset keys",
     "output: -h",
+    "output: cycle fig-9-weak",
     "output: presets list",
     "output: sweep quantities",
     "output: trace wavy-sphere | head -1",
