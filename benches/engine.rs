@@ -6,11 +6,13 @@
 
 use divan::{Bencher, black_box};
 use pulloff::store::Store;
+use pulloff_engine::annuli::{Contacts, Ground, Wanted};
 use pulloff_engine::case::Case;
 use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::quasistatic::cycle::{Areas, EVEN, Setting, Turn, cycle};
 use pulloff_engine::ritz::{Grading, Rings};
 use std::sync::Arc;
 
@@ -189,4 +191,47 @@ fn exact_unload_by_force(bencher: Bencher) {
 #[divan::bench(max_time = 5)]
 fn exact_unload_by_spring(bencher: Bencher) {
     unload(bencher, &fig_9_exact(), Control::Stiffness(0.15));
+}
+
+/// The gap of Fig. 9, as far as three rings go.
+fn ground() -> Ground {
+    Ground::of(problem().gap, 0.6).unwrap()
+}
+
+/// A disc and the rings on the next crests, with all derivatives by the edges.
+#[divan::bench(args = [1, 3])]
+fn state_with_rings(bencher: Bencher, rings: u32) {
+    let ground = ground();
+    let ring = |crest: u32| [0.05 * f64::from(crest) - 0.008, 0.05 * f64::from(crest) + 0.007];
+    let contacts = Contacts { disc: 0.12, rings: (3..3 + rings).map(ring).collect() };
+    bencher.bench_local(|| {
+        let state = ground.state(black_box(&contacts), Wanted::Rates).unwrap();
+        state.jacobian(black_box(0.02), ground.slope(contacts.disc))
+    });
+}
+
+/// The loop on the waves of Fig. 9 up to this approach, its table made anew, losses by energy alone.
+fn whole_loop(bencher: Bencher, work_of_adhesion: f64, turn: f64) {
+    let gap = problem().gap;
+    let turn = Turn::Approach(turn);
+    let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
+    bencher.bench_local(|| {
+        let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &mut || true).unwrap());
+        cycle(&table, black_box(work_of_adhesion), &setting, &|_| true).unwrap()
+    });
+}
+
+#[divan::bench(max_time = 5)]
+fn loop_of_fig_9(bencher: Bencher) {
+    whole_loop(bencher, problem().work_of_adhesion, 0.14);
+}
+
+#[divan::bench(max_time = 5)]
+fn loop_of_weak_adhesion(bencher: Bencher) {
+    whole_loop(bencher, 1e-4, 0.14);
+}
+
+#[divan::bench(max_time = 5)]
+fn loop_of_very_weak_adhesion(bencher: Bencher) {
+    whole_loop(bencher, 1e-5, 0.14);
 }

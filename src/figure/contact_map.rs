@@ -10,7 +10,7 @@ use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::View;
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, PathStateReport};
+use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, CycleStateReport, PathStateReport};
 use pulloff_engine::units::Quantity;
 
 const VIEW: View = View::ContactMap;
@@ -62,7 +62,7 @@ pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
     // No room below the axis of the bodies.
     figure.bounds = Bounds { y: [0.0, bounds.y[1]], ..bounds };
     let jumps = report.events.iter().filter(|event| event.before != event.after);
-    figure.lines.extend(jumps.filter_map(|event| jump(event, way, scale)));
+    figure.lines.extend(jumps.map(|event| jump(event, way, scale)));
     figure.marks.extend(report.events.iter().filter_map(|event| mark(event, way, scale)));
     if let Some(turn) = report.events.iter().find(|event| event.kind == "turn") {
         let at = way.at("loading", turn.control_value);
@@ -99,14 +99,12 @@ impl<'a> Way<'a> {
 }
 
 /// The outermost edge on a jump, upright: the control is held.
-fn jump(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Line> {
+fn jump(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
     let x = way.at(event.direction, event.control_value);
-    let edge = |state: &Option<_>| {
-        let radius = |state: &pulloff_engine::report::cycle::CycleStateReport| state.contact_radius;
-        scale.radius(state.as_ref().map_or(0.0, radius))
+    let edge = |state: &Option<CycleStateReport>| {
+        (x, scale.radius(state.as_ref().map_or(0.0, |state| state.contact_radius)))
     };
-    let (before, after) = (edge(&event.before), edge(&event.after));
-    (before != after).then(|| Line::new(Role::Jump, "jump", vec![(x, before), (x, after)]))
+    Line::new(Role::Jump, "jump", vec![edge(&event.before), edge(&event.after)])
 }
 
 /// Where a crest touches, contacts merge or split, and the bodies come apart.

@@ -130,7 +130,7 @@ fn areas(report: &CycleReport, curve: &[CurvePoint], scale: Scale<'_>) -> Vec<Ar
     let held = report.events.iter().filter_map(|event| ends(report.control, event));
     let around = report.states.iter().map(|at| [at.state.approach, at.state.force]);
     // From the first touch round and along P = 0 back.
-    let [first, last] = [held.clone().next(), held.last()];
+    let [first, last] = [held.clone().next(), held.clone().next_back()];
     let first = first.map(|[before, _]| [before[0], before[1]]);
     let last = last.map(|[_, after]| [after[0], after[1]]);
     vec![shown(first.into_iter().chain(around).chain(last).collect(), report.totals.dissipated)]

@@ -36,8 +36,8 @@ pub fn hatch(
         let (_, y) = bounds.at((0.0, up));
         let crossings = crossings(outline, y);
         let is_filled = |column: &usize| match texture {
-            Texture::Slanting => (column + apart * rows - row) % apart == 0,
-            Texture::Dotted => row % 2 == 0 && column % 2 == 0,
+            Texture::Slanting => (column + apart * rows - row).is_multiple_of(apart),
+            Texture::Dotted => row.is_multiple_of(2) && column.is_multiple_of(2),
         };
         for column in (0..columns).filter(is_filled) {
             let right = (column as f64 + 0.5) / columns as f64;
