@@ -230,13 +230,13 @@ fn what_is_no_session_is_refused_in_words() {
     let bytes = document(&session.model);
     let text = String::from_utf8(bytes.clone()).unwrap();
     let told = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
-    let future = text.replacen("\"format\":1", "\"format\":2", 1).replacen("0.1.0", "9.9.9", 1);
+    let future = text.replacen("\"format\":1", "\"format\":3", 1).replacen("0.1.0", "9.9.9", 1);
     assert!(
-        told(&future).contains("format 2, of a later pulloff (it was written by 9.9.9)"),
+        told(&future).contains("format 3, of a later pulloff (it was written by 9.9.9)"),
         "{}",
         told(&future)
     );
-    assert!(matches!(summary(future.as_bytes()), Err(Unreadable::Future { format: 2, .. })));
+    assert!(matches!(summary(future.as_bytes()), Err(Unreadable::Future { format: 3, .. })));
     // Nothing but the format of a later one is looked at.
     assert!(matches!(read(br#"{"format":3,"program_version":"3"}"#), Err(Unreadable::Future { .. })));
     for cut in (0..bytes.len() - 2).step_by(97) {

@@ -8,6 +8,7 @@
 //! | [`beside`] | the data of a profile copied beside a preset |
 //! | [`name`] | which names a person's preset may have |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
+//! | [`hash`] | names that follow from a content |
 //! | [`stream`] | standard input and output, pipes and devices, which are read and written straight |
 //! | [`atomic`] | writing a file whole or not at all |
 //! | [`temporary`] | the temporary file of a save, and what a killed save has left |
@@ -17,6 +18,7 @@ pub mod atomic;
 pub mod beside;
 pub mod data;
 pub mod file;
+pub mod hash;
 pub mod lock;
 pub mod name;
 pub mod presets;

@@ -8,6 +8,7 @@ use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
 use crate::mend::Mend;
 use crate::store::file::{self, FileError};
+use crate::store::hash::{hex, sha256};
 use crate::store::{Store, atomic, stream};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
@@ -177,7 +178,7 @@ impl Spec {
     /// A hash of the canonical form.
     #[must_use]
     pub fn identity(&self) -> String {
-        hex(Sha256::digest(self.canonical().as_bytes()).as_slice())
+        sha256(self.canonical().as_bytes())
     }
 
     /// Hashes of the measured profiles it reads, that of the preset first: their names say nothing of their content.
@@ -239,13 +240,6 @@ fn digest(preset: &Preset) -> Option<String> {
         hash.update(x.to_bits().to_le_bytes());
     }
     Some(hex(hash.finalize().as_slice()))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 /// `preset` with the assignments of `set`.

@@ -175,10 +175,9 @@ impl Autosave {
         if is_new {
             writer.claim = Some(self.0.archive.begin(&snapshot.source.shown())?);
         }
-        let Some(claim) = &writer.claim else { return Ok(()) };
+        let Some(claim) = &mut writer.claim else { return Ok(()) };
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        let document = Document::new(snapshot, ended, now).json().map_err(ArchiveError::Document)?;
-        claim.write(&document)?;
+        claim.save(Document::new(snapshot, ended, now))?;
         (writer.written, writer.before) = (Some((snapshot.mark(), ended)), None);
         if is_new {
             self.0.archive.make_room(claim.name());

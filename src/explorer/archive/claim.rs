@@ -1,6 +1,8 @@
 //! The right to write one session.
 
+use super::data::Data;
 use super::{ArchiveError, ENDING, failed, lock_of};
+use crate::explorer::session::Document;
 use crate::store::lock::FileLock;
 use crate::store::{Overwrite, write_atomically};
 use std::path::{Path, PathBuf};
@@ -10,6 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct Claim {
     name: String,
     path: PathBuf,
+    data: Data,
     _lock: FileLock,
 }
 
@@ -19,13 +22,30 @@ impl Claim {
         let lock = lock_of(folder, name);
         let held = FileLock::acquire(&lock).map_err(failed(&lock, "lock the session"))?;
         let lock = held.ok_or_else(|| ArchiveError::Running { name: name.to_owned() })?;
-        Ok(Self { name: name.to_owned(), path: folder.join(format!("{name}.{ENDING}")), _lock: lock })
+        Ok(Self {
+            name: name.to_owned(),
+            path: folder.join(format!("{name}.{ENDING}")),
+            data: Data::beside(folder),
+            _lock: lock,
+        })
     }
 
     /// The session's name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Writes `document` whole or not at all, and first the rows of its profiles where they are in no file yet.
+    pub fn save(&mut self, mut document: Document) -> Result<(), ArchiveError> {
+        let mut held = None;
+        document.lay_aside(|rows| {
+            if held.is_none() {
+                held = Some(self.data.hold()?);
+            }
+            self.data.keep(rows)
+        })?;
+        self.write(&document.json().map_err(ArchiveError::Document)?)
     }
 
     /// Writes the session whole or not at all.

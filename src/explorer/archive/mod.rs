@@ -7,15 +7,18 @@
 //! | file | what lives there |
 //! |---|---|
 //! | `mod.rs` | the folder: list, load, delete, and room for new ones |
+//! | `data` | the rows of measured profiles, beside the sessions that use them |
 //! | [`claim`] | the right to write one session |
 //! | [`autosave`] | writes the newest state of a session every few seconds and at its end |
 
 pub mod autosave;
 pub mod claim;
+mod data;
 
 pub use autosave::Autosave;
 pub use claim::Claim;
 
+use self::data::{Data, named_in};
 use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
 use crate::mend::Mend;
 use crate::store::WriteError;
@@ -25,6 +28,7 @@ use crate::store::name::is_well_formed;
 use etcetera::BaseStrategy;
 use pulloff_engine::text::{closest, quote, show_path};
 use std::cmp::Reverse;
+use std::collections::HashMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -58,6 +62,9 @@ pub enum ArchiveError {
     Running { name: String },
     #[error("{path}: {cause}")]
     Unreadable { path: String, cause: Unreadable },
+    /// The rows of a profile are not as they were written.
+    #[error("{path}: the rows of its profile \"{name}\" are lost: {why}")]
+    Data { path: String, name: String, why: String },
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -79,6 +86,7 @@ impl Mend for ArchiveError {
             | Self::NotFound { .. }
             | Self::Empty
             | Self::Running { .. }
+            | Self::Data { .. }
             | Self::Unreadable { .. } => true,
         }
     }
@@ -218,7 +226,10 @@ impl Archive {
         let (bytes, _) = read_bytes(&path, LARGEST)?;
         let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
         let summary = summary(&bytes).map_err(unreadable)?;
-        let snapshot = Document::read(&bytes).and_then(Document::snapshot).map_err(unreadable)?;
+        let mut document = Document::read(&bytes).map_err(unreadable)?;
+        let data = Data::beside(self.folder_or()?);
+        document.take_back(|hash, profile| data.fetch(&path, hash, profile))?;
+        let snapshot = document.snapshot().map_err(unreadable)?;
         Ok(Held { claim, summary, snapshot })
     }
 
@@ -254,11 +265,27 @@ impl Archive {
         }
     }
 
-    /// Removes a session.
+    /// Removes a session, and the data that no other uses.
     pub fn delete(&self, name: &str) -> Result<(), ArchiveError> {
+        self.remove(name)?;
+        let folder = self.folder_or()?;
+        Data::beside(folder).sweep(folder);
+        Ok(())
+    }
+
+    fn remove(&self, name: &str) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
         let _claim = Claim::of(self.folder_or()?, name)?;
         fs::remove_file(&path).map_err(failed(&path, "remove it"))
+    }
+
+    /// The bytes of the data that a session uses and none before it did, which are taken out of `sizes`.
+    fn bytes_of_data(&self, name: &str, sizes: &mut HashMap<String, u64>) -> u64 {
+        if sizes.is_empty() {
+            return 0;
+        }
+        let bytes = self.bytes(name).unwrap_or_default();
+        named_in(&bytes).filter_map(|hash| sizes.remove(hash)).sum()
     }
 
     /// The right to write a new session, called after `base` and the next number.
@@ -284,17 +311,21 @@ impl Archive {
         }
     }
 
-    /// Makes room: removes the oldest sessions beyond what is kept, and what killed programs have left behind.
+    /// Makes room: removes the oldest sessions beyond what is kept, data that none uses, and what killed programs have
+    /// left behind.
     pub fn make_room(&self, keep: &str) {
         let (Some(folder), Ok(entries)) = (&self.folder, self.list()) else { return };
+        let data = Data::beside(folder);
+        let mut sizes = data.sizes();
         let (mut count, mut bytes) = (0, 0);
         for entry in entries {
-            (count, bytes) = (count + 1, bytes + entry.bytes);
+            (count, bytes) = (count + 1, bytes + entry.bytes + self.bytes_of_data(&entry.name, &mut sizes));
             if (count > MOST || bytes > MOST_BYTES) && entry.name != keep {
                 // A running one stays, and one that cannot be removed as well.
-                let _ = self.delete(&entry.name);
+                let _ = self.remove(&entry.name);
             }
         }
+        data.sweep(folder);
         let left = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).filter(|file| {
             let age = file.metadata().and_then(|metadata| metadata.modified()).map(|at| at.elapsed());
             let is_old = matches!(age, Ok(Ok(age)) if age > STALE);

@@ -1,6 +1,7 @@
 use super::*;
 use crate::explorer::{Command, Id, Inline, Model, open, update};
 use crate::store::Store;
+use crate::store::hash::sha256;
 use std::fs::{File, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::sync::mpsc::channel;
@@ -50,6 +51,129 @@ impl Bench {
 }
 
 const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A session of a measured profile, saved twice with a step between; what it was at the end.
+fn with_profile(bench: &mut Bench, curvature: f64) -> Snapshot {
+    let path = bench.folder.path().join("scan.csv");
+    let rows: Vec<String> = (0..200)
+        .map(|i| f64::from(i) / 100.0)
+        .map(|r| format!("{r},{}", curvature * r * r + r / 3e5))
+        .collect();
+    fs::write(&path, rows.join("\n")).unwrap();
+    let set = |key: &'static str, text: &str| Command::Set { key: key.into(), text: text.to_owned() };
+    bench.does(set("gap.shape", "profile"));
+    bench.does(set("gap.file", path.to_str().unwrap()));
+    let mut claim = bench.archive().begin("scan").unwrap();
+    claim.save(Document::new(&bench.does(Id::Step), Ended::Running, 0)).unwrap();
+    let last = bench.does(Id::Step);
+    claim.save(Document::new(&last, Ended::Quit, 0)).unwrap();
+    fs::remove_file(path).unwrap();
+    last
+}
+
+/// The files of the data of [`with_profile`]; the profile that comes with the program was walked in too, on the way.
+fn data(bench: &Bench) -> Vec<PathBuf> {
+    let files = fs::read_dir(bench.archive().folder().unwrap().join("data"));
+    let files = files.into_iter().flatten().map(|file| file.unwrap().path());
+    files.filter(|file| fs::read_to_string(file).unwrap().contains("\n1.99,")).collect()
+}
+
+#[test]
+fn the_rows_of_a_profile_are_written_once_beside_the_session_and_come_back_bit_for_bit() {
+    let mut bench = Bench::new();
+    let snapshot = with_profile(&mut bench, 0.5);
+    let mode = |path: &Path| path.metadata().unwrap().permissions().mode() & 0o777;
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let session = folder.join("scan-1.json");
+    let files = data(&bench);
+    let [file] = &files[..] else { panic!("{files:?}") };
+    assert_eq!(file.file_stem().unwrap().to_str().unwrap(), sha256(&fs::read(file).unwrap()));
+    assert_eq!((mode(&folder.join("data")), mode(file)), (mode(&folder), mode(&session)));
+    // The session names them and has no row itself.
+    let text = fs::read_to_string(&session).unwrap();
+    assert!(text.contains(file.file_stem().unwrap().to_str().unwrap()) && !text.contains("\"radii\""));
+    // What is read back is written as it was.
+    let within = |snapshot: &Snapshot| Document::new(snapshot, Ended::Quit, 0).json().unwrap();
+    let mut held = bench.archive().load("scan-1").unwrap();
+    assert_eq!(held.snapshot.preset, snapshot.preset);
+    assert_eq!(String::from_utf8(within(&held.snapshot)), String::from_utf8(within(&snapshot)));
+    // Neither the session taken up nor another one with the same rows writes them again.
+    let then = SystemTime::now() - Duration::from_secs(5000);
+    File::options().write(true).open(file).unwrap().set_modified(then).unwrap();
+    let before = (file.metadata().unwrap().modified().unwrap(), fs::read(file).unwrap());
+    held.claim.save(Document::new(&held.snapshot, Ended::Running, 0)).unwrap();
+    with_profile(&mut bench, 0.5);
+    assert_eq!((file.metadata().unwrap().modified().unwrap(), fs::read(file).unwrap()), before);
+    assert_eq!(data(&bench), files);
+    // A session of before has its rows within.
+    let old = bench.archive().begin("old").unwrap();
+    old.write(&within(&snapshot)).unwrap();
+    drop(old);
+    assert!(fs::read_to_string(folder.join("old-1.json")).unwrap().contains("\"radii\":["));
+    fs::remove_file(file).unwrap();
+    assert_eq!(bench.archive().load("old-1").unwrap().snapshot.preset, snapshot.preset);
+    // Data that are gone while the program runs are written again.
+    held.claim.save(Document::new(&held.snapshot, Ended::Quit, 0)).unwrap();
+    drop(held);
+    assert_eq!((data(&bench), fs::read(file).unwrap()), (files, before.1));
+}
+
+#[test]
+fn data_that_are_gone_or_altered_are_named() {
+    let mut bench = Bench::new();
+    with_profile(&mut bench, 0.5);
+    let file = data(&bench).remove(0);
+    let error = || bench.archive().load("scan-1").unwrap_err().to_string();
+    let whole = fs::read_to_string(&file).unwrap();
+    fs::write(&file, whole.replacen("0.02,", "0.021,", 1)).unwrap();
+    assert!(
+        error().contains("scan-1.json: the rows of its profile \"")
+            && error().contains("scan.csv\" are lost: ")
+            && error().ends_with(".csv was changed: its SHA-256 is not its name"),
+        "{}",
+        error()
+    );
+    fs::remove_file(&file).unwrap();
+    assert!(error().ends_with(".csv is gone"), "{}", error());
+    // The session stays where it is, for the data may come back; what it holds besides is still told.
+    assert_eq!(bench.archive().summary("scan-1").unwrap().steps, 4);
+    // A name that leads elsewhere is none.
+    let session = bench.archive().folder().unwrap().join("scan-1.json");
+    let text = fs::read_to_string(&session).unwrap();
+    let hash = file.file_stem().unwrap().to_str().unwrap();
+    fs::write(&session, text.replace(hash, "../../scan")).unwrap();
+    assert!(error().ends_with("\"../../scan\" is no SHA-256"), "{}", error());
+    fs::write(&session, text).unwrap();
+    fs::write(&file, whole).unwrap();
+    bench.archive().load("scan-1").unwrap();
+}
+
+#[test]
+fn data_go_with_the_last_session_that_uses_them() {
+    let mut bench = Bench::new();
+    with_profile(&mut bench, 0.5);
+    with_profile(&mut bench, 0.5);
+    with_profile(&mut bench, 0.25);
+    // The third walked in the first profile too.
+    let names = |bench: &Bench| data(bench).len();
+    assert_eq!(names(&bench), 2);
+    bench.archive().delete("scan-1").unwrap();
+    bench.archive().delete("scan-2").unwrap();
+    assert_eq!(names(&bench), 2);
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let damaged = folder.join("scan-3.damaged");
+    fs::copy(folder.join("scan-3.json"), &damaged).unwrap();
+    bench.archive().delete("scan-3").unwrap();
+    assert_eq!(names(&bench), 2, "one kept aside counts");
+    fs::remove_file(damaged).unwrap();
+    // As long as somebody is between data and session all stay.
+    let held = Data::beside(&folder).hold().unwrap();
+    bench.archive().make_room("");
+    assert_eq!(names(&bench), 2);
+    drop(held);
+    bench.archive().make_room("");
+    assert_eq!(names(&bench), 0);
+}
 
 #[test]
 fn nothing_is_written_before_there_is_something_to_lose() {

@@ -6,10 +6,11 @@ use super::number::{Real, floats, reals};
 use super::problems::{Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
-use super::unreadable::{FORMAT, Unreadable};
+use super::unreadable::{FORMAT, Unreadable, WITHIN};
 use crate::explorer::journal::{Beginning, Kept, Replay};
 use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
+use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -155,7 +156,7 @@ impl Origin {
 }
 
 impl Document {
-    /// The document of a snapshot, made `saved_at` seconds after 1970.
+    /// The document of a snapshot, made `saved_at` seconds after 1970. The rows of profiles are within.
     pub fn new(snapshot: &Snapshot, ended: Ended, saved_at: u64) -> Self {
         let mut problems = Collector::default();
         let preset = problems.preset(&snapshot.preset);
@@ -165,7 +166,7 @@ impl Document {
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
         let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
         Self {
-            format: FORMAT,
+            format: WITHIN,
             program_version: env!("CARGO_PKG_VERSION").to_owned(),
             ended,
             saved_at,
@@ -186,6 +187,27 @@ impl Document {
             cursor: snapshot.history.cursor(),
             nodes,
         }
+    }
+
+    /// Gives the rows of each profile to `keep`, which says the hash of the file they are in. The document then refers
+    /// to them by it.
+    /// Errors: That of `keep`.
+    pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Arc<Rows>) -> Result<String, E>) -> Result<(), E> {
+        self.problems.lay_aside(keep)?;
+        if self.problems.has_rows_beside() {
+            self.format = FORMAT;
+        }
+        Ok(())
+    }
+
+    /// Takes the rows of profiles back within: `fetch` gives r and h of the file with a hash; it is told the name of the
+    /// profile too.
+    /// Errors: That of `fetch`.
+    pub fn take_back<E>(
+        &mut self,
+        fetch: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+    ) -> Result<(), E> {
+        self.problems.take_back(fetch)
     }
 
     /// As JSON, in one line.
@@ -212,6 +234,7 @@ impl Document {
     }
 
     /// The snapshot of it; no problem is made ready and no file is read.
+    /// Errors: Something in it does not fit, or the rows of a profile were not taken back.
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
         let Restored { presets, settings, was_former } = self.problems.back()?;
         let preset = |number: usize| {

@@ -41,11 +41,25 @@ struct Scaled {
 }
 
 /// The rows of a profile, as they were: its file may change.
-#[derive(Debug, Serialize, Deserialize)]
-struct Profile {
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(from = "Written", into = "Written")]
+enum Profile {
+    /// In the document itself, as in all sessions of before.
+    Within(Arc<Rows>),
+    /// In a file of their own, named by its hash; `rows` has all but the two columns.
+    Beside { data: String, rows: Rows },
+}
+
+/// A profile as it is written.
+#[derive(Serialize, Deserialize)]
+struct Written {
     name: String,
     folder: Option<Place>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    data: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     radii: Vec<Real>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     gaps: Vec<Real>,
     unit: Option<String>,
     notes: Vec<String>,
@@ -120,14 +134,7 @@ impl Collector {
             return known;
         }
         self.rows.push(Arc::clone(rows));
-        self.problems.profiles.push(Profile {
-            name: rows.name.clone(),
-            folder: rows.folder.as_deref().map(Place::of),
-            radii: rows.radii.iter().copied().map(Real).collect(),
-            gaps: rows.gaps.iter().copied().map(Real).collect(),
-            unit: rows.unit.as_ref().map(Unit::ascii),
-            notes: rows.notes.clone(),
-        });
+        self.problems.profiles.push(Profile::Within(Arc::clone(rows)));
         self.rows.len() - 1
     }
 
@@ -136,17 +143,40 @@ impl Collector {
     }
 }
 
-impl Profile {
-    fn rows(self) -> Rows {
+impl From<Profile> for Written {
+    fn from(profile: Profile) -> Self {
+        let (rows, data) = match profile {
+            Profile::Within(rows) => (rows, None),
+            Profile::Beside { data, rows } => (Arc::new(rows), Some(data)),
+        };
+        let numbers = |column: &[f64]| column.iter().copied().map(Real).collect();
+        Self {
+            name: rows.name.clone(),
+            folder: rows.folder.as_deref().map(Place::of),
+            data,
+            radii: numbers(&rows.radii),
+            gaps: numbers(&rows.gaps),
+            unit: rows.unit.as_ref().map(Unit::ascii),
+            notes: rows.notes.clone(),
+        }
+    }
+}
+
+impl From<Written> for Profile {
+    fn from(written: Written) -> Self {
         let numbers = |column: Vec<Real>| column.into_iter().map(|real| real.0).collect();
-        Rows {
-            name: self.name,
-            folder: self.folder.map(Place::path),
-            radii: numbers(self.radii),
-            gaps: numbers(self.gaps),
-            unit: self.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
+        let rows = Rows {
+            name: written.name,
+            folder: written.folder.map(Place::path),
+            radii: numbers(written.radii),
+            gaps: numbers(written.gaps),
+            unit: written.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
             header: None,
-            notes: self.notes,
+            notes: written.notes,
+        };
+        match written.data {
+            Some(data) => Self::Beside { data, rows },
+            None => Self::Within(Arc::new(rows)),
         }
     }
 }
@@ -160,11 +190,50 @@ pub(super) struct Restored {
 }
 
 impl Problems {
+    /// Whether there are rows of profiles in files of their own.
+    pub(super) fn has_rows_beside(&self) -> bool {
+        self.profiles.iter().any(|profile| matches!(profile, Profile::Beside { .. }))
+    }
+
+    /// Gives the rows within to `keep`, which says the hash of the file they are in, and holds no more than that.
+    pub(super) fn lay_aside<E>(
+        &mut self,
+        mut keep: impl FnMut(&Arc<Rows>) -> Result<String, E>,
+    ) -> Result<(), E> {
+        for profile in &mut self.profiles {
+            if let Profile::Within(rows) = profile {
+                let data = keep(rows)?;
+                let Rows { name, folder, unit, notes, .. } = &**rows;
+                let (name, folder, unit) = (name.clone(), folder.clone(), unit.clone());
+                let rows = Rows { name, folder, unit, notes: notes.clone(), ..Rows::default() };
+                *profile = Profile::Beside { data, rows };
+            }
+        }
+        Ok(())
+    }
+
+    /// The way back: `fetch` gives the columns in the file of a hash; it is told the profile's name too.
+    pub(super) fn take_back<E>(
+        &mut self,
+        mut fetch: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+    ) -> Result<(), E> {
+        for profile in &mut self.profiles {
+            if let Profile::Beside { data, rows } = profile {
+                let [radii, gaps] = fetch(data, &rows.name)?;
+                *profile = Profile::Within(Arc::new(Rows { radii, gaps, ..std::mem::take(rows) }));
+            }
+        }
+        Ok(())
+    }
+
     /// The presets and settings, none of them made ready.
     pub(super) fn back(self) -> Result<Restored, Unreadable> {
-        let profiles: Vec<Arc<Rows>> =
-            self.profiles.into_iter().map(|saved| Arc::new(saved.rows())).collect();
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
+        let within = |profile| match profile {
+            Profile::Within(rows) => Ok(rows),
+            Profile::Beside { .. } => Err(missing("column of a profile")),
+        };
+        let profiles = self.profiles.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
         let preset = |saved: &Text| {
             let rows = saved.profile.map(|at| profiles.get(at).cloned().ok_or_else(|| missing("profile")));
             let preset = pulloff_engine::preset::read::read_holding(

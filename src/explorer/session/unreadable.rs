@@ -3,7 +3,9 @@
 use thiserror::Error;
 
 /// The version of the format. A larger one is refused; what is added without a new version has a default.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+/// The version of a session with nothing beside it, which programs before profiles had files of their own read as well.
+pub const WITHIN: u32 = 1;
 
 /// Why a document is no session of this program.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

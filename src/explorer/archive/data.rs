@@ -1,0 +1,214 @@
+//! The rows of measured profiles, in files beside the sessions that use them.
+//!
+//! A session is written every few seconds, and the rows of its profile stay the same: they are written once, to
+//! `data/HASH.csv` in the folder of sessions, where HASH is the SHA-256 of that file. Sessions with the same rows share it.
+//! The lock of the folder `data` is held from the look at the file until the session that refers to it is written, and
+//! whenever files that no session refers to are removed.
+
+use super::{ArchiveError, LARGEST, failed};
+use crate::store::file::{FileError, read_bytes};
+use crate::store::hash::{DIGITS, sha256};
+use crate::store::lock::{FolderLock, PATIENCE};
+use crate::store::{Overwrite, make_folder, write_atomically};
+use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::text::{quote, show_path};
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The folder of data, in that of the sessions.
+const FOLDER: &str = "data";
+/// The ending of a file of data.
+const ENDING: &str = "csv";
+/// Its first line.
+const HEADER: &str = "r,h";
+
+/// The data of one session, or of all.
+#[derive(Debug)]
+pub(super) struct Data {
+    folder: PathBuf,
+    /// What is in files already, with its hash: rows are written out and hashed once, not with every write.
+    known: Vec<(Arc<Rows>, String)>,
+}
+
+impl Data {
+    /// The data beside the sessions in the folder `sessions`.
+    pub(super) fn beside(sessions: &Path) -> Self {
+        Self { folder: sessions.join(FOLDER), known: Vec::new() }
+    }
+
+    fn path(&self, hash: &str) -> PathBuf {
+        self.folder.join(format!("{hash}.{ENDING}"))
+    }
+
+    /// Keeps anybody from removing data, until it is dropped.
+    pub(super) fn hold(&self) -> Result<Option<FolderLock>, ArchiveError> {
+        make_folder(&self.folder).map_err(failed(&self.folder, "make the folder"))?;
+        // Who waits in vain goes on: better a session whose data may be removed than none at all.
+        FolderLock::acquire(&self.folder, PATIENCE).map_err(failed(&self.folder, "lock it"))
+    }
+
+    /// Sees to it that `rows` are in a file, and says the hash that names it.
+    pub(super) fn keep(&mut self, rows: &Arc<Rows>) -> Result<String, ArchiveError> {
+        let known = self.known.iter().find(|(known, _)| Arc::ptr_eq(known, rows));
+        let known = known.map(|(_, hash)| hash.clone());
+        if let Some(hash) = &known
+            && self.path(hash).symlink_metadata().is_ok_and(|there| there.is_file())
+        {
+            return Ok(hash.clone());
+        }
+        let text = text(rows);
+        let hash = match known {
+            Some(hash) => hash,
+            None => {
+                let hash = sha256(text.as_bytes());
+                self.known.push((Arc::clone(rows), hash.clone()));
+                hash
+            }
+        };
+        let path = self.path(&hash);
+        // One that was altered is put right.
+        if !read_bytes(&path, LARGEST).is_ok_and(|(there, _)| there == text.as_bytes()) {
+            write_atomically(&path, text.as_bytes(), Overwrite::Always)?;
+        }
+        Ok(hash)
+    }
+
+    /// r and h of the data with this hash, for the profile `name` of the session in the file `session`.
+    pub(super) fn fetch(
+        &self,
+        session: &Path,
+        hash: &str,
+        name: &str,
+    ) -> Result<[Vec<f64>; 2], ArchiveError> {
+        let lost = |why: String| ArchiveError::Data { path: show_path(session), name: quote(name), why };
+        if !is_hash(hash) {
+            return Err(lost(format!("\"{}\" is no SHA-256", quote(hash))));
+        }
+        let path = self.path(hash);
+        let bytes = match read_bytes(&path, LARGEST) {
+            Ok((bytes, _)) => bytes,
+            Err(FileError::Io { path, cause }) if cause.kind() == io::ErrorKind::NotFound => {
+                return Err(lost(format!("{path} is gone")));
+            }
+            Err(error) => return Err(error.into()),
+        };
+        if sha256(&bytes) != hash {
+            return Err(lost(format!("{} was changed: its SHA-256 is not its name", show_path(&path))));
+        }
+        columns(&bytes).ok_or_else(|| lost(format!("{} holds no rows r,h", show_path(&path))))
+    }
+
+    /// The bytes of each file of data, by its hash.
+    pub(super) fn sizes(&self) -> HashMap<String, u64> {
+        let files = fs::read_dir(&self.folder).into_iter().flatten().filter_map(Result::ok);
+        let sizes = files.filter_map(|file| {
+            let path = PathBuf::from(file.file_name());
+            let hash = path.file_stem()?.to_str().filter(|stem| is_hash(stem))?.to_owned();
+            let metadata = file.metadata().ok().filter(fs::Metadata::is_file)?;
+            (path.extension()? == ENDING).then_some((hash, metadata.len()))
+        });
+        sizes.collect()
+    }
+
+    /// Removes the data that no file of the folder `sessions` names. As long as a session is being written, or one
+    /// cannot be read, all stay.
+    pub(super) fn sweep(&self, sessions: &Path) {
+        if self.sizes().is_empty() {
+            return;
+        }
+        let Ok(Some(_lock)) = FolderLock::acquire(&self.folder, Duration::ZERO) else { return };
+        let Ok(files) = fs::read_dir(sessions) else { return };
+        let mut named = HashSet::new();
+        for file in files {
+            // Those kept aside as damaged count too, and whatever else a person has put there.
+            let Ok(file) = file else { return };
+            if file.file_type().is_ok_and(|kind| kind.is_file()) {
+                match read_bytes(&file.path(), LARGEST) {
+                    Ok((bytes, _)) => named.extend(named_in(&bytes).map(str::to_owned)),
+                    Err(FileError::Io { cause, .. }) if cause.kind() == io::ErrorKind::NotFound => {}
+                    Err(_) => return,
+                }
+            }
+        }
+        for hash in self.sizes().keys().filter(|hash| !named.contains(*hash)) {
+            let _ = fs::remove_file(self.path(hash));
+        }
+    }
+}
+
+/// The hashes in the bytes of a session, whatever else of it can be read.
+pub(super) fn named_in(bytes: &[u8]) -> impl Iterator<Item = &str> {
+    let words = bytes.split(|byte| !byte.is_ascii_alphanumeric());
+    words.filter_map(|word| std::str::from_utf8(word).ok().filter(|word| is_hash(word)))
+}
+
+fn is_hash(text: &str) -> bool {
+    text.len() == DIGITS && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+}
+
+/// The columns of a profile as text, every digit of them.
+fn text(rows: &Rows) -> String {
+    let mut text = format!("{HEADER}\n");
+    for (r, h) in rows.radii.iter().zip(&rows.gaps) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{r:?},{h:?}");
+    }
+    text
+}
+
+/// The way back.
+fn columns(bytes: &[u8]) -> Option<[Vec<f64>; 2]> {
+    let mut lines = std::str::from_utf8(bytes).ok()?.lines();
+    lines.next().filter(|line| *line == HEADER)?;
+    let row = |line: &str| {
+        let (r, h) = line.split_once(',')?;
+        Some((r.parse::<f64>().ok()?, h.parse::<f64>().ok()?))
+    };
+    let (radii, gaps) = lines.map(row).collect::<Option<(Vec<f64>, Vec<f64>)>>()?;
+    Some([radii, gaps])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 200, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::default()
+        })]
+
+        #[test]
+        fn every_bit_of_the_columns_comes_back(
+            rows in prop::collection::vec((prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL
+                | prop::num::f64::ZERO, prop::num::f64::NORMAL | prop::num::f64::ZERO), 0..20),
+        ) {
+            let (radii, gaps): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+            let rows = Rows { radii, gaps, ..Rows::default() };
+            let [radii, gaps] = columns(text(&rows).as_bytes()).unwrap();
+            let bits = |column: &[f64]| column.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!((bits(&radii), bits(&gaps)), (bits(&rows.radii), bits(&rows.gaps)));
+        }
+    }
+
+    #[test]
+    fn what_is_no_table_of_two_columns_gives_none() {
+        for text in ["", "h,r\n", "r,h\n1\n", "r,h\n1,2,3\n", "r,h\n1,x\n", "1,2\n"] {
+            assert_eq!(columns(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(columns(b"\xff"), None);
+    }
+
+    #[test]
+    fn a_hash_is_found_in_whatever_is_left_of_a_session() {
+        let hash = sha256(b"rows");
+        let torn = format!("{{\"data\":\"{hash}\",\"text\":\"{hash}0 {}\",\"no", hash.to_uppercase());
+        assert_eq!(named_in(torn.as_bytes()).collect::<Vec<_>>(), [hash]);
+    }
+}

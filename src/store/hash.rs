@@ -1,0 +1,23 @@
+//! Names that follow from a content.
+
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+/// The digits of a [`sha256`].
+pub const DIGITS: usize = 64;
+
+/// The SHA-256 of `bytes` in hexadecimal digits.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(Sha256::digest(bytes).as_slice())
+}
+
+/// Two digits for each byte.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
