@@ -118,9 +118,16 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 fn every_view_a_closer_look_and_a_pin() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
     pty.wait_for(|screen| screen.contains("Events on the curve: 2"), "the curve");
-    for title in
-        ["s/λ over P/Pc", "s/λ over δ", "p/E* over r/λ", "gap over r/λ", "U over s/λ", "unloading: P/Pc"]
-    {
+    for title in [
+        "s/λ over P/Pc",
+        "s/λ over δ",
+        "p/E* over r/λ",
+        "gap over r/λ",
+        "U over s/λ",
+        "unloading: P/Pc",
+        "cycle: P/Pc",
+        "contacts over",
+    ] {
         pty.keys("t");
         pty.wait_for(|screen| screen.contains(title), title);
         // The state's own views come from a worker.

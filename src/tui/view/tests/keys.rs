@@ -28,6 +28,8 @@ fn sentences_name_the_keys_of_a_person() {
     says(&screen, "A         0.0025 ( )");
     says(&screen, "(F7: of the loop)");
     screen.press(KeyCode::F(7));
+    says(&screen, "(F7: walked 0)");
+    screen.press(KeyCode::F(7));
     says(&screen, "none yet: F2 runs to a limit point, J takes the jump");
     screen.keys("f");
     says(&screen, "that key does nothing here; F5 shows all keys");
