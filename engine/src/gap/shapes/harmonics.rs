@@ -16,9 +16,11 @@
 //! The feature length is the shortest wavelength with an amplitude. The exact solution is
 //! [`theory::harmonics`](crate::theory::harmonics).
 
+use crate::gap::lanes::map_lanes;
 use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
 use crate::gap::{function::Form, function::Wave};
 use std::f64::consts::TAU;
+use wide::f64x4;
 
 /// The most waves of one gap.
 pub const MOST_WAVES: usize = 1000;
@@ -44,6 +46,15 @@ struct Term {
     wavenumber: f64,
     phase_sin: f64,
     phase_cos: f64,
+}
+
+impl Term {
+    /// Sine and cosine of α = qr/2 and of α + φ, at four radii.
+    fn half_way(&self, r: f64x4) -> [f64x4; 4] {
+        let (sin, cos) = (r * (0.5 * self.wavenumber)).sin_cos();
+        let shifted_sin = sin * self.phase_cos + cos * self.phase_sin;
+        [sin, cos, shifted_sin, cos * self.phase_cos - sin * self.phase_sin]
+    }
 }
 
 /// h = r²/(2R) + Σ Aᵢ [cos φᵢ − cos(qᵢr + φᵢ)].
@@ -104,6 +115,36 @@ impl Gap for Harmonics {
             jet.third -= slope * q * q;
         }
         jet
+    }
+
+    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
+        map_lanes(nodes, [values], |x| {
+            let r = x * s;
+            let mut value = r * r / (2.0 * self.radius_of_curvature);
+            for term in &self.terms {
+                let [sin, _, shifted_sin, _] = term.half_way(r);
+                value += sin * shifted_sin * (2.0 * term.amplitude);
+            }
+            [value]
+        });
+    }
+
+    fn derivatives(&self, s: f64, nodes: &[f64], derivatives: [&mut [f64]; 3]) {
+        map_lanes(nodes, derivatives, |x| {
+            let r = x * s;
+            let mut first = r / self.radius_of_curvature;
+            let mut second = f64x4::splat(1.0 / self.radius_of_curvature);
+            let mut third = f64x4::ZERO;
+            for term in &self.terms {
+                let q = term.wavenumber;
+                let [sin, cos, shifted_sin, shifted_cos] = term.half_way(r);
+                let slope = (sin * shifted_cos + cos * shifted_sin) * (term.amplitude * q);
+                first += slope;
+                second += (cos * shifted_cos - sin * shifted_sin) * (term.amplitude * q * q);
+                third -= slope * (q * q);
+            }
+            [first, second, third]
+        });
     }
 
     fn feature_length(&self) -> Option<f64> {
@@ -202,6 +243,28 @@ mod tests {
         let r = 1e-12;
         let slope = 0.01 * q * 0.7_f64.sin();
         assert!((gap.jet(r).value / (slope * r) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn many_radii_at_once_are_those_one_by_one() {
+        let waves = vec![wave(0.003, 0.07, 0.3), wave(-0.001, 0.2, 1.1), wave(2e-5, 0.003, -2.0)];
+        let gap = Harmonics::new(0.8, waves).unwrap();
+        let nodes: Vec<f64> = (0..101).map(|i| 0.013 * f64::from(i)).collect();
+        let [mut values, mut first, mut second, mut third] = [const { [0.0; 101] }; 4];
+        gap.values(1.5, &nodes, &mut values);
+        gap.derivatives(1.5, &nodes, [&mut first, &mut second, &mut third]);
+        let q = TAU / 0.003;
+        for (i, x) in nodes.iter().enumerate() {
+            let jet = gap.jet(1.5 * x);
+            for (lane, alone, size) in [
+                (values[i], jet.value, 1.0),
+                (first[i], jet.first, 1.0),
+                (second[i], jet.second, q),
+                (third[i], jet.third, q * q),
+            ] {
+                assert!((lane - alone).abs() <= 1e-14 * size, "{x}: {lane} {alone}");
+            }
+        }
     }
 
     #[test]
