@@ -23,7 +23,6 @@ pub struct Flags {
     mouse: Option<bool>,
 }
 
-/// A build without the explorer has nothing to look at.
 /// Runs the explorer on a preset, or on the session `resume`: the newest where that is empty.
 pub fn run(
     problem: &Problem,

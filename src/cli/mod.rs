@@ -41,7 +41,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Explore adhesive contact: trace the equilibrium curve of a sphere on a surface and step its detachment.
+/// Explore adhesive contact: how two bodies stick, and by which jumps they come apart.
 #[derive(Debug, Parser)]
 #[command(name = "pulloff", version, args_conflicts_with_subcommands = true, max_term_width = 100)]
 struct Cli {
@@ -78,7 +78,7 @@ enum Command {
     Verify(verify::Arguments),
     /// Run a script of the explorer's commands
     Run(run::Arguments),
-    /// List and show presets
+    /// List, show and delete presets
     #[command(subcommand)]
     Presets(presets::Command),
     /// List, show and delete sessions of the explorer

@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 pub enum Amount {
     /// 1 %, of the device's stiffness 3 %.
     Fine,
-    /// 10 %, of the device's stiffness 30 %.
+    /// 10 %, of the device's stiffness a factor of 2.
     Coarse,
 }
 

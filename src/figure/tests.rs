@@ -144,7 +144,7 @@ fn pinned_curves_have_their_numbers_names_and_divisors() {
         .does(Id::Pin);
     let figure = session.figure(View::ForceApproach);
     let pin = figure.lines.iter().find(|line| line.role == Role::Pin(1)).unwrap();
-    assert!(pin.name.starts_with("w 0.00397"), "{}", pin.name);
+    assert!(pin.name.starts_with("gamma 0.00397"), "{}", pin.name);
     // Over its own P_c, as it was drawn before.
     let old: Vec<(f64, f64)> =
         before.lines.iter().filter(|line| line.role == Role::Pin(1)).flat_map(|l| l.points.clone()).collect();

@@ -65,7 +65,7 @@ pub fn effect(key: &str) -> Option<[&'static str; 2]> {
     Some(match key {
         "groups.amplitude_over_wavelength" => ["A", "lambda"],
         "groups.wavelength_over_radius" => ["lambda and A", "R and A/lambda"],
-        "groups.adhesion" => ["w", "E* and R"],
+        "groups.adhesion" => ["gamma", "E* and R"],
         _ => return None,
     })
 }

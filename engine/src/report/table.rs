@@ -52,8 +52,9 @@ fn opening(report: &UnloadReport) -> String {
     let control = control(units, report.control);
     let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 6));
     let start = &report.start;
+    let title = if title.is_empty() { String::new() } else { format!("{title}\n") };
     let mut text = format!(
-        "{title}\ncontrol: {control}\nstart: delta {}  P {}  s {}\n",
+        "{title}control: {control}\nstart: delta {}  P {}  s {}\n",
         shown(Quantity::Length, start.approach),
         shown(Quantity::Force, start.force),
         shown(Quantity::Length, start.contact_radius)

@@ -26,9 +26,7 @@ pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a 
         let whole = likeness(&lower, k);
         let part = likeness(last(&lower), last(k));
         // A known part in the wrong table, or the symbol, counts a little less than the key itself.
-        // The paper writes γ for the work of adhesion w.
-        let word = if last(key) == "gamma" { "w" } else { last(key) };
-        let symbol = if word == label { 0.95 } else { 0.0 };
+        let symbol = if last(key) == label { 0.95 } else { 0.0 };
         (whole.max(0.97 * part).max(symbol), k)
     }))
 }

@@ -139,12 +139,13 @@ impl Value {
         }
     }
 
-    /// The value of a quantity without units.
+    /// The value of a quantity without units; an angle in degrees is a pure number too.
     ///
     /// # Errors
-    /// A unit.
+    /// A unit of another dimension, a value that is too large or too small for a double.
     pub fn pure(&self) -> Result<f64, ValueError> {
         match &self.unit {
+            Some(unit) if unit.dimension() == Quantity::Number.dimension() => self.in_si_of(None),
             None => Ok(self.number),
             Some(unit) => Err(ValueError::Reduced { text: self.text.clone(), got: unit.measures() }),
         }
@@ -182,6 +183,14 @@ mod tests {
         ] {
             assert_eq!(si(text, quantity), Ok(expected), "{text}");
         }
+    }
+
+    #[test]
+    fn degrees_are_a_pure_number_and_lengths_are_not() {
+        let pure = |text| parse_quantity(text).and_then(|value| value.pure());
+        assert_eq!(pure("90 deg"), Ok(std::f64::consts::FRAC_PI_2));
+        assert_eq!(pure("0.5"), Ok(0.5));
+        assert!(matches!(pure("2 nm"), Err(ValueError::Reduced { .. })));
     }
 
     #[test]

@@ -99,8 +99,8 @@ pub static PARAMETERS: &[Parameter] = &[
     ),
     measured(
         "material.work_of_adhesion",
-        "w",
-        "work of adhesion (gamma of the paper): twice a face's surface energy",
+        "gamma",
+        "work of adhesion: twice a face's surface energy",
         Kind::NonNegative,
         ("stress x length", Quantity::EnergyPerArea),
     ),

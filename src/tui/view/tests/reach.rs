@@ -39,7 +39,7 @@ fn click(screen: &mut Screen, at: Position) {
 #[test]
 fn a_click_selects_and_once_more_goes_there() {
     let mut screen = screen("wavy-sphere");
-    let at = place(&screen, " w     ");
+    let at = place(&screen, " γ     ");
     click(&mut screen, at);
     assert_eq!(screen.app.model.selected_knob().unwrap().0.key, "material.work_of_adhesion");
     let at = place(&screen, "Walker, step");
@@ -92,7 +92,7 @@ fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
 #[test]
 fn the_wheel_turns_zooms_and_scrolls() {
     let mut screen = screen("wavy-sphere");
-    let at = place(&screen, " w     ");
+    let at = place(&screen, " γ     ");
     let before = screen.app.model.preset.material.work_of_adhesion;
     mouse(&mut screen, MouseEventKind::ScrollUp, at);
     let now = screen.app.model.preset.material.work_of_adhesion;
@@ -147,7 +147,7 @@ fn the_mouse_does_nothing_unasked_or_outside_and_answers_no_question() {
     assert!(screen.app.overlay.is_some() && !screen.app.model.quit);
     screen.keys("\x1bm");
     assert!(!screen.app.mouse && screen.app.model.status().1.contains("left to the terminal"));
-    let at = place(&screen, " w     ");
+    let at = place(&screen, " γ     ");
     let selected = screen.app.model.parameter;
     click(&mut screen, at);
     assert_eq!(screen.app.model.parameter, selected);
