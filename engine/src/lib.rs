@@ -68,6 +68,8 @@ pub mod annuli;
 #[doc(hidden)]
 pub mod case;
 #[doc(hidden)]
+pub mod cells;
+#[doc(hidden)]
 pub mod continuation;
 #[doc(hidden)]
 pub mod disc;

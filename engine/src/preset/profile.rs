@@ -12,27 +12,20 @@
 //! the first row serves as one if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
 //! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
 //!
-//! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
-//! come in runs, and every fault must name its line.
+//! The cells are taken apart as those of any table of an instrument: [`cells`](crate::cells).
 
-use crate::text::{is_unsafe, quote};
+use crate::cells::{self, Head, Separator, heads, is_header, is_unprintable, remark};
+use crate::text::quote;
 use crate::units::{Quantity, Unit};
-use std::fmt;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
-/// The largest file, in bytes.
-pub const LARGEST: u64 = 64 << 20;
+pub use crate::cells::{FAULTS_SHOWN, LARGEST, LARGEST_NUMBER, LONGEST_LINE};
+
 /// The allowed numbers of rows: fewer are no profile, more belong in a mean before.
 pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
-/// How many faults a message lists.
-pub const FAULTS_SHOWN: usize = 3;
-/// The longest line, in bytes; two numbers need far less.
-pub const LONGEST_LINE: usize = 1024;
 /// A distance from the axis counts as one spacing up to this share: decimals round.
 const ROUNDED: f64 = 1e-6;
-/// The largest number, as in presets.
-pub const LARGEST_NUMBER: f64 = 1e30;
 
 /// A profile as read: radii ascending from the axis, each once, and their gaps, in the units of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -109,25 +102,7 @@ pub enum Fault {
 }
 
 /// The faults of a file, in the order of their lines.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Faults {
-    /// The line of each, from 1, and what is wrong; the first [`FAULTS_SHOWN`].
-    pub shown: Vec<(usize, Fault)>,
-    /// How many there are.
-    pub total: usize,
-}
-
-impl fmt::Display for Faults {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, (line, fault)) in self.shown.iter().enumerate() {
-            write!(f, "{}line {line}: {fault}", if i > 0 { "\n" } else { "" })?;
-        }
-        match self.total - self.shown.len() {
-            0 => Ok(()),
-            more => write!(f, "\nand {more} more"),
-        }
-    }
-}
+pub type Faults = cells::Faults<Fault>;
 
 /// Why a text gives no profile.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -233,98 +208,6 @@ fn length(text: &str, line: usize, what: &'static str) -> Result<Unit, TextError
     }
 }
 
-/// What parts the cells of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Separator {
-    Character(char),
-    Spaces,
-}
-
-impl Separator {
-    /// What a line shows.
-    fn of(line: &str) -> Self {
-        [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
-    }
-
-    /// The cells of a row.
-    fn cells(self, line: &str) -> Vec<&str> {
-        match self {
-            Self::Character(c) => line.split(c).map(bare).collect(),
-            Self::Spaces => line.split_whitespace().map(bare).collect(),
-        }
-    }
-}
-
-/// A cell without the space and the quotation marks around it.
-fn bare(cell: &str) -> &str {
-    let cell = cell.trim();
-    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
-}
-
-/// A column as a header has it: its name, and its unit as written.
-type Head = (String, Option<String>);
-
-/// The two columns of a header, or `None` when it has another number of cells.
-///
-/// What stands in brackets is not parted, and belongs to the cell before it.
-fn heads(line: &str, separator: Separator) -> Option<[Head; 2]> {
-    let mut cells: Vec<Head> = vec![Default::default()];
-    let mut open: Option<(char, String)> = None;
-    for c in line.chars() {
-        match (&mut open, separator) {
-            (Some((close, unit)), _) if c == *close => {
-                let unit = unit.trim().to_owned();
-                open = None;
-                // Spaces between a name and its unit have opened a cell too many.
-                if separator == Separator::Spaces && cells.len() > 1 && cells.last()?.0.is_empty() {
-                    cells.pop();
-                }
-                cells.last_mut()?.1 = (!unit.is_empty()).then_some(unit);
-            }
-            (Some((_, unit)), _) => unit.push(c),
-            (None, _) if c == '[' || c == '(' => {
-                open = Some((if c == '[' { ']' } else { ')' }, String::new()));
-            }
-            (None, Separator::Character(parting)) if c == parting => cells.push(Default::default()),
-            (None, Separator::Spaces) if c.is_whitespace() => {
-                let (name, unit) = cells.last()?;
-                if !(name.is_empty() && unit.is_none()) {
-                    cells.push(Default::default());
-                }
-            }
-            (None, _) => cells.last_mut()?.0.push(c),
-        }
-    }
-    if separator == Separator::Spaces {
-        cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
-    }
-    let cells = <[Head; 2]>::try_from(cells).ok()?;
-    Some(cells.map(|(name, unit)| match unit {
-        Some(unit) => (name.trim().to_owned(), Some(unit)),
-        None => unbracketed(bare(&name)),
-    }))
-}
-
-/// A name with its unit behind a slash or a space, where that is one of length: `r / um`, `height nm`.
-///
-/// Another word there may be anything: `r/R` is a ratio.
-fn unbracketed(text: &str) -> Head {
-    let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
-    match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
-        Some((name, unit)) if !name.is_empty() && is_length(unit) => (name.to_owned(), Some(unit.to_owned())),
-        _ => (text.to_owned(), None),
-    }
-}
-
-fn is_length(unit: &str) -> bool {
-    Unit::parse(unit, 0).is_ok_and(|unit| unit.dimension() == Quantity::Length.dimension())
-}
-
-/// The text of a remark.
-fn remark(line: &str) -> Option<&str> {
-    ["#", "%", "//"].into_iter().find_map(|mark| line.strip_prefix(mark))
-}
-
 /// A row with its line.
 #[derive(Debug, Clone, Copy)]
 struct Row {
@@ -338,18 +221,14 @@ struct Row {
 /// # Errors
 /// [`TextError`] with the lines that are wrong.
 pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = bytes.get(..error.valid_up_to()).unwrap_or_default();
-        TextError::NotText(before.split(|byte| *byte == b'\n').count())
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut faults = Faults { shown: Vec::new(), total: 0 };
+    let text = cells::text_of(bytes).map_err(TextError::NotText)?;
+    let mut faults = Faults::default();
     let mut rows: Vec<Row> = Vec::new();
     let mut separator = None;
     // The header, or a remark that may be one.
     let (mut header, mut candidate) = (None, None);
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
-        if text.chars().any(|c| c != '\t' && is_unsafe(c)) {
+        if is_unprintable(text) {
             faults.add(line, Fault::Unprintable);
             continue;
         }
@@ -390,23 +269,6 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
     Ok(columns)
 }
 
-impl Faults {
-    fn add(&mut self, line: usize, fault: Fault) {
-        if self.shown.len() < FAULTS_SHOWN {
-            self.shown.push((line, fault));
-        }
-        self.total += 1;
-    }
-}
-
-/// A line before the first row of which no cell begins a number.
-fn is_header(line: &str) -> bool {
-    let cells = Separator::of(line).cells(line);
-    cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
-        && cells.iter().all(|cell| cell.parse::<f64>().is_err())
-        && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
-}
-
 /// The units of the header and its line, where it has any; of a remark only if it names both.
 ///
 /// # Errors
@@ -418,7 +280,8 @@ fn units(
 ) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
     // A header may be parted otherwise than the rows below it.
     let read = |(line, text): (usize, &str)| {
-        let heads = heads(text, separator).or_else(|| heads(text, Separator::of(text)));
+        let two = |separator| <[Head; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok();
+        let heads = two(separator).or_else(|| two(Separator::of(text)));
         heads.map(|heads| (line, heads))
     };
     let found = match header {

@@ -1,5 +1,6 @@
 //! Good files, bad files and files damaged at random.
 
+use crate::text::is_unsafe;
 use super::*;
 use crate::gap::Gap;
 use crate::gap::{shapes::Profile, shapes::Smoothing};

@@ -1,0 +1,175 @@
+//! Tables of text from instruments taken apart: cells, headers with units, and the list of what is wrong in which line.
+//!
+//! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
+//! come in runs, and every fault must name its line.
+
+use crate::text::is_unsafe;
+use crate::units::{Dimension, Unit};
+use std::fmt;
+
+/// The largest file, in bytes.
+pub const LARGEST: u64 = 64 << 20;
+/// How many faults a message lists.
+pub const FAULTS_SHOWN: usize = 3;
+/// The longest line, in bytes; a row of numbers needs far less.
+pub const LONGEST_LINE: usize = 1024;
+/// The largest number, as in presets.
+pub const LARGEST_NUMBER: f64 = 1e30;
+
+/// The faults of a file, in the order of their lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Faults<F> {
+    /// The line of each, from 1, and what is wrong; the first [`FAULTS_SHOWN`].
+    pub shown: Vec<(usize, F)>,
+    /// How many there are.
+    pub total: usize,
+}
+
+impl<F> Default for Faults<F> {
+    fn default() -> Self {
+        Self { shown: Vec::new(), total: 0 }
+    }
+}
+
+impl<F> Faults<F> {
+    /// One more, in `line`.
+    pub fn add(&mut self, line: usize, fault: F) {
+        if self.shown.len() < FAULTS_SHOWN {
+            self.shown.push((line, fault));
+        }
+        self.total += 1;
+    }
+}
+
+impl<F: fmt::Display> fmt::Display for Faults<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (line, fault)) in self.shown.iter().enumerate() {
+            write!(f, "{}line {line}: {fault}", if i > 0 { "\n" } else { "" })?;
+        }
+        match self.total - self.shown.len() {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+/// The text that `bytes` are, without a byte order mark.
+///
+/// # Errors
+/// The first line that is not UTF-8.
+pub fn text_of(bytes: &[u8]) -> Result<&str, usize> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = bytes.get(..error.valid_up_to()).unwrap_or_default();
+        before.split(|byte| *byte == b'\n').count()
+    })?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// Whether a line holds what is not for the eye; a tab parts cells.
+pub fn is_unprintable(line: &str) -> bool {
+    line.chars().any(|c| c != '\t' && is_unsafe(c))
+}
+
+/// What parts the cells of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Separator {
+    /// One character.
+    Character(char),
+    /// Any run of spaces.
+    Spaces,
+}
+
+impl Separator {
+    /// What a line shows.
+    pub fn of(line: &str) -> Self {
+        [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
+    }
+
+    /// The cells of a row.
+    pub fn cells(self, line: &str) -> Vec<&str> {
+        match self {
+            Self::Character(c) => line.split(c).map(bare).collect(),
+            Self::Spaces => line.split_whitespace().map(bare).collect(),
+        }
+    }
+}
+
+/// A cell without the space and the quotation marks around it.
+pub fn bare(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
+}
+
+/// The text of a remark.
+pub fn remark(line: &str) -> Option<&str> {
+    ["#", "%", "//"].into_iter().find_map(|mark| line.strip_prefix(mark))
+}
+
+/// A line before the first row of which no cell begins a number.
+pub fn is_header(line: &str) -> bool {
+    let cells = Separator::of(line).cells(line);
+    cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
+        && cells.iter().all(|cell| cell.parse::<f64>().is_err())
+        && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
+/// A column as a header has it: its name, and its unit as written.
+pub type Head = (String, Option<String>);
+
+/// The columns of a header: a unit stands in brackets or parentheses, or, where it is one of `dimensions`, behind a slash or a
+/// space.
+///
+/// What stands in brackets is not parted, and belongs to the cell before it.
+pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<Head> {
+    let mut cells: Vec<Head> = Vec::new();
+    let mut at: Head = Default::default();
+    let mut open: Option<(char, String)> = None;
+    for c in line.chars() {
+        match (&mut open, separator) {
+            (Some((close, unit)), _) if c == *close => {
+                let unit = unit.trim().to_owned();
+                open = None;
+                // Spaces between a name and its unit have opened a cell too many.
+                if separator == Separator::Spaces
+                    && at.0.is_empty()
+                    && let Some(before) = cells.pop()
+                {
+                    at = before;
+                }
+                at.1 = (!unit.is_empty()).then_some(unit);
+            }
+            (Some((_, unit)), _) => unit.push(c),
+            (None, _) if c == '[' || c == '(' => {
+                open = Some((if c == '[' { ']' } else { ')' }, String::new()));
+            }
+            (None, Separator::Character(parting)) if c == parting => cells.push(std::mem::take(&mut at)),
+            (None, Separator::Spaces) if c.is_whitespace() => {
+                if !(at.0.is_empty() && at.1.is_none()) {
+                    cells.push(std::mem::take(&mut at));
+                }
+            }
+            (None, _) => at.0.push(c),
+        }
+    }
+    cells.push(at);
+    if separator == Separator::Spaces {
+        cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
+    }
+    let apart = |(name, unit): Head| match unit {
+        Some(unit) => (bare(&name).to_owned(), Some(unit)),
+        None => unbracketed(bare(&name), dimensions),
+    };
+    cells.into_iter().map(apart).collect()
+}
+
+/// A name with its unit behind a slash or a space, where that is one of `dimensions`: `r / um`, `height nm`.
+///
+/// Another word there may be anything: `r/R` is a ratio.
+fn unbracketed(text: &str, dimensions: &[Dimension]) -> Head {
+    let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
+    let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
+    match parted.map(|(name, unit)| (name.trim(), unit.trim())) {
+        Some((name, unit)) if !name.is_empty() && is_unit(unit) => (name.to_owned(), Some(unit.to_owned())),
+        _ => (text.to_owned(), None),
+    }
+}
