@@ -61,6 +61,7 @@
 //! | `theory` | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
 //! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
 //! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
+//! | `stability` | the law of stability, limit points in two parameters, counts of snaps |
 //! | `report`, `verify` | the one serializable form of results; our numbers against theory |
 
 #[doc(hidden)]
@@ -89,6 +90,8 @@ pub mod quasistatic;
 pub mod report;
 #[doc(hidden)]
 pub mod ritz;
+#[doc(hidden)]
+pub mod stability;
 #[doc(hidden)]
 pub mod text;
 #[doc(hidden)]

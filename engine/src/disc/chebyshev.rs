@@ -117,6 +117,20 @@ pub fn sum_and_slope(series: &[f64], x: f64) -> [f64; 2] {
     [x * b1 - b2 + first, x * d1 - d2 + b1]
 }
 
+/// f(x), f'(x) and f''(x).
+pub fn sum_and_slopes(series: &[f64], x: f64) -> [f64; 3] {
+    let [mut b1, mut b2, mut d1, mut d2, mut e1, mut e2] = [0.0; 6];
+    let twice = 2.0 * x;
+    for c in series.iter().skip(1).rev() {
+        // The derivatives of the recurrence, each with what the one before has before this step.
+        (e1, e2) = (twice * e1 - e2 + 4.0 * d1, e1);
+        (d1, d2) = (twice * d1 - d2 + 2.0 * b1, d1);
+        (b1, b2) = (twice * b1 - b2 + c, b1);
+    }
+    let first = series.first().copied().unwrap_or(0.0);
+    [x * b1 - b2 + first, x * d1 - d2 + b1, x * e1 - e2 + 2.0 * d1]
+}
+
 /// The series of f'.
 pub fn derivative(series: &[f64]) -> Vec<f64> {
     let n = series.len();
@@ -327,6 +341,9 @@ mod tests {
                     && (sum_and_slope(&series, x)[1] - exact).abs() < 1e-12
             );
             assert!(close(sum_and_slope(&series, x)[0], f(x)));
+            let [value, first, second] = sum_and_slopes(&series, x);
+            let bend = 1.69 * (1.3 * x).exp() - 4.0 * (2.0 * x).sin();
+            assert!(close(value, f(x)) && (first - exact).abs() < 1e-12 && (second - bend).abs() < 1e-10);
             let primitive = |x: f64| (1.3 * x).exp() / 1.3 - 0.5 * (2.0 * x).cos();
             assert!(close(sum(&area, x), primitive(x) - primitive(-1.0)), "{x}");
             assert!(close(sum(&twice, x), (0.3 - 1.7 * x) * f(x)));

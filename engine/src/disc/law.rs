@@ -58,6 +58,13 @@ impl Law {
         if n <= 1.0 { 0.0 } else { self.factor * n * (n - 1.0) * Self::power(a, n - 2.0) }
     }
 
+    /// g'''.
+    pub fn third(&self, a: f64) -> f64 {
+        let n = self.exponent;
+        let vanishes = n <= 1.0 || (n - 2.0).abs() < f64::EPSILON;
+        if vanishes { 0.0 } else { self.factor * n * (n - 1.0) * (n - 2.0) * Self::power(a, n - 3.0) }
+    }
+
     /// ∫g.
     pub fn area(&self, a: f64) -> f64 {
         self.value(a) * a / (self.exponent + 1.0)

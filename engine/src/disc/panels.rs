@@ -255,6 +255,31 @@ impl Panels {
         }
     }
 
+    /// g', g'' and g''' at a place off the innermost panel, by a; not finite right of a break at which a derivative of the gap
+    /// jumps.
+    pub fn slopes(&self, at: Place) -> [f64; 3] {
+        let panel = &*self.list[at.panel];
+        let radius = panel.span.radius(at.x);
+        if let Some(law) = &self.law {
+            return [law.slope(radius), law.bend(radius), law.third(radius)];
+        }
+        let [value, first, second] = chebyshev::sum_and_slopes(&panel.slope, at.x);
+        let [_, half] = panel.line;
+        let [by_v, by_v2] = [first / half, second / (half * half)];
+        let (stretch, bend) = (panel.span.stretch(at.x), panel.span.bend(at.x));
+        // By v, of what is by a; the stretch of a panel right of a break is a line in v.
+        let [slope, by_v, by_v2] = if panel.steep {
+            let ratio = bend / stretch;
+            let slope = value / stretch;
+            let by = by_v / stretch - slope * ratio;
+            [slope, by, by_v2 / stretch - 2.0 * ratio * by]
+        } else {
+            [value, by_v, by_v2]
+        };
+        let second = by_v / stretch;
+        [slope, second, (by_v2 - second * bend) / (stretch * stretch)]
+    }
+
     /// ∫₀ᵃ g² at a place.
     pub fn square(&self, at: Place) -> f64 {
         let panel = &*self.list[at.panel];

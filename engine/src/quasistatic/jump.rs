@@ -4,9 +4,8 @@
 //! on which it falls back to it; running outward on the first one on which it rises back. Either way the control grows
 //! with s there, which is stability. A stretch whose own minimum is the value to rounding is landed on.
 
-use super::curve::Curve;
 use super::monotone::Monotone;
-use crate::disc::Place;
+use crate::disc::{Place, Solution};
 
 /// Which way the edge runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +34,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// # Errors
 /// The radius at which the curve ends before that is known.
 pub fn run(
-    curve: &Curve,
+    solution: &dyn Solution,
     monotone: &Monotone,
     from: usize,
     value: f64,
@@ -44,7 +43,7 @@ pub fn run(
     let stretches = &monotone.stretches;
     let slack = ROUNDING * value.abs();
     let land = |at: usize| {
-        let place = monotone.solve(&*curve.solution, &stretches[at], value);
+        let place = monotone.solve(solution, &stretches[at], value);
         Landing { place, stretch: at }
     };
     match run {

@@ -7,6 +7,7 @@
 //! | [`monotone`] | the stretches on which a control is monotone, the limit points between them |
 //! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
 //! | [`jump`] | where the edge lands when it runs at constant control |
+//! | [`descent`] | the way down at a falling control, jump by jump |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
 //! | [`cycle`] | the whole loop of loading and unloading, with rings of contact |
@@ -21,6 +22,7 @@
 pub mod admissible;
 pub mod curve;
 pub mod cycle;
+pub mod descent;
 pub mod energy;
 pub mod equilibrium;
 pub mod jump;

@@ -1,6 +1,7 @@
 //! The whole unloading: from the start state inward, through every snap, to the pull-off.
 
 use super::curve::{Curve, CurveStop};
+use super::descent::{descend, stable_start};
 use super::energy;
 use super::equilibrium::State;
 use super::jump::{self, Landing, Run};
@@ -200,13 +201,6 @@ impl UnloadError {
 /// How far outward a stable state is looked for, as a multiple of the start radius.
 const OUTWARD_REACH: f64 = 1000.0;
 
-/// A start this near to a limit point, relative to its radius, is at its control value to rounding: comparing values decides
-/// nothing there.
-const AT_LIMIT: f64 = 3e-8;
-
-/// An end this near to a landing is the landing.
-const AT_END: f64 = 1e-12;
-
 impl Unloading {
     /// The sum of the losses that are defined.
     pub fn total_dissipated(&self) -> f64 {
@@ -235,14 +229,28 @@ pub fn unload_while(
     let (from, to) = (curve.outermost(), curve.innermost());
     let mut longer = None;
     let asked = curve.solution.place(from).map(|place| curve.state(place));
-    let here = if let Some(start) = stable_start(curve, control, from) {
+    let here = if let Some(start) = stable_start(&*curve.solution, &curve.monotone(control), from) {
         start
     } else {
         run_outward(longer.insert(curve.clone()), control, from)?
     };
     let curve = longer.as_ref().unwrap_or(curve);
     let start = curve.state(here.place);
-    let Descent { events, pieces, stop } = descend(curve, control, losses, here, to, &mut go_on)?;
+    let descent = descend(&*curve.solution, &curve.monotone(control), here, to);
+    let mut events = Vec::with_capacity(descent.jumps.len());
+    for jump in &descent.jumps {
+        if !go_on() {
+            return Err(UnloadError::Cancelled);
+        }
+        let landing = jump.landing.map(|landing| landing.place);
+        events.push(Event::new(curve, control, jump.before, landing, losses));
+    }
+    let stop = match descent.hole {
+        Some(hole) => PathStop::Curve(CurveStop::NoEquilibrium(hole)),
+        None if descent.pulls_off() => PathStop::PullOff,
+        None => PathStop::End,
+    };
+    let pieces = descent.pieces;
     let least = |of| least(curve, &pieces, of).unwrap_or(start);
     let (min_force, min_approach) = (least(Control::Force), least(Control::Displacement));
     let asked = asked.filter(|_| start.contact_radius > from).map(|state| {
@@ -253,96 +261,6 @@ pub fn unload_while(
     let pieces =
         pieces.iter().map(|piece| piece.map(|place| curve.solution.at(place).contact_radius)).collect();
     Ok(Unloading { control, start, asked, events, pieces, stop, min_force, min_approach })
-}
-
-/// The start at the radius `s`, or at the limit point that it is at to rounding; `None` where it is not stable.
-fn stable_start(curve: &Curve, control: Control, s: f64) -> Option<Landing> {
-    let monotone = curve.monotone(control);
-    let at = monotone.stretch_of(s);
-    let stretch = monotone.stretches.get(at)?;
-    if stretch.rising {
-        let place = if s <= stretch.radii[0] { stretch.inner } else { curve.solution.place(s)? };
-        return Some(Landing { place, stretch: at });
-    }
-    // Just outside a maximum the state is that of the limit point.
-    let [maximum, limit] = stretch.radii;
-    if stretch.joined && s - maximum <= AT_LIMIT * maximum {
-        let inner = at.checked_sub(1)?;
-        return Some(Landing { place: monotone.stretches[inner].outer, stretch: inner });
-    }
-    // Just inside a minimum the next stable state is as far outside of it.
-    let outer = monotone.stretches.get(at + 1).filter(|next| next.rising && next.joined)?;
-    if limit - s > AT_LIMIT * limit {
-        return None;
-    }
-    let mirrored = (2.0 * limit - s).min(outer.radii[1]);
-    let place = if mirrored <= limit { outer.inner } else { curve.solution.place(mirrored)? };
-    Some(Landing { place, stretch: at + 1 })
-}
-
-/// The way down a curve.
-struct Descent {
-    events: Vec<Event>,
-    /// The stable pieces it follows, each from its outer end to its inner.
-    pieces: Vec<[Place; 2]>,
-    stop: PathStop,
-}
-
-/// From the stable state `here` down to the radius `to`: along the curve to the next minimum of the control, from there to
-/// where the edge lands, and on.
-fn descend(
-    curve: &Curve,
-    control: Control,
-    losses: Losses,
-    mut here: Landing,
-    to: f64,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Descent, UnloadError> {
-    let monotone = curve.monotone(control);
-    let mut descent = Descent { events: Vec::new(), pieces: Vec::new(), stop: PathStop::End };
-    loop {
-        let stretch = &monotone.stretches[here.stretch];
-        let [inner, _] = stretch.radii;
-        if inner < to {
-            let end = curve.solution.place(to).unwrap_or(stretch.inner);
-            descent.pieces.push([here.place, end]);
-            return Ok(descent);
-        }
-        descent.pieces.push([here.place, stretch.inner]);
-        if !stretch.joined {
-            // Without adhesion the disc shrinks to nothing; rings may have no equilibrium further in.
-            if inner > 0.0 {
-                descent.stop = PathStop::Curve(CurveStop::NoEquilibrium(inner));
-            }
-            return Ok(descent);
-        }
-        if !go_on() {
-            return Err(UnloadError::Cancelled);
-        }
-        let landing = match jump::run(curve, &monotone, here.stretch, stretch.values[0], Run::Inward) {
-            Ok(landing) => landing,
-            Err(hole) => {
-                descent.stop = PathStop::Curve(CurveStop::NoEquilibrium(hole));
-                return Ok(descent);
-            }
-        };
-        let before = limit_before(&monotone, here.stretch).unwrap_or(stretch.inner);
-        descent.events.push(Event::new(curve, control, before, landing.map(|l| l.place), losses));
-        let Some(landing) = landing else {
-            descent.stop = PathStop::PullOff;
-            return Ok(descent);
-        };
-        if curve.solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
-            descent.pieces.push([landing.place; 2]);
-            return Ok(descent);
-        }
-        here = landing;
-    }
-}
-
-/// The limit point at which a stretch begins: at a corner that of the side further in.
-fn limit_before(monotone: &super::Monotone, stretch: usize) -> Option<Place> {
-    stretch.checked_sub(1).map(|inner| monotone.stretches[inner].outer)
 }
 
 /// The state of smallest value of `of` on the stable pieces: at one of their ends, or at a limit point between them.
@@ -370,14 +288,14 @@ fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing
         reach = (1.5 * reach).min(limit);
         curve.reach(reach);
         // A start at a limit point that lies beyond the curve as it was.
-        if let Some(start) = stable_start(curve, control, from) {
+        let monotone = curve.monotone(control);
+        if let Some(start) = stable_start(&*curve.solution, &monotone, from) {
             return Ok(start);
         }
-        let monotone = curve.monotone(control);
         let stretch = monotone.stretch_of(from);
         let value =
             curve.solution.place(from).map_or(f64::NAN, |place| monotone.value(&curve.solution.at(place)));
-        if let Ok(Some(landing)) = jump::run(curve, &monotone, stretch, value, Run::Outward) {
+        if let Ok(Some(landing)) = jump::run(&*curve.solution, &monotone, stretch, value, Run::Outward) {
             return Ok(landing);
         }
         if reach >= limit {

@@ -348,7 +348,7 @@ impl Walk<'_> {
                 None => (place, monotone.stretch_of(s), Run::Outward),
             };
             let value = monotone.value(&curve.solution.at(place));
-            match jump::run(&curve, &monotone, stretch, value, run) {
+            match jump::run(&*curve.solution, &monotone, stretch, value, run) {
                 Ok(Some(landing)) => {
                     let to = curve.solution.at(landing.place).contact_radius;
                     let held = curve.solution.at(place);

@@ -1,0 +1,130 @@
+//! A key of a preset over a range: an axis of a map.
+
+use std::fmt;
+
+/// How the values of an axis are spread over it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spacing {
+    /// Equal steps.
+    Linear,
+    /// Equal factors.
+    Logarithmic,
+    /// c/(c + c₀) in equal steps: from zero to infinity.
+    Share(f64),
+}
+
+/// A number of a preset over a range, in SI or reduced units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The dotted key, or [`COMPLIANCE`].
+    pub key: String,
+    /// The ends, ascending; the last may be infinite where the spacing is [`Spacing::Share`].
+    pub range: [f64; 2],
+    /// How its values are spread.
+    pub spacing: Spacing,
+}
+
+/// The name of an axis of 1/k: zero is displacement control, infinity a dead load.
+pub const COMPLIANCE: &str = "compliance";
+
+/// A range that is none of an axis.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{range:?} is no range of {key}: {expected}")]
+pub struct AxisError {
+    key: String,
+    range: [f64; 2],
+    expected: &'static str,
+}
+
+impl Axis {
+    /// An axis of `key` from `lo` to `hi`; where `hi` is infinite, which only a compliance may be, `unit` stands in the middle.
+    ///
+    /// # Errors
+    /// The range does not ascend, or is not positive on a logarithmic axis.
+    pub fn new(key: &str, [lo, hi]: [f64; 2], logarithmic: bool, unit: f64) -> Result<Self, AxisError> {
+        let refused = |expected| AxisError { key: key.to_owned(), range: [lo, hi], expected };
+        if !(lo.is_finite() && lo < hi) {
+            return Err(refused("it goes from a number to a larger one"));
+        }
+        let spacing = if hi.is_finite() {
+            if logarithmic && lo <= 0.0 {
+                return Err(refused("a logarithmic axis begins above zero"));
+            }
+            if logarithmic { Spacing::Logarithmic } else { Spacing::Linear }
+        } else {
+            if key != COMPLIANCE || logarithmic || lo < 0.0 {
+                return Err(refused("only a compliance goes on to infinity, on an axis that is not logarithmic"));
+            }
+            Spacing::Share(unit)
+        };
+        Ok(Self { key: key.to_owned(), range: [lo, hi], spacing })
+    }
+
+    /// The value at a share of the axis, 0 at its beginning and 1 at its end.
+    pub fn value(&self, share: f64) -> f64 {
+        let [lo, hi] = self.range;
+        match self.spacing {
+            Spacing::Linear => lo + (hi - lo) * share,
+            Spacing::Logarithmic => lo * (hi / lo).powf(share),
+            Spacing::Share(unit) => {
+                let from = lo / (lo + unit);
+                let part = from + (1.0 - from) * share;
+                if part >= 1.0 { f64::INFINITY } else { unit * part / (1.0 - part) }
+            }
+        }
+    }
+
+    /// The share of the axis at which it has a value.
+    pub fn share(&self, value: f64) -> f64 {
+        let [lo, hi] = self.range;
+        match self.spacing {
+            Spacing::Linear => (value - lo) / (hi - lo),
+            Spacing::Logarithmic => (value / lo).ln() / (hi / lo).ln(),
+            Spacing::Share(unit) => {
+                let part = |c: f64| if c.is_finite() { c / (c + unit) } else { 1.0 };
+                (part(value) - part(lo)) / (1.0 - part(lo))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [lo, hi] = self.range;
+        let log = if self.spacing == Spacing::Logarithmic { "log:" } else { "" };
+        write!(f, "{}={log}{lo:?}..{hi:?}", self.key)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_shares_belong_together_and_bad_ranges_are_refused() {
+        let axes = [
+            Axis::new("a", [-1.0, 3.0], false, 1.0),
+            Axis::new("a", [1e-4, 10.0], true, 1.0),
+            Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0),
+            Axis::new(COMPLIANCE, [1.0, f64::INFINITY], false, 2.0),
+        ];
+        for axis in axes.map(Result::unwrap) {
+            for share in [0.0, 0.3, 0.5, 0.99] {
+                assert!((axis.share(axis.value(share)) - share).abs() < 1e-14, "{axis} {share}");
+            }
+            assert_eq!([axis.value(0.0), axis.value(1.0)], axis.range);
+            assert!((axis.share(axis.range[1]) - 1.0).abs() < 1e-15);
+        }
+        let whole = Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0).unwrap();
+        assert!((whole.value(0.5) - 2.0).abs() < 1e-15);
+        for (range, logarithmic) in [
+            ([1.0, 1.0], false),
+            ([2.0, 1.0], false),
+            ([f64::NAN, 1.0], false),
+            ([0.0, 1.0], true),
+            ([0.0, f64::INFINITY], false),
+        ] {
+            assert!(Axis::new("a", range, logarithmic, 1.0).is_err(), "{range:?}");
+        }
+    }
+}

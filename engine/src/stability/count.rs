@@ -1,0 +1,188 @@
+//! The snaps of a member's own quasi-static path, from the limit points and landings of its table alone; and where along an axis
+//! their number changes.
+
+use super::family::{At, Family, FamilyError};
+use super::law::Cusp;
+use crate::disc::Basis;
+use crate::quasistatic::descent::{descend, stable_start};
+use crate::quasistatic::unload::{UnloadError, unload_while};
+use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
+use std::sync::Arc;
+
+/// Halvings that find a change along an axis: to the share 1e-12 of it.
+const HALVINGS: usize = 40;
+
+/// The path of one member.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
+    /// The snaps, without the pull-off.
+    pub snaps: usize,
+    /// The minima of the control between the end and the start of the path, ascending: s and the weighted control.
+    pub minima: Vec<[f64; 2]>,
+    /// The limit points there, of both kinds.
+    pub limits: usize,
+    /// Those from which the edge snaps, s.
+    pub jumps: Vec<f64>,
+}
+
+/// What makes the number of snaps change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cause {
+    /// A pair of limit points is born, or dies, at this s.
+    Cusp(f64),
+    /// The jump from the first of these limit points just reaches the crest of the second, or just passes over it.
+    Landing([f64; 2]),
+    /// A limit point passes the start of the path.
+    Start,
+}
+
+/// A change of the number of snaps along an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Where, as a share of the axis.
+    pub share: f64,
+    /// The snaps before and after.
+    pub snaps: [usize; 2],
+    /// Why.
+    pub cause: Cause,
+}
+
+impl Family {
+    /// The path of the member at these shares; `None` where it has no start or no stable state to start from.
+    pub fn passage(&self, at: At<'_>) -> Option<Passage> {
+        self.try_passage(at).ok().flatten()
+    }
+
+    fn try_passage(&self, at: At<'_>) -> Result<Option<Passage>, FamilyError> {
+        let member = self.member(at)?;
+        let (basis, problem, [end, start]) = member.ground(at)?;
+        let Some(solution) = basis.solution(&problem, end, start, &mut || true) else { return Ok(None) };
+        let monotone = Monotone::of(&*solution, member.control);
+        let radius = |place| solution.at(place).contact_radius;
+        let (snaps, jumps) = if let Some(here) = stable_start(&*solution, &monotone, start) {
+            let descent = descend(&*solution, &monotone, here, end);
+            if descent.hole.is_some() {
+                return Ok(None);
+            }
+            let landed = descent.jumps.iter().filter(|jump| jump.landing.is_some());
+            (descent.snaps(), landed.map(|jump| radius(jump.before)).collect())
+        } else {
+            // The edge runs outward first: the path of the whole unloading knows how far.
+            let table = Arc::clone(basis.table());
+            let curve = Curve::new(problem, Arc::new(basis), table, [start, end], Detail::Borders, || true);
+            let Some(curve) = curve else { return Ok(None) };
+            match unload_while(&curve, member.control, Losses::Once, || true) {
+                Ok(path) => {
+                    let snaps = path.events.iter().filter(|event| event.kind == EventKind::Snap);
+                    let jumps: Vec<f64> = snaps.map(|event| event.before.contact_radius).collect();
+                    (jumps.len(), jumps)
+                }
+                Err(UnloadError::UnstableStart { .. } | UnloadError::Cancelled) => return Ok(None),
+            }
+        };
+        let within = |s: f64| end <= s && s <= start;
+        let minima = monotone.stretches.iter().filter(|stretch| stretch.rising && stretch.joined);
+        let minima = minima.map(|stretch| [stretch.radii[0], stretch.values[0]]);
+        Ok(Some(Passage {
+            snaps,
+            minima: minima.filter(|[s, _]| within(*s)).collect(),
+            limits: monotone.limits.iter().filter(|limit| within(limit.contact_radius)).count(),
+            jumps,
+        }))
+    }
+
+    /// The changes of the number of snaps along `axis`, the other number held at its share of `at`; looked for between
+    /// neighbours of `samples`, shares that ascend. `go_on` is asked before each, and what was found before it said no is given.
+    pub fn changes(
+        &self,
+        axis: usize,
+        at: At<'_>,
+        samples: &[f64],
+        go_on: &dyn Fn() -> bool,
+    ) -> Vec<Change> {
+        let place = |share: f64| {
+            let mut place = at.to_vec();
+            place[axis] = share;
+            place
+        };
+        let mut found = Vec::new();
+        let mut before: Option<(f64, Passage)> = None;
+        for share in samples {
+            if !go_on() {
+                break;
+            }
+            let Some(here) = self.passage(&place(*share)) else {
+                before = None;
+                continue;
+            };
+            if let Some((from, old)) = before {
+                self.between(&place, [(from, old), (*share, here.clone())], &mut found);
+            }
+            before = Some((*share, here));
+        }
+        found
+    }
+
+    /// The changes between two shares with different numbers of snaps.
+    fn between(
+        &self,
+        place: &dyn Fn(f64) -> Vec<f64>,
+        [mut lo, mut hi]: [(f64, Passage); 2],
+        found: &mut Vec<Change>,
+    ) {
+        while lo.1.snaps != hi.1.snaps {
+            // The first of them.
+            let (mut a, mut b) = (lo.clone(), hi.clone());
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (a.0 + b.0);
+                let Some(here) = self.passage(&place(middle)) else { break };
+                if here.snaps == lo.1.snaps {
+                    a = (middle, here);
+                } else {
+                    b = (middle, here);
+                }
+            }
+            let share = 0.5 * (a.0 + b.0);
+            let cause = self.cause(&place(share), &a.1, &b.1);
+            found.push(Change { share, snaps: [a.1.snaps, b.1.snaps], cause });
+            if b.0 >= hi.0 {
+                return;
+            }
+            (lo, hi) = (b, hi);
+        }
+    }
+
+    fn cause(&self, at: At<'_>, before: &Passage, after: &Passage) -> Cause {
+        let born = before.limits.abs_diff(after.limits);
+        if born >= 2 {
+            let root = self.member(at).map_or(f64::NAN, |member| member.root);
+            let off = |cusp: &Cusp| (cusp.value - root).abs();
+            let cusps = self.cusps(at);
+            let nearest = cusps.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+            return nearest.map_or(Cause::Start, |cusp| Cause::Cusp(cusp.contact_radius));
+        }
+        if born == 1 {
+            return Cause::Start;
+        }
+        // Of the minima from which the edge snaps on either side, the one whose control is nearest to that of one further in.
+        let jumps: Vec<f64> = before.jumps.iter().chain(&after.jumps).copied().collect();
+        let minima = &after.minima;
+        let is_jump = |s: f64| jumps.iter().any(|jump| (jump - s).abs() <= 1e-4 * s);
+        let pairs = minima.iter().enumerate().flat_map(|(j, outer)| {
+            minima[..j].iter().map(move |inner| (outer, inner)).filter(|(outer, _)| is_jump(outer[0]))
+        });
+        let nearest = pairs.min_by(|(a, b), (c, d)| (a[1] - b[1]).abs().total_cmp(&(c[1] - d[1]).abs()));
+        nearest.map_or(Cause::Start, |(outer, inner)| Cause::Landing([outer[0], inner[0]]))
+    }
+
+    /// The cusps of the member at these shares, between the end and the start of the path.
+    pub fn cusps(&self, at: At<'_>) -> Vec<Cusp> {
+        let law = self.member(at).and_then(|member| member.law(at));
+        law.map_or_else(|_| Vec::new(), |law| law.cusps(self.radii).0)
+    }
+}
+
+/// Shares evenly over an axis.
+pub fn even(count: u32) -> Vec<f64> {
+    (0..=count).map(|k| f64::from(k) / f64::from(count)).collect()
+}

@@ -1,0 +1,208 @@
+//! Lines of cusps without continuation: each radius s says at which pair of numbers a pair of limit points is born there.
+//!
+//! ```text
+//! a number A that enters linearly, F = F₀ + t F₁:    F' = 0  at  t = −F₀'/F₁',    γ = (2E*/π) F²
+//! the device:  F' = 0  where  g'' + L g' = 0,   M = −2s g''/g' = (1 + 3x²)/((1 + x)(1 + 3x)),
+//!              3(1 − M)x² − 4M x + (1 − M) = 0,   k = 2E*s/x
+//! ```
+//!
+//! The tip of a line, where two of them are born, is where F'' = 0 too: a swallowtail.
+
+use super::family::{Family, FamilyError, Local};
+use super::law::adhesion_of;
+use crate::problem::Control;
+
+/// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
+const PER_PANEL: f64 = 24.0;
+/// The most of all.
+const MOST: f64 = 40_000.0;
+/// Halvings of the last step at the border of the map, and at a swallowtail.
+const HALVINGS: usize = 48;
+
+/// A point of a line of cusps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Born {
+    /// s, reduced.
+    pub contact_radius: f64,
+    /// The shares of both axes.
+    pub at: [f64; 2],
+    /// F''.
+    pub bend: f64,
+}
+
+impl Born {
+    fn is_inside(&self) -> bool {
+        self.at.iter().all(|share| (0.0..=1.0).contains(share))
+    }
+}
+
+/// A line, its points in order, and the swallowtails on it.
+pub type Line = (Vec<Born>, Vec<Born>);
+
+impl Family {
+    /// The lines of cusps, where both numbers follow from s; `None` where they do not.
+    ///
+    /// # Errors
+    /// A table cannot be had.
+    pub fn explicit_cusps(&self) -> Result<Option<Vec<Line>>, FamilyError> {
+        let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len()) else {
+            return Ok(None);
+        };
+        let other = 1 - adhesion;
+        let place = |share: f64, value: f64| {
+            let mut at = [0.0; 2];
+            at[other] = share;
+            at[adhesion] = self.axes[adhesion].share(adhesion_of(value) / factor);
+            at
+        };
+        if self.linear() == Some(other) {
+            let member = |share: f64| {
+                let mut at = [0.0; 2];
+                at[other] = share;
+                self.member(&at)
+            };
+            // At the ends of the axis, whatever its spacing.
+            let (lo, hi) = (member(0.0)?, member(1.0)?);
+            let [from, to] = self.axes[other].range;
+            let born = |s: f64| {
+                let (a, b) = (lo.local(s)?.edge, hi.local(s)?.edge);
+                let t = -a.slope / (b.slope - a.slope);
+                let value = a.value + t * (b.value - a.value);
+                let share = self.axes[other].share(from + t * (to - from));
+                (value > 0.0 && t >= 0.0).then(|| Born {
+                    contact_radius: s,
+                    at: place(share, value),
+                    bend: a.bend + t * (b.bend - a.bend),
+                })
+            };
+            return Ok(Some(self.sampled(&born)));
+        }
+        if self.compliance() == Some(other) {
+            let mut at = [0.0; 2];
+            at[other] = 0.0;
+            let grips = self.member(&at)?;
+            let stiffness = self.preset.problem().reduced_by(self.length).units.stiffness;
+            let mut lines = Vec::new();
+            for soft in [false, true] {
+                let born = |s: f64| {
+                    let local = grips.local(s)?;
+                    let x = relative_compliance(s, &local, soft)?;
+                    let control = Control::Stiffness(2.0 * s / x);
+                    // F of this device, from g alone.
+                    let third = third_of(&local, grips.control, s);
+                    let edge = super::law::Edge::of(control, s, third);
+                    let compliance = x / (2.0 * s) / stiffness;
+                    let share = self.axes[other].share(compliance);
+                    (edge.value > 0.0).then(|| Born {
+                        contact_radius: s,
+                        at: place(share, edge.value),
+                        bend: edge.bend,
+                    })
+                };
+                lines.extend(self.sampled(&born));
+            }
+            return Ok(Some(lines));
+        }
+        Ok(None)
+    }
+
+    /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
+    fn sampled(&self, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
+        let radii = self.sampled_radii();
+        let mut lines = Vec::new();
+        let mut line: Line = Default::default();
+        let mut before: Option<(f64, Option<Born>)> = None;
+        let good = |s: f64| born(s).filter(Born::is_inside);
+        for s in radii {
+            let here = good(s);
+            if let Some((from, old)) = before {
+                match (old, here) {
+                    (None, Some(point)) => {
+                        line.0.extend(border(&good, from, s).filter(|edge| edge.contact_radius < point.contact_radius));
+                    }
+                    (Some(_), None) => {
+                        line.0.extend(border(&good, s, from));
+                        lines.push(std::mem::take(&mut line));
+                    }
+                    (Some(old), Some(here)) if (old.bend > 0.0) != (here.bend > 0.0) => {
+                        match tip(&good, old, here) {
+                            Some(tip) => {
+                                line.0.push(tip);
+                                line.1.push(tip);
+                            }
+                            // A pole: the line goes on elsewhere.
+                            None => lines.push(std::mem::take(&mut line)),
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            line.0.extend(here);
+            before = Some((s, here));
+        }
+        lines.push(line);
+        lines.retain(|(points, _)| points.len() > 1);
+        lines
+    }
+
+    /// Radii that resolve g, from the end of the path to its start.
+    pub fn sampled_radii(&self) -> Vec<f64> {
+        let [from, to] = self.radii;
+        let wave = self.wave().unwrap_or(0.1 * to);
+        let step = (0.5 * wave / PER_PANEL).max((to - from) / MOST);
+        let mut radii = Vec::new();
+        let mut s = from;
+        while s < to {
+            radii.push(s);
+            s += step.min(0.02 * s);
+        }
+        radii.push(to);
+        radii
+    }
+
+    /// The length over which the gap changes, reduced, where it has one.
+    pub fn wave(&self) -> Option<f64> {
+        use crate::gap::Gap;
+        self.preset.gap.feature_length().map(|wave| wave / self.length)
+    }
+}
+
+/// 2s/k of the device for which s is a cusp: the stiffer one, or the softer.
+fn relative_compliance(s: f64, grips: &Local, soft: bool) -> Option<f64> {
+    let [first, second, _] = third_of(grips, grips.control, s);
+    let m = -2.0 * s * second / first;
+    let square = 4.0 * m * m - 3.0 * (1.0 - m) * (1.0 - m);
+    if !(m < 1.0 && m > 0.0 && square >= 0.0) {
+        return None;
+    }
+    // The two multiply to 1/3.
+    let larger = (2.0 * m + square.sqrt()) / (3.0 * (1.0 - m));
+    Some(if soft { larger } else { 1.0 / (3.0 * larger) })
+}
+
+/// g', g'' and g''' from F and its derivatives under a device.
+fn third_of(local: &Local, control: Control, s: f64) -> [f64; 3] {
+    let weight = super::weight::Weight::of(control, s);
+    let [f, df, ddf] = [local.edge.value, local.edge.slope, local.edge.bend].map(|x| x / weight.value);
+    let second = df - weight.slope * f;
+    [f, second, ddf - (weight.slope * weight.slope + weight.bend) * f - 2.0 * weight.slope * second]
+}
+
+/// The last good point on the way from `outside`, where there is none, to `inside`.
+fn border(good: &dyn Fn(f64) -> Option<Born>, mut outside: f64, mut inside: f64) -> Option<Born> {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (outside + inside);
+        if good(middle).is_some() { inside = middle } else { outside = middle }
+    }
+    good(inside)
+}
+
+/// The swallowtail between two points, where F'' passes zero; `None` where it passes a pole.
+fn tip(good: &dyn Fn(f64) -> Option<Born>, mut a: Born, mut b: Born) -> Option<Born> {
+    let largest = a.bend.abs().max(b.bend.abs());
+    for _ in 0..HALVINGS {
+        let middle = good(0.5 * (a.contact_radius + b.contact_radius))?;
+        if (middle.bend > 0.0) == (a.bend > 0.0) { a = middle } else { b = middle }
+    }
+    (a.bend.abs() <= largest).then_some(a)
+}

@@ -1,0 +1,440 @@
+//! A preset with one or two of its numbers left open: what the lines of a map are looked for in.
+//!
+//! How a number enters decides what it costs. The work of adhesion and the device leave the table of g alone; where the gap is
+//! linear in a number (a wave's amplitude) so is g, and two tables give it for all its values; any other number asks for the
+//! table of its own gap at each value.
+
+use super::axis::{Axis, COMPLIANCE};
+use super::law::{Edge, Law, root_of};
+use crate::disc::table::Kept;
+use crate::disc::{Panels, Table, TableError};
+use crate::gap::{Gap, Shape};
+use crate::preset::{Invalid, Preset, Value};
+use crate::problem::{Control, Reduced, Start};
+use crate::quasistatic::start::{StartError, contact_radius};
+use crate::disc::Exact;
+use std::sync::{Arc, Mutex};
+
+/// The values of the numbers left open, as shares of their axes.
+pub type At<'a> = &'a [f64];
+
+/// How a number enters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Role {
+    /// The reduced work of adhesion is this times it.
+    Adhesion(f64),
+    /// It is the compliance of the device.
+    Device,
+    /// h is linear in it.
+    Linear,
+    /// In some other way.
+    Other,
+}
+
+/// Radii at which a gap is asked whether it is linear in a number, and the difference that is rounding.
+const ASKED: u32 = 24;
+const ROUNDING: f64 = 1e-13;
+
+/// A preset with numbers left open.
+#[derive(Debug)]
+pub struct Family {
+    /// The preset.
+    pub preset: Preset,
+    /// The numbers left open, one or two.
+    pub axes: Vec<Axis>,
+    roles: Vec<Role>,
+    /// The unit of length, the same for all members.
+    pub length: f64,
+    /// The tables of the gaps at both ends of the number that enters linearly.
+    ends: Option<[Arc<Table>; 2]>,
+    /// The table of the gap where no axis changes it.
+    own: Option<Arc<Table>>,
+    kept: Kept<Shape>,
+    /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path.
+    pub radii: [f64; 2],
+}
+
+/// Why there is no family.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FamilyError {
+    /// A value is none of the preset's.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// A gap cannot be tabulated.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The start state does not exist.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// The key holds no number.
+    #[error("{0}: an axis of a map is a number of the preset, a group, or compliance")]
+    NoNumber(String),
+    /// Both axes are the same.
+    #[error("{0}: the two axes of a map are two keys")]
+    Twice(String),
+}
+
+/// What the law needs to know of one state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Local {
+    /// F with its derivatives.
+    pub edge: Edge,
+    /// √(πγ/2): the state is a limit point where F is equal to it.
+    pub root: f64,
+    /// g.
+    pub transform: f64,
+    /// ∫g.
+    pub area: f64,
+    /// g'.
+    pub slope: f64,
+    /// s.
+    pub contact_radius: f64,
+    /// The device.
+    pub control: Control,
+}
+
+impl Local {
+    /// δ.
+    pub fn approach(&self) -> f64 {
+        self.transform - 2.0 * self.root * self.contact_radius.sqrt()
+    }
+
+    /// P.
+    pub fn force(&self) -> f64 {
+        2.0 * (self.approach() * self.contact_radius - self.area)
+    }
+
+    /// dδ/ds and dP/ds.
+    pub fn slopes(&self) -> [f64; 2] {
+        let s = self.contact_radius;
+        [self.slope - self.root / s.sqrt(), 2.0 * (s * self.slope - 3.0 * self.root * s.sqrt())]
+    }
+}
+
+impl Family {
+    /// The family of `preset` along these axes.
+    ///
+    /// # Errors
+    /// [`FamilyError`].
+    pub fn new(preset: &Preset, axes: Vec<Axis>) -> Result<Self, FamilyError> {
+        for (k, axis) in axes.iter().enumerate() {
+            if axes[..k].iter().any(|other| other.key == axis.key) {
+                return Err(FamilyError::Twice(axis.key.clone()));
+            }
+            let number = |preset: &Preset| {
+                preset.row(&axis.key).is_some_and(|row| row.kind.is_number())
+                    && preset.get(&axis.key).is_none_or(|value| matches!(value, Value::Number(_)))
+            };
+            if axis.key != COMPLIANCE && !number(preset) {
+                // An unknown key is said as such, with the nearest name.
+                preset.clone().set(&axis.key, 1.0.into())?;
+                return Err(FamilyError::NoNumber(axis.key.clone()));
+            }
+        }
+        let length = preset.reduced().units.length;
+        let mut family = Self {
+            preset: preset.clone(),
+            axes,
+            roles: Vec::new(),
+            length,
+            ends: None,
+            own: None,
+            kept: Mutex::default(),
+            radii: [0.0; 2],
+        };
+        family.roles = family.axes.iter().map(|axis| family.role(axis)).collect::<Result<_, _>>()?;
+        let others = family.roles.contains(&Role::Other);
+        if let Some(linear) = family.roles.iter().position(|role| *role == Role::Linear) {
+            if others || family.roles.iter().filter(|role| **role == Role::Linear).count() > 1 {
+                for role in family.roles.iter_mut().filter(|role| **role == Role::Linear) {
+                    *role = Role::Other;
+                }
+            } else {
+                let axis = family.axes[linear].clone();
+                let [lo, hi] = axis.range.map(|value| family.with(&[(&axis, value)]));
+                family.ends = Some([family.table(&lo?)?, family.table(&hi?)?]);
+            }
+        } else if !others {
+            family.own = Some(family.table(&family.preset)?);
+        }
+        let base = family.preset.clone();
+        let start = family.start_of(&base, family.reduced(&base).work_of_adhesion)?;
+        family.radii = [base.end_contact_radius(start * length) / length, start];
+        Ok(family)
+    }
+
+    /// The preset with these values.
+    fn with(&self, values: &[(&Axis, f64)]) -> Result<Preset, Invalid> {
+        let mut preset = self.preset.clone();
+        let changes = values.iter().filter(|(axis, _)| axis.key != COMPLIANCE);
+        preset.set_all(changes.map(|(axis, value)| (axis.key.as_str(), (*value).into())))?;
+        for (axis, value) in values {
+            if axis.key == COMPLIANCE {
+                preset.path.control = device(*value);
+            }
+        }
+        Ok(preset)
+    }
+
+    /// The whole preset of a member.
+    ///
+    /// # Errors
+    /// A value is out of its range.
+    pub fn preset_at(&self, at: At<'_>) -> Result<Preset, Invalid> {
+        let values: Vec<(&Axis, f64)> =
+            self.axes.iter().zip(at).map(|(axis, share)| (axis, axis.value(*share))).collect();
+        self.with(&values)
+    }
+
+    fn reduced(&self, preset: &Preset) -> Reduced {
+        preset.problem().reduced_by(self.length)
+    }
+
+    fn table(&self, preset: &Preset) -> Result<Arc<Table>, TableError> {
+        let reduced = self.reduced(preset);
+        let reach = self.reach(preset);
+        Table::shared(&self.kept, &preset.gap, &reduced.gap, reach, &mut || true)
+    }
+
+    fn reach(&self, preset: &Preset) -> f64 {
+        match preset.path.start {
+            Start::ContactRadius(s) => s / self.length,
+            _ => self.radii[1].max(0.1),
+        }
+    }
+
+    /// The contact radius at the start, reduced.
+    fn start_of(&self, preset: &Preset, work_of_adhesion: f64) -> Result<f64, FamilyError> {
+        let reduced = self.reduced(preset);
+        let (length, force) = (reduced.units.length, reduced.units.force);
+        let wanted = match preset.path.start {
+            Start::ContactRadius(s) => return Ok(s / length),
+            Start::Approach(delta) => Start::Approach(delta / length),
+            Start::Force(p) => Start::Force(p / force),
+        };
+        let basis = Exact::new(self.table(preset)?, self.reach(preset));
+        let reduced = Reduced { work_of_adhesion, ..reduced };
+        Ok(contact_radius(&reduced, &basis, wanted, &mut || true)?)
+    }
+
+    /// How an axis enters.
+    fn role(&self, axis: &Axis) -> Result<Role, FamilyError> {
+        if axis.key == COMPLIANCE {
+            return Ok(Role::Device);
+        }
+        let [lo, hi] = axis.range;
+        let middle = axis.value(0.5);
+        // Of the other axis too: it may change what this one is measured by.
+        let others: Vec<&Axis> = self.axes.iter().filter(|other| other.key != axis.key).collect();
+        let ends = |other: &Axis| [0.0, 1.0].map(|share| other.value(share));
+        let corners: Vec<Vec<(&Axis, f64)>> = match others.first() {
+            Some(other) if other.key != COMPLIANCE => ends(other).map(|value| vec![(*other, value)]).to_vec(),
+            _ => vec![Vec::new()],
+        };
+        let mut roles = Vec::new();
+        for corner in &corners {
+            let [a, b, m] = [lo, hi, middle]
+                .map(|value| self.with(&[&corner[..], &[(axis, value)]].concat()));
+            let (a, b, m) = (a?, b?, m?);
+            let factor = |preset: &Preset, value: f64| self.reduced(preset).work_of_adhesion / value;
+            let same = |preset: &Preset| {
+                preset.material.effective_modulus == b.material.effective_modulus
+                    && preset.path == b.path
+                    && preset.material.work_of_adhesion == b.material.work_of_adhesion
+            };
+            let proportional = (factor(&m, middle) / factor(&b, hi) - 1.0).abs() <= ROUNDING;
+            let role = if a.gap == b.gap && a.path == b.path && factor(&b, hi) > 0.0 && proportional {
+                Role::Adhesion(factor(&b, hi))
+            } else if same(&a) && self.is_linear(&a.gap, &b.gap, &m.gap, (middle - lo) / (hi - lo)) {
+                Role::Linear
+            } else {
+                Role::Other
+            };
+            roles.push(role);
+        }
+        let first = roles.first().copied().unwrap_or(Role::Other);
+        let alike = roles.iter().all(|role| match (*role, first) {
+            (Role::Adhesion(a), Role::Adhesion(b)) => (a / b - 1.0).abs() <= ROUNDING,
+            (a, b) => a == b,
+        });
+        Ok(if alike { first } else { Role::Other })
+    }
+
+    /// Whether the gap `m` lies at `share` of the way between `a` and `b`, at many radii.
+    fn is_linear(&self, a: &Shape, b: &Shape, m: &Shape, share: f64) -> bool {
+        let reach = match self.preset.path.start {
+            Start::ContactRadius(s) => s,
+            _ => self.length,
+        };
+        a != b
+            && (1..=ASKED).all(|k| {
+                let r = reach * f64::from(k) / f64::from(ASKED);
+                let [a, b, m] = [a, b, m].map(|gap| gap.jet(r).first);
+                let size = a.abs().max(b.abs()).max(m.abs());
+                (a + share * (b - a) - m).abs() <= ROUNDING * size
+            })
+    }
+
+    /// The number whose gap is linear in it, by its place among the axes.
+    pub fn linear(&self) -> Option<usize> {
+        self.ends.as_ref()?;
+        self.roles.iter().position(|role| *role == Role::Linear)
+    }
+
+    /// The axis of the work of adhesion.
+    pub fn adhesion(&self) -> Option<usize> {
+        self.roles.iter().position(|role| matches!(role, Role::Adhesion(_)))
+    }
+
+    /// The axis of the compliance.
+    pub fn compliance(&self) -> Option<usize> {
+        self.roles.iter().position(|role| *role == Role::Device)
+    }
+
+    /// Whether the gap is the same all over the axis.
+    pub fn keeps_gap(&self, axis: usize) -> bool {
+        matches!(self.roles[axis], Role::Adhesion(_) | Role::Device)
+    }
+
+    /// The reduced work of adhesion over the number on its axis.
+    pub fn adhesion_factor(&self) -> Option<f64> {
+        self.roles.iter().find_map(|role| if let Role::Adhesion(c) = role { Some(*c) } else { None })
+    }
+
+    /// The member at these shares: its adhesion and device, and its preset where some number asks for it.
+    pub fn member(&self, at: At<'_>) -> Result<Member<'_>, FamilyError> {
+        let value = |k: usize| self.axes[k].value(at[k]);
+        let asks: Vec<(&Axis, f64)> = (0..self.axes.len())
+            .filter(|k| self.roles[*k] == Role::Other)
+            .map(|k| (&self.axes[k], value(k)))
+            .collect();
+        let (mut source, made) = if asks.is_empty() {
+            (None, None)
+        } else {
+            let preset = self.with(&asks)?;
+            (Some(Source::One(self.table(&preset)?.up_to(self.radii[1].max(self.reach(&preset)))?)), Some(preset))
+        };
+        let reduced = self.reduced(made.as_ref().unwrap_or(&self.preset));
+        let mut work_of_adhesion = reduced.work_of_adhesion;
+        let mut control = made.as_ref().unwrap_or(&self.preset).path.control.in_units(reduced.units.stiffness);
+        for (k, role) in self.roles.iter().enumerate() {
+            match role {
+                Role::Adhesion(factor) => work_of_adhesion = factor * value(k),
+                Role::Device => control = device(value(k)).in_units(reduced.units.stiffness),
+                Role::Linear => {
+                    if let Some([lo, hi]) = &self.ends {
+                        let [from, to] = self.axes[k].range;
+                        let share = (value(k) - from) / (to - from);
+                        let reach = self.radii[1].max(self.reach(&self.preset));
+                        source = Some(Source::Mixed([lo.up_to(reach)?, hi.up_to(reach)?], share));
+                    }
+                }
+                Role::Other => {}
+            }
+        }
+        let source = match source {
+            Some(source) => source,
+            None => {
+                let reach = self.radii[1].max(self.reach(&self.preset));
+                let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
+                Source::One(own.up_to(reach)?)
+            }
+        };
+        Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control, made })
+    }
+}
+
+/// The device of a compliance.
+fn device(compliance: f64) -> Control {
+    if compliance <= 0.0 {
+        Control::Displacement
+    } else if compliance.is_finite() && compliance.recip() > 0.0 {
+        Control::Stiffness(compliance.recip())
+    } else {
+        Control::Force
+    }
+}
+
+/// Where g comes from.
+#[derive(Debug, Clone)]
+enum Source {
+    One(Arc<Panels>),
+    /// At both ends of the number that enters linearly, and the share between them.
+    Mixed([Arc<Panels>; 2], f64),
+}
+
+/// One problem of a family, reduced by the family's length.
+#[derive(Debug, Clone)]
+pub struct Member<'a> {
+    family: &'a Family,
+    source: Source,
+    /// √(πγ/2).
+    pub root: f64,
+    /// γ.
+    pub work_of_adhesion: f64,
+    /// The device.
+    pub control: Control,
+    made: Option<Preset>,
+}
+
+impl Member<'_> {
+    /// What the law needs at the radius `s`; `None` beyond the table, and where it has no number.
+    pub fn local(&self, s: f64) -> Option<Local> {
+        let of = |panels: &Panels| {
+            let place = (s > 0.0 && s <= panels.reach()).then(|| panels.place(s))?;
+            let [transform, area] = panels.value_and_area(place);
+            (place.panel > 0).then(|| (panels.slopes(place), [transform, area]))
+        };
+        let (slopes, [transform, area]) = match &self.source {
+            Source::One(panels) => of(panels)?,
+            Source::Mixed([lo, hi], share) => {
+                let mix = |a: f64, b: f64| a + share * (b - a);
+                let ((a, [ag, aa]), (b, [bg, ba])) = (of(lo)?, of(hi)?);
+                ([mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2])], [mix(ag, bg), mix(aa, ba)])
+            }
+        };
+        let edge = Edge::of(self.control, s, slopes);
+        let sound = edge.bend.is_finite() && edge.slope.is_finite() && transform.is_finite();
+        sound.then_some(Local {
+            edge,
+            root: self.root,
+            transform,
+            area,
+            slope: slopes[0],
+            contact_radius: s,
+            control: self.control,
+        })
+    }
+
+    /// The law of this member: on the table of its own gap.
+    ///
+    /// # Errors
+    /// The gap cannot be tabulated.
+    pub fn law(&self, at: At<'_>) -> Result<Law, FamilyError> {
+        let panels = match &self.source {
+            Source::One(panels) => Arc::clone(panels),
+            Source::Mixed(..) => {
+                let preset = self.family.preset_at(at)?;
+                self.family.table(&preset)?.up_to(self.family.radii[1])?
+            }
+        };
+        Ok(Law { panels, control: self.control })
+    }
+
+    /// The exact basis on the table of its own gap, its problem, and the radii at which its path starts and ends; all reduced.
+    ///
+    /// # Errors
+    /// [`FamilyError`].
+    pub fn ground(&self, at: At<'_>) -> Result<(Exact, Reduced, [f64; 2]), FamilyError> {
+        let family = self.family;
+        let preset = match (&self.made, &self.source) {
+            (Some(preset), _) => preset.clone(),
+            (None, Source::One(_)) => family.preset.clone(),
+            (None, Source::Mixed(..)) => family.preset_at(at)?,
+        };
+        let start = family.start_of(&preset, self.work_of_adhesion)?;
+        let end = preset.end_contact_radius(start * family.length) / family.length;
+        let reduced = Reduced { work_of_adhesion: self.work_of_adhesion, ..family.reduced(&preset) };
+        Ok((Exact::new(family.table(&preset)?, start), reduced, [end, start]))
+    }
+}

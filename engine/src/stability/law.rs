@@ -1,0 +1,160 @@
+//! The law of stability of one disc, exact for any gap and any device.
+//!
+//! ```text
+//! F(s) = W_k(s) g'(s),     γ_k(s) = (2E*/π) F²   where g' > 0, else 0
+//! state s is stable  ⇔  γ < γ_k(s),    a limit point  ⇔  γ = γ_k(s)
+//! ```
+//!
+//! One curve answers for every work of adhesion: the line γ cuts it at all limit points. At its extrema pairs of them are born:
+//! F' = 0, a cusp. Where h'' jumps γ_k has a corner and no derivative: an extremum there is none.
+
+use super::weight::Weight;
+use crate::disc::chebyshev::{self, ROOT_NODES, Rule};
+use crate::disc::{Panels, Place};
+use crate::gap::panels::Variable;
+use crate::problem::Control;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Values of F' below this share of its terms are rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// A derivative of g' by the panel's variable below this share of its size, at the break, says that h'' does not jump there.
+const SMOOTH: f64 = 1e-8;
+
+/// F = `W_k g'` and its derivatives by s at one radius, reduced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// F.
+    pub value: f64,
+    /// F'.
+    pub slope: f64,
+    /// F''.
+    pub bend: f64,
+}
+
+impl Edge {
+    /// F of the derivatives of g at the radius `s`.
+    pub fn of(control: Control, s: f64, [first, second, third]: [f64; 3]) -> Self {
+        let Weight { value, slope, bend } = Weight::of(control, s);
+        Self {
+            value: value * first,
+            slope: value * (slope * first + second),
+            bend: value * ((slope * slope + bend) * first + 2.0 * slope * second + third),
+        }
+    }
+}
+
+/// √(πγ/2), that F is held against, of a reduced work of adhesion.
+pub fn root_of(work_of_adhesion: f64) -> f64 {
+    (FRAC_PI_2 * work_of_adhesion).sqrt()
+}
+
+/// γ of F, reduced: zero where F is not positive.
+pub fn adhesion_of(value: f64) -> f64 {
+    let f = value.max(0.0);
+    f * f / FRAC_PI_2
+}
+
+/// A place at which F is largest or smallest along the radius: at such an adhesion a pair of limit points is born.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cusp {
+    /// s, reduced.
+    pub contact_radius: f64,
+    /// F there.
+    pub value: f64,
+    /// Whether F is smallest there.
+    pub is_minimum: bool,
+}
+
+/// The law of one gap under one device.
+#[derive(Debug, Clone)]
+pub struct Law {
+    /// The table of g.
+    pub panels: Arc<Panels>,
+    /// The device, reduced.
+    pub control: Control,
+}
+
+impl Law {
+    /// F at the radius `s`; `None` beyond the table or on its innermost panel, which holds no limit point.
+    pub fn edge(&self, s: f64) -> Option<Edge> {
+        let place = self.place(s)?;
+        Some(Edge::of(self.control, s, self.panels.slopes(place)))
+    }
+
+    /// `γ_k(s)`, reduced; zero where g' ≤ 0, `None` beyond the table.
+    pub fn critical(&self, s: f64) -> Option<f64> {
+        let place = self.place(s)?;
+        let slope = self.panels.weighted_slope(place) / self.panels.list()[place.panel].weight(place.x);
+        Some(adhesion_of(Weight::of(self.control, s).value * slope))
+    }
+
+    fn place(&self, s: f64) -> Option<Place> {
+        let known = s > 0.0 && s <= self.panels.reach();
+        known.then(|| self.panels.place(s)).filter(|place| place.panel > 0)
+    }
+
+    /// The extrema of F with F > 0 between two radii, ascending, and the radii of the corners of F there.
+    pub fn cusps(&self, [from, to]: [f64; 2]) -> (Vec<Cusp>, Vec<f64>) {
+        let (mut cusps, mut corners) = (Vec::new(), Vec::new());
+        let mut before: Option<bool> = None;
+        for (panel, of) in self.panels.list().iter().enumerate().skip(1) {
+            if of.span.hi < from {
+                continue;
+            }
+            if of.span.lo > to {
+                break;
+            }
+            let power = self.singular(panel);
+            let series = self.tendency(panel, power);
+            let starts = chebyshev::sum(&series, -1.0) > 0.0;
+            let border = of.span.lo;
+            let wanted = |s: f64| from <= s && s <= to;
+            if power > 0 && wanted(border) {
+                corners.push(border);
+            } else if before.is_some_and(|before| before != starts) {
+                self.push(border, starts, wanted, &mut cusps);
+            }
+            let size: f64 = series.iter().map(|c| c.abs()).sum();
+            let mut grows = starts;
+            for x in chebyshev::roots(&series, ROUNDING * size) {
+                grows = !grows;
+                self.push(of.span.radius(x), grows, wanted, &mut cusps);
+            }
+            before = Some(grows);
+        }
+        (cusps, corners)
+    }
+
+    fn push(&self, s: f64, is_minimum: bool, wanted: impl Fn(f64) -> bool, cusps: &mut Vec<Cusp>) {
+        let edge = self.edge(s).filter(|edge| edge.value > 0.0 && wanted(s));
+        cusps.extend(edge.map(|edge| Cusp { contact_radius: s, value: edge.value, is_minimum }));
+    }
+
+    /// With which power of the stretch F' is smooth on a panel: 3 where h' jumps at its inner end, 1 where h'' does, else 0.
+    fn singular(&self, panel: usize) -> i32 {
+        let of = &self.panels.list()[panel];
+        match of.span.variable {
+            Variable::Root { base } if base >= of.span.lo => {
+                if of.is_steep() {
+                    return 3;
+                }
+                let series = self.panels.slope_series(panel);
+                let size: f64 = series.iter().map(|c| c.abs()).sum();
+                let jump = chebyshev::sum_and_slope(&series, -1.0)[1];
+                i32::from(jump.abs() > SMOOTH * size)
+            }
+            _ => 0,
+        }
+    }
+
+    /// On a panel, the series of F' times a power of the stretch.
+    fn tendency(&self, panel: usize, power: i32) -> Vec<f64> {
+        let span = self.panels.list()[panel].span;
+        Rule::of(ROOT_NODES).series(|x| {
+            let slopes = self.panels.slopes(Place { panel, x });
+            Edge::of(self.control, span.radius(x), slopes).slope * span.stretch(x).powi(power)
+        })
+    }
+}

@@ -1,0 +1,24 @@
+//! Where snaps begin: the law of stability of one disc, and its limit points in two parameters.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`weight`] | `W_k`, the weight of a loading device |
+//! | [`law`] | `γ_k(s)`, the law itself, and its cusps |
+//! | [`axis`] | a number of a preset over a range |
+//! | [`family`] | a preset with one or two numbers left open |
+//! | [`count`] | the snaps of a path, and where their number changes |
+//! | [`explicit`] | lines of cusps that follow from s |
+//!
+//! The law is of the exact equation of one disc; presets in ring elements are judged by it all the same.
+
+pub mod axis;
+pub mod count;
+pub mod explicit;
+pub mod family;
+pub mod law;
+pub mod weight;
+
+pub use axis::{Axis, AxisError, COMPLIANCE, Spacing};
+pub use count::{Cause, Change, Passage, even};
+pub use family::{Family, FamilyError};
+pub use law::{Cusp, Law};

@@ -1,0 +1,158 @@
+//! The law of stability against known numbers of the waves of Fig. 9, and against the traced curve.
+
+use pulloff_engine::stability::law::{adhesion_of, root_of};
+use pulloff_engine::stability::{Axis, Cause, Family, even};
+use pulloff_engine::{Control, Material, Preset, Shape, Start};
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+const AMPLITUDE: &str = "groups.amplitude_over_wavelength";
+const ADHESION: &str = "groups.adhesion";
+
+fn data() -> Value {
+    serde_json::from_str(include_str!("data/stability.json")).unwrap()
+}
+
+/// λ/R = 0.05, E* = R = 1.
+fn waves(control: Control, start: f64, amplitude_over_wavelength: f64, adhesion: f64) -> Preset {
+    let gap = Shape::WavySphere {
+        radius_of_curvature: 1.0,
+        amplitude: 0.05 * amplitude_over_wavelength,
+        wavelength: 0.05,
+    };
+    let material =
+        Material { effective_modulus: 1.0, work_of_adhesion: adhesion / TAU, range_of_action: None };
+    let mut preset = Preset::new(material, gap, Start::ContactRadius(start));
+    preset.path.control = control;
+    preset
+}
+
+fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> Axis {
+    Axis::new(key, range, logarithmic, 1.0).unwrap()
+}
+
+fn control(name: &str) -> Control {
+    name.parse().unwrap_or_else(|_| Control::Stiffness(name.parse().unwrap()))
+}
+
+/// Whether `ours` is `given` in all of its digits.
+fn same(ours: f64, given: f64, last: f64) -> bool {
+    (ours - given).abs() <= 0.51 * last
+}
+
+fn rows(value: &Value) -> Vec<Vec<Value>> {
+    value.as_array().unwrap().iter().map(|row| row.as_array().unwrap().clone()).collect()
+}
+
+#[test]
+fn cusps_in_the_adhesion_are_those_known_and_a_ninth_under_force() {
+    let known = &data()["cusps_in_adhesion"];
+    let a = known["amplitude_over_wavelength"].as_f64().unwrap();
+    let cusps = |control| {
+        let family = Family::new(&waves(control, 0.41, a, 0.025), Vec::new()).unwrap();
+        family.cusps(&[])
+    };
+    let (grips, dead) = (cusps(Control::Displacement), cusps(Control::Force));
+    for (row, (ours, force)) in rows(&known["displacement"]).iter().zip(grips.iter().zip(&dead)) {
+        let [s, adhesion] = [0, 1].map(|k| row[k].as_f64().unwrap());
+        let found = TAU * adhesion_of(ours.value);
+        assert!(same(ours.contact_radius, s, 1e-4) && same(found, adhesion, 1e-5), "{ours:?} {found} {row:?}");
+        assert!((ours.contact_radius - force.contact_radius).abs() < 1e-9);
+        assert!((adhesion_of(ours.value) / adhesion_of(force.value) - 9.0).abs() < 1e-12);
+    }
+    assert!(grips.len() >= 9 && grips.len() == dead.len());
+}
+
+#[test]
+fn lines_of_cusps_pass_the_cusps_in_the_amplitude() {
+    let known = &data()["cusps_in_amplitude"];
+    let adhesion = known["adhesion"].as_f64().unwrap();
+    for name in ["displacement", "force"] {
+        let preset = waves(control(name), 0.41, 0.05, adhesion);
+        let axes = vec![axis(AMPLITUDE, [0.0, 0.0125], false), axis(ADHESION, [1e-3, 1.0], true)];
+        let level = axes[1].share(adhesion);
+        let family = Family::new(&preset, axes).unwrap();
+        let lines = family.explicit_cusps().unwrap().unwrap();
+        for row in rows(&known[name]) {
+            let [s, amplitude] = [0, 1].map(|k| row[k].as_f64().unwrap());
+            let hit = lines.iter().any(|(points, _)| {
+                points.windows(2).any(|pair| {
+                    let [a, b] = [pair[0], pair[1]];
+                    let share = (level - a.at[1]) / (b.at[1] - a.at[1]);
+                    let mix = |x: f64, y: f64| x + share * (y - x);
+                    (0.0..=1.0).contains(&share)
+                        && same(mix(a.contact_radius, b.contact_radius), s, 1e-4)
+                        && same(0.0125 * mix(a.at[0], b.at[0]), amplitude, 2e-6)
+                })
+            });
+            assert!(hit, "{name} {row:?}");
+        }
+    }
+}
+
+#[test]
+fn swallowtails_are_those_known() {
+    let family = |control| {
+        let axes = vec![axis(AMPLITUDE, [0.0, 0.002], false), axis(ADHESION, [1e-4, 1.0], true)];
+        Family::new(&waves(control, 0.41, 0.05, 0.025), axes).unwrap()
+    };
+    for (control, ratio) in [(Control::Displacement, 1.0), (Control::Force, 9.0)] {
+        let family = family(control);
+        let lines = family.explicit_cusps().unwrap().unwrap();
+        let tips: Vec<_> = lines.iter().flat_map(|(_, tips)| tips).collect();
+        for row in rows(&data()["swallowtails"]) {
+            let [s, amplitude, adhesion] = [0, 1, 2].map(|k| row[k].as_f64().unwrap());
+            let hit = tips.iter().any(|tip| {
+                let [a, y] = [0, 1].map(|k| family.axes[k].value(tip.at[k]));
+                same(tip.contact_radius, s, 1e-4) && same(a, amplitude, 1e-6) && (ratio * y / adhesion - 1.0).abs() < 3e-4
+            });
+            assert!(hit, "{control} {row:?}: {tips:?}");
+        }
+    }
+}
+
+#[test]
+fn every_change_of_the_count_is_a_cusp_or_a_landing_where_it_is_known() {
+    let known = &data()["snaps"];
+    let [start, adhesion] = ["start", "adhesion"].map(|key| known[key].as_f64().unwrap());
+    for (name, most) in [("displacement", 0.0125), ("force", 0.05), ("0.15", 0.0105), ("0.6", 0.0063)] {
+        let preset = waves(control(name), start, 0.05, adhesion);
+        let family = Family::new(&preset, vec![axis(AMPLITUDE, [1e-5, most], false)]).unwrap();
+        let found = family.changes(0, &[0.0], &even(150), &|| true);
+        let rows = rows(&known[name]);
+        let words: Vec<_> = found.iter().map(|c| (c.snaps, family.axes[0].value(c.share), c.cause)).collect();
+        assert!(found.len() >= rows.len(), "{name}: {words:?}");
+        for (row, change) in rows.iter().zip(&found) {
+            let amplitude = family.axes[0].value(change.share);
+            let given = row[2].as_f64().unwrap();
+            let last = if given > 0.02 { 1e-5 } else { 1e-6 };
+            assert!(same(amplitude, given, last), "{name} {amplitude} {row:?}");
+            assert_eq!(change.snaps.map(|n| n as u64), [0, 1].map(|k| row[k].as_u64().unwrap()), "{name}");
+            let kind = match change.cause {
+                Cause::Cusp(_) => "cusp",
+                Cause::Landing(_) => "landing",
+                Cause::Start => "start",
+            };
+            assert_eq!(kind, row[3].as_str().unwrap(), "{name} {row:?}");
+        }
+    }
+}
+
+#[test]
+fn the_law_holds_at_every_limit_point_of_the_curve() {
+    let traced = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
+    for control in traced {
+        let preset = waves(control, 0.5, 0.05, 0.025);
+        let case = pulloff_engine::Case::new(&preset).unwrap();
+        let curve = case.curve(|| true).unwrap();
+        let family = Family::new(&preset, Vec::new()).unwrap();
+        let law = family.member(&[]).unwrap().law(&[]).unwrap();
+        let limits = curve.limit_points(control);
+        assert_eq!(limits.len(), 19);
+        for limit in limits {
+            let critical = law.critical(limit.contact_radius).unwrap();
+            assert!((critical / case.reduced.work_of_adhesion - 1.0).abs() < 1e-10, "{control} {limit:?}");
+            assert!((law.edge(limit.contact_radius).unwrap().value / root_of(critical) - 1.0).abs() < 1e-12);
+        }
+    }
+}
