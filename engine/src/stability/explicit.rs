@@ -16,6 +16,9 @@ use crate::problem::Control;
 const PER_PANEL: f64 = 24.0;
 /// The most of all.
 const MOST: f64 = 40_000.0;
+/// Neighbours on a line are nearer to each other than this, in shares of the axes, after so many halvings at most.
+const CLOSE: f64 = 0.02;
+const DEPTH: usize = 20;
 /// Halvings of the last step at the border of the map, and at a swallowtail.
 const HALVINGS: usize = 48;
 
@@ -106,38 +109,81 @@ impl Family {
         Ok(None)
     }
 
+    /// The cusps along the only axis, whose number enters linearly: s and the share of each, ascending by share. Empty where the
+    /// axis is another.
+    ///
+    /// # Errors
+    /// A table cannot be had.
+    pub fn births(&self) -> Result<Vec<[f64; 2]>, FamilyError> {
+        if self.linear() != Some(0) || self.axes.len() != 1 {
+            return Ok(Vec::new());
+        }
+        let (lo, hi) = (self.member(&[0.0])?, self.member(&[1.0])?);
+        let [from, to] = self.axes[0].range;
+        // What F lacks at the radius where it turns, and the share at which it does.
+        let born = |s: f64| {
+            let (a, b) = (lo.local(s)?.edge, hi.local(s)?.edge);
+            let t = -a.slope / (b.slope - a.slope);
+            (t >= 0.0).then(|| (a.value + t * (b.value - a.value) - lo.root, self.axes[0].share(from + t * (to - from))))
+        };
+        let mut found = Vec::new();
+        for pair in self.sampled_radii().windows(2) {
+            // Where only one end has a line, as far as it goes.
+            let [mut a, mut b] = match (born(pair[0]), born(pair[1])) {
+                (Some(_), Some(_)) => [pair[0], pair[1]],
+                (Some(_), None) => [pair[0], last(&born, pair[1], pair[0])],
+                (None, Some(_)) => [last(&born, pair[0], pair[1]), pair[1]],
+                (None, None) => continue,
+            };
+            let (Some((f, _)), Some((g, _))) = (born(a), born(b)) else { continue };
+            if (f > 0.0) == (g > 0.0) {
+                continue;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (a + b);
+                match born(middle) {
+                    Some((off, _)) if (off > 0.0) == (f > 0.0) => a = middle,
+                    Some(_) => b = middle,
+                    None => break,
+                }
+            }
+            // Not at a pole, and on the axis.
+            let on_axis = |(off, share): &(f64, f64)| off.abs() <= f.abs().max(g.abs()) && (0.0..=1.0).contains(share);
+            found.extend(born(a).filter(on_axis).map(|(_, share)| [a, share]));
+        }
+        found.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        Ok(found)
+    }
+
     /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
     fn sampled(&self, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
-        let radii = self.sampled_radii();
-        let mut lines = Vec::new();
+        let mut lines: Vec<Line> = Vec::new();
         let mut line: Line = Default::default();
         let mut before: Option<(f64, Option<Born>)> = None;
         let good = |s: f64| born(s).filter(Born::is_inside);
-        for s in radii {
+        for s in self.sampled_radii() {
             let here = good(s);
             if let Some((from, old)) = before {
-                match (old, here) {
-                    (None, Some(point)) => {
-                        line.0.extend(border(&good, from, s).filter(|edge| edge.contact_radius < point.contact_radius));
+                // Where it enters or leaves the map, the piece of a step that is on it.
+                let ends = match (old, here) {
+                    (Some(old), Some(here)) => Some((old, here)),
+                    (None, Some(here)) => good(last(&good, from, s)).map(|edge| (edge, here)),
+                    (Some(old), None) => good(last(&good, s, from)).map(|edge| (old, edge)),
+                    (None, None) => None,
+                };
+                if let Some((a, b)) = ends {
+                    if line.0.is_empty() {
+                        line.0.push(a);
                     }
-                    (Some(_), None) => {
-                        line.0.extend(border(&good, s, from));
-                        lines.push(std::mem::take(&mut line));
+                    if !refine(&good, a, b, DEPTH, &mut line) {
+                        // A pole: it goes on elsewhere.
+                        lines.push(std::mem::replace(&mut line, (vec![b], Vec::new())));
                     }
-                    (Some(old), Some(here)) if (old.bend > 0.0) != (here.bend > 0.0) => {
-                        match tip(&good, old, here) {
-                            Some(tip) => {
-                                line.0.push(tip);
-                                line.1.push(tip);
-                            }
-                            // A pole: the line goes on elsewhere.
-                            None => lines.push(std::mem::take(&mut line)),
-                        }
-                    }
-                    _ => {}
+                }
+                if here.is_none() {
+                    lines.push(std::mem::take(&mut line));
                 }
             }
-            line.0.extend(here);
             before = Some((s, here));
         }
         lines.push(line);
@@ -188,13 +234,34 @@ fn third_of(local: &Local, control: Control, s: f64) -> [f64; 3] {
     [f, second, ddf - (weight.slope * weight.slope + weight.bend) * f - 2.0 * weight.slope * second]
 }
 
-/// The last good point on the way from `outside`, where there is none, to `inside`.
-fn border(good: &dyn Fn(f64) -> Option<Born>, mut outside: f64, mut inside: f64) -> Option<Born> {
+/// The last radius on the way from `inside` to `outside`, where there is none, at which `good` has an answer.
+fn last<T>(good: &dyn Fn(f64) -> Option<T>, mut outside: f64, mut inside: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (outside + inside);
         if good(middle).is_some() { inside = middle } else { outside = middle }
     }
-    good(inside)
+    inside
+}
+
+/// Adds the points after `a` up to `b`, closer to each other than [`CLOSE`], and the swallowtails between them; false where the
+/// line jumps.
+fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, line: &mut Line) -> bool {
+    let apart = (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1]);
+    if apart > CLOSE && depth > 0 {
+        let Some(middle) = good(0.5 * (a.contact_radius + b.contact_radius)) else { return false };
+        return refine(good, a, middle, depth - 1, line) && refine(good, middle, b, depth - 1, line);
+    }
+    if apart > CLOSE {
+        return false;
+    }
+    if (a.bend > 0.0) != (b.bend > 0.0)
+        && let Some(tip) = tip(good, a, b)
+    {
+        line.0.push(tip);
+        line.1.push(tip);
+    }
+    line.0.push(b);
+    true
 }
 
 /// The swallowtail between two points, where F'' passes zero; `None` where it passes a pole.
