@@ -9,6 +9,7 @@ use pulloff::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::quasistatic::{CurveStop, EventKind};
 use pulloff_engine::report::TraceReport;
 use std::sync::Arc;
@@ -81,7 +82,7 @@ fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
         id: 0,
         action: Action::Steps(5),
         from: drawn.equilibrium.explicit(from),
-        on_limit: false,
+        at: At::Nothing,
         control: curve.case.control,
         inward: !back,
         length: 0.02,

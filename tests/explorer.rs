@@ -60,7 +60,7 @@ fn outward_the_edge_jumps_on_loading() {
     assert!(session.radius() > before);
     assert!(event.dissipated.unwrap() > 0.0);
     let node = session.model.history.current().unwrap();
-    assert!(node.stability().under(session.model.control().unwrap()));
+    assert!(node.stability.under(session.model.control().unwrap()));
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn steps_stop_at_a_limit_point_and_go_on_along_the_unstable_branch() {
     assert_eq!(session.kind(), NodeKind::Limit);
     session.does(Id::Step).does(Id::Step);
     assert_eq!(session.kind(), NodeKind::Step);
-    assert!(!session.model.history.current().unwrap().stability().under(control));
+    assert!(!session.model.history.current().unwrap().stability.under(control));
     assert!(session.status().starts_with("Unstable"));
     // From an unstable state the edge runs as well, the way it is walked.
     session.does(Id::Jump);

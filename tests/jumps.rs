@@ -9,6 +9,7 @@ use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Control, Start};
 use pulloff_engine::quasistatic::Turn;
+use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
 
 const START: f64 = 0.45;
@@ -37,7 +38,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             action: Action::Jump,
             curve: Arc::clone(&curve),
             from: curve.base.curve.equilibrium.explicit(limit.contact_radius),
-            on_limit: true,
+            at: At::Limit,
             control: curve.case.control,
             inward,
             length: 0.1,

@@ -44,7 +44,7 @@ fn told(node: &Node) -> String {
     let Node { parent, kind, setting, control, point, state, step, stiffness, ahead, admissibility, .. } =
         node;
     let (preset, scales) = (write(&setting.preset), setting.scales);
-    let rest = (node.digits, node.from_exact, node.begins, node.stability());
+    let rest = (node.digits, node.from_exact, node.begins, node.stability);
     format!(
         "{parent:?} {kind:?} {control:?} {point:?} {state:?} {step} {stiffness:?} {ahead:?} {admissibility:?} {rest:?} \
          {scales:?} {preset}"

@@ -17,6 +17,7 @@ use crate::store::{Fingerprint, Listing, Loaded, Source};
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Preset, Row, Value};
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::unload::EventReport;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -350,10 +351,11 @@ impl Model {
         curve.limits.iter().position(|limit| (limit.contact_radius - s).abs() <= 1e-7 * s)
     }
 
-    /// Whether the edge can run from here: at a limit point of the control, or in an unstable state.
+    /// Whether edges can run from here: at a limit point of the control, at a touch, or in an unstable state.
     pub fn can_jump(&self) -> bool {
         let (Some(node), Some(control)) = (self.walker(), self.control()) else { return false };
-        !node.is_apart() && (node.is_limit(control) || !node.stability().under(control))
+        let runs = node.at(control) != At::Nothing || !node.stability.under(control);
+        !node.is_apart() && runs
     }
 
     /// The jumps of the walk that led to the walker, with the number of their node.

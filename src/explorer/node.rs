@@ -1,8 +1,9 @@
 //! One state of the walk.
 
 use super::setting::Setting;
+use pulloff_engine::annuli::Contacts;
 use pulloff_engine::problem::Control;
-use pulloff_engine::quasistatic::walk::Ahead;
+use pulloff_engine::quasistatic::walk::{Ahead, At, edges};
 use pulloff_engine::quasistatic::{Admissibility, Event, Point, Stability, State, Stiffness};
 use std::sync::Arc;
 
@@ -13,6 +14,8 @@ pub enum NodeKind {
     Step,
     /// A limit point of the control, located exactly.
     Limit,
+    /// Where the crest at this radius (reduced) touches, located exactly: from here on the real path has a ring.
+    Touch(f64),
     /// The landing of a jump, or `None` inside for a pull-off, with what it cost.
     Jump(Box<Event>),
     /// Moved to by hand: an event selected, the start again.
@@ -34,8 +37,10 @@ pub struct Node {
     pub control: Control,
     /// The point of the curve, in the scales of its setting.
     pub point: Point,
-    /// The state, reduced.
+    /// The state, reduced; its contact radius is the outermost edge.
     pub state: State,
+    /// The slopes that decide the stability, reduced.
+    pub stability: Stability,
     pub step: usize,
     /// dP/dδ and dA/dδ here, reduced.
     pub stiffness: Stiffness,
@@ -45,7 +50,7 @@ pub struct Node {
     pub admissibility: Admissibility,
     /// Decimal digits the basis can be trusted for here.
     pub digits: f64,
-    /// The relative difference of P from the exact solution at the same contact radius.
+    /// The relative difference of P from the exact solution of one disc at the same contact radius; not a number with rings.
     pub from_exact: f64,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
@@ -54,9 +59,23 @@ pub struct Node {
 }
 
 impl Node {
-    /// The slopes that decide the stability.
-    pub fn stability(&self) -> Stability {
-        self.setting.scales.stability(&self.point)
+    /// Whether there is more than a disc.
+    pub fn has_rings(&self) -> bool {
+        edges::has_rings(&self.point)
+    }
+
+    /// Where the bodies touch, reduced lengths.
+    pub fn contacts(&self) -> Contacts {
+        edges::contacts(&self.setting.scales, &self.point)
+    }
+
+    /// What the walker stands on under `control`.
+    pub fn at(&self, control: Control) -> At {
+        match self.kind {
+            NodeKind::Touch(radius) => At::Touch(radius),
+            _ if self.is_limit(control) => At::Limit,
+            _ => At::Nothing,
+        }
     }
 
     /// The bodies are apart: the walk ends here.

@@ -110,7 +110,7 @@ fn next(model: &Model) -> String {
         return limit_hint(model, node);
     }
     let [limit, jump, step] = [Id::NextLimit, Id::Jump, Id::Step].map(Id::named);
-    match (node.stability().under(control), &node.kind) {
+    match (node.stability.under(control), &node.kind) {
         (true, NodeKind::Start) => {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {limit} runs to a limit point, {help} helps")

@@ -2,16 +2,19 @@
 //!
 //! A request says where the walker stands and what it is to do; the answer is new states, never a change of old ones.
 
+use super::command::Id;
 use super::curve::CurveData;
 use super::node::NodeKind;
 use super::setting::Setting;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
-use pulloff_engine::quasistatic::walk::{Ahead, Arrival, Walk, WalkEnd, WalkFailure};
-use pulloff_engine::quasistatic::{Admissibility, Point, State, Stiffness};
+use pulloff_engine::quasistatic::walk::{Ahead, Arrival, At, Reached, Walk, WalkEnd, WalkFailure, edges};
+use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
 use pulloff_engine::report::unload::control_name;
 use pulloff_engine::theory::Exact;
+use pulloff_engine::units::Quantity;
+use pulloff_engine::units::number::said;
 use std::sync::Arc;
 
 /// Most states of one request: a run that meets nothing ends.
@@ -53,8 +56,8 @@ pub struct Request {
     pub curve: Arc<CurveData>,
     /// Where the walker stands; none only for moves.
     pub from: Option<Point>,
-    /// Whether it stands on a limit point of the control.
-    pub on_limit: bool,
+    /// What it stands on.
+    pub at: At,
     /// What is controlled (reduced).
     pub control: Control,
     pub inward: bool,
@@ -69,6 +72,7 @@ pub struct Made {
     pub setting: Arc<Setting>,
     pub point: Point,
     pub state: State,
+    pub stability: Stability,
     pub stiffness: Stiffness,
     pub ahead: Option<Ahead>,
     pub admissibility: Admissibility,
@@ -81,7 +85,7 @@ pub struct Made {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
     Done,
-    /// A limit point of the control was reached.
+    /// A limit point of the control, or a touch, was reached.
     AtLimit,
     Paused,
     /// The end of what can be walked was reached, in words.
@@ -97,11 +101,11 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         range: [case.start, case.end],
         control: request.control,
         from: request.from.as_ref(),
-        on_limit: request.on_limit,
+        at: request.at,
         inward: request.inward,
         length: request.length,
     };
-    let mut arrive = |arrival: Arrival, point: Point| emit(made(request, arrival, point));
+    let mut arrive = |reached: Reached| emit(made(request, reached));
     let end = match &request.action {
         Action::Steps(count) => walk.steps(*count, false, &mut arrive),
         Action::ToLimit => walk.steps(RUN_POINTS, true, &mut arrive),
@@ -118,14 +122,25 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             walk.solve(value, state.contact_radius / units.length, &mut arrive)
         }
     };
+    let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
     match end {
         WalkEnd::Done if request.action == Action::ToLimit => {
-            Outcome::Ended(format!("no limit point within {RUN_POINTS} steps"))
+            Outcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
         }
         WalkEnd::Done => Outcome::Done,
-        WalkEnd::AtLimit => Outcome::AtLimit,
+        WalkEnd::AtLimit | WalkEnd::AtTouch => Outcome::AtLimit,
         WalkEnd::Paused => Outcome::Paused,
         WalkEnd::AtEnd => Outcome::Ended("the end contact radius is reached; b turns round".to_owned()),
+        WalkEnd::EdgesMeet(radius) => Outcome::Ended(format!(
+            "the branch ends here: two edges meet at r {}; {} turns round",
+            length(radius),
+            Id::Reverse.named()
+        )),
+        WalkEnd::Vanishes(radius) => Outcome::Ended(format!(
+            "the branch ends here: the contact at r {} shrinks to nothing; {} turns round",
+            length(radius),
+            Id::Reverse.named()
+        )),
         WalkEnd::OutOfRange => {
             Outcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
         }
@@ -144,22 +159,24 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
     (state.force - exact) / exact.abs()
 }
 
-fn made(request: &Request, arrival: Arrival, point: Point) -> Made {
-    let equilibrium = &request.curve.base.curve.equilibrium;
-    let state = equilibrium.state(&point);
+fn made(request: &Request, reached: Reached) -> Made {
+    let Reached { arrival, point, state, stability, stiffness, admissibility, digits } = reached;
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
         Arrival::Limit(ahead) => (NodeKind::Limit, ahead),
+        Arrival::Touch(radius) => (NodeKind::Touch(radius), None),
         Arrival::Jump(event) => (NodeKind::Jump(event), None),
         Arrival::Moved => (NodeKind::Moved, None),
         Arrival::Solved => (NodeKind::Solved, None),
     };
+    let exact = if edges::has_rings(&point) { f64::NAN } else { from_exact(&request.curve.case, &state) };
     Made {
         setting: Arc::clone(&request.curve.setting),
-        stiffness: equilibrium.stiffness(&point),
-        admissibility: equilibrium.admissibility(&point),
-        digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
-        from_exact: from_exact(&request.curve.case, &state),
+        stability,
+        stiffness,
+        admissibility,
+        digits,
+        from_exact: exact,
         begins: matches!(request.action, Action::MoveTo(_) | Action::MoveToEvent { .. }),
         kind,
         ahead,

@@ -93,7 +93,7 @@ impl WalkRow {
     pub(super) fn new(node: &Node, changed: &[Key]) -> Self {
         let setting = &node.setting;
         let state = node.state.in_units(setting.units());
-        let stability = node.stability();
+        let stability = node.stability;
         let event = match &node.kind {
             NodeKind::Jump(event) => Some(EventReport::new(&setting.reduced, node.control, event)),
             _ => None,
@@ -143,6 +143,7 @@ pub fn kind_name(kind: &NodeKind) -> &'static str {
         NodeKind::Start => "start",
         NodeKind::Step => "step",
         NodeKind::Limit => "limit",
+        NodeKind::Touch(_) => "touch",
         NodeKind::Jump(event) => pulloff_engine::report::unload::kind_name(event.kind),
         NodeKind::Moved => "moved",
         NodeKind::Solved => "solved",

@@ -52,7 +52,9 @@ pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
                 NodeKind::Stale(_) => {}
                 // Without a landing the line would end nowhere.
                 NodeKind::Jump(event) if event.after.is_none() => {}
-                NodeKind::Jump(_) | NodeKind::Step | NodeKind::Limit => steps.push(place(node, &node.state)),
+                NodeKind::Jump(_) | NodeKind::Step | NodeKind::Limit | NodeKind::Touch(_) => {
+                    steps.push(place(node, &node.state));
+                }
                 _ => {
                     lines.push(std::mem::take(&mut steps));
                     steps.push(place(node, &node.state));
@@ -94,7 +96,9 @@ pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
                     steps.push(after);
                 }
             }
-            NodeKind::Step | NodeKind::Limit if !steps.is_empty() => steps.push(place(node, &node.state)),
+            NodeKind::Step | NodeKind::Limit | NodeKind::Touch(_) if !steps.is_empty() => {
+                steps.push(place(node, &node.state));
+            }
             _ => {
                 finish(&mut steps);
                 steps.push(place(node, &node.state));

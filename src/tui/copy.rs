@@ -57,7 +57,7 @@ fn quantities(node: &Node) -> String {
     let shown =
         |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, DIGITS));
     let pure = |x| significant(x, DIGITS);
-    let word = |control| match (node.is_limit(control), node.stability().under(control)) {
+    let word = |control| match (node.is_limit(control), node.stability.under(control)) {
         (true, _) => "limit point",
         (false, true) => "stable",
         (false, false) => "unstable",

@@ -7,12 +7,17 @@ use super::number::{Real, floats, reals};
 use crate::explorer::history::History;
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::setting::Setting;
+use pulloff_engine::annuli::MOST_CONTACTS;
 use pulloff_engine::continuation::{Column, Columns};
 use pulloff_engine::quasistatic::admissible::Crest;
-use pulloff_engine::quasistatic::walk::Ahead;
-use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, State, Stiffness};
+use pulloff_engine::quasistatic::walk::{Ahead, edges};
+use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, Stability, State, Stiffness};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// The unknowns of a disc, and of the most contacts.
+const FEWEST: usize = 3;
+const MOST: usize = 2 + 2 * MOST_CONTACTS;
 
 /// A node.
 #[derive(Debug, Serialize, Deserialize)]
@@ -24,15 +29,19 @@ pub(super) struct Saved {
     kind: Kind,
     setting: usize,
     step: usize,
-    y: [Real; 3],
-    tangent: [Real; 3],
-    curvature: [Real; 3],
+    /// δ, P and every edge, scaled.
+    y: Vec<Real>,
+    tangent: Vec<Real>,
+    curvature: Vec<Real>,
     positive: bool,
     length: Real,
     turning: Real,
     rounds: usize,
     energy: Real,
     stiffness: [Real; 3],
+    /// With rings, the slopes that decide the stability; those of one disc follow from its tangent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    slopes: Option<[Real; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ahead: Option<Lead>,
     /// r, the gap, and the number of the nearest crest.
@@ -57,6 +66,7 @@ enum Kind {
     Start,
     Step,
     Limit,
+    Touch(Real),
     Jump(Box<Leap>),
     Moved,
     Solved,
@@ -95,6 +105,7 @@ impl Kind {
             NodeKind::Start => Self::Start,
             NodeKind::Step => Self::Step,
             NodeKind::Limit => Self::Limit,
+            NodeKind::Touch(radius) => Self::Touch(Real(*radius)),
             NodeKind::Jump(event) => Self::Jump(Box::new(Leap {
                 control_value: Real(event.control_value),
                 before: state_out(&event.before),
@@ -113,6 +124,7 @@ impl Kind {
             Self::Start => NodeKind::Start,
             Self::Step => NodeKind::Step,
             Self::Limit => NodeKind::Limit,
+            Self::Touch(radius) => NodeKind::Touch(radius.0),
             Self::Jump(leap) => NodeKind::Jump(Box::new(Event {
                 kind: if leap.after.is_some() { EventKind::Snap } else { EventKind::PullOff },
                 control_value: leap.control_value.0,
@@ -131,22 +143,23 @@ impl Kind {
 impl Saved {
     fn of(node: &Node, setting: usize, forward: Option<usize>) -> Self {
         let Node { point, stiffness, admissibility, .. } = node;
-        let three = |column: Column<'_>| reals([column[0], column[1], column[2]]);
+        let numbers = |column: Column<'_>| column.iter().map(|x| Real(*x)).collect();
         Self {
             parent: node.parent,
             forward,
             kind: Kind::of(&node.kind),
             setting,
             step: node.step,
-            y: three(point.y()),
-            tangent: three(point.tangent()),
-            curvature: three(point.curvature()),
+            y: numbers(point.y()),
+            tangent: numbers(point.tangent()),
+            curvature: numbers(point.curvature()),
             positive: point.positive,
             length: Real(point.length),
             turning: Real(point.turning),
             rounds: point.rounds,
             energy: Real(node.state.energy),
             stiffness: reals([stiffness.contact, stiffness.tangent, stiffness.area_slope]),
+            slopes: node.has_rings().then(|| reals([node.stability.approach, node.stability.force])),
             ahead: node.ahead.map(|ahead| Lead {
                 after: ahead.after.as_ref().map(state_out),
                 dissipated: ahead.dissipated.map(Real),
@@ -164,10 +177,26 @@ impl Saved {
 
     fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
         let setting = Arc::clone(settings.get(self.setting)?);
-        let columns = [self.y, self.tangent, self.curvature].map(floats).concat();
+        let columns = [self.y, self.tangent, self.curvature];
+        let unknowns = columns[0].len();
+        let right =
+            (FEWEST..=MOST).contains(&unknowns) && columns.iter().all(|column| column.len() == unknowns);
+        let columns = right.then(|| columns.concat().iter().map(|x| x.0).collect())?;
         let mut point = Point::of(Columns::from_vec(columns), self.positive);
         (point.length, point.rounds, point.turning) = (self.length.0, self.rounds, self.turning.0);
-        let [approach, force, contact_radius] = setting.scales.quantities(point.y());
+        let scales = &setting.scales;
+        let [approach, force] = edges::device(scales, &point);
+        let contacts = edges::contacts(scales, &point);
+        contacts.check().ok()?;
+        let contact_radius = contacts.outermost();
+        let stability = match self.slopes {
+            Some(slopes) => {
+                let [approach, force] = floats(slopes);
+                Stability { approach, force }
+            }
+            None if unknowns > FEWEST => return None,
+            None => scales.stability(&point),
+        };
         let [contact, tangent, area_slope] = floats(self.stiffness);
         let node = Node {
             parent: self.parent,
@@ -175,6 +204,7 @@ impl Saved {
             control: setting.control,
             state: State { contact_radius, approach, force, energy: self.energy.0 },
             setting,
+            stability,
             point,
             step: self.step,
             stiffness: Stiffness { contact, tangent, area_slope },

@@ -9,6 +9,7 @@ use crate::explorer::requests::{adopt_parameters, stop, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::quasistatic::State;
+use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
 
 /// Asks for a walk on the curve on the screen, or says why there is none.
@@ -42,7 +43,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
             return Vec::new();
         }
     }
-    let on_limit = node.is_some_and(|node| node.is_limit(control));
+    let at = node.map_or(At::Nothing, |node| node.at(control));
     let from = node.map(|node| node.point.clone());
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = model.number();
@@ -52,7 +53,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
     model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
-    vec![Effect::Walk(Box::new(Request { id, action, curve, from, on_limit, control, inward, length }))]
+    vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length }))]
 }
 
 /// Takes the states that a walk made, and its end. `None`: the commands that wait may go on.
@@ -139,6 +140,7 @@ fn append(model: &mut Model, request: u64, state: Made) {
         point: state.point,
         state: state.state,
         step,
+        stability: state.stability,
         stiffness: state.stiffness,
         ahead: state.ahead,
         admissibility: state.admissibility,
@@ -263,6 +265,7 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
         kind: NodeKind::Start,
         setting: Arc::clone(&curve.setting),
         control,
+        stability: drawn.equilibrium.stability(&point),
         point,
         state,
         step: 0,

@@ -71,7 +71,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     if let Some(wave) = wave {
         radius.extend(pair(theme, "  s/λ ", &significant(s / wave, 4)));
     }
-    let stability = node.stability();
+    let stability = node.stability;
     let mut stable = vec![Span::styled(" stable", theme.dim())];
     let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
     for control in [Control::Displacement, Control::Force].into_iter().chain(spring) {

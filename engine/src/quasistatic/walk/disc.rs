@@ -1,24 +1,19 @@
-//! A walk along the equilibrium curve, one request at a time: steps, runs, jumps, moves.
-//!
-//! A [`Walk`] says where the walker stands and how it goes; each state it arrives at is handed over with how it came about.
-//! A step that would pass a limit point of the control, or a corner of the curve, stops exactly there. All quantities are
-//! reduced.
+//! Steps, runs and jumps of one disc along its curve.
 
-use super::curve::{Curve, settings};
-use super::equilibrium::{Equilibrium, Point, State};
-use super::jump::{self, Run};
-use super::monotone::{Limit, Monotone, Turn};
-use super::unload::{Event, Losses};
-use super::{energy, landscape};
-use crate::continuation::{StepFailure, Tracer};
+use super::arrival::{Ahead, Arrival, Emit, WalkEnd, WalkFailure};
+use super::land::Jumped;
+use super::touch::ROUNDING;
+use super::walker::{At, ROOM, Walk};
+use crate::continuation::Tracer;
 use crate::disc::Place;
 use crate::gap::Gap;
 use crate::problem::Control;
+use crate::quasistatic::curve::{Curve, settings};
+use crate::quasistatic::jump::{self, Run};
+use crate::quasistatic::monotone::{Limit, Monotone, Turn};
+use crate::quasistatic::unload::{Event, Losses};
+use crate::quasistatic::{Point, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
-use thiserror::Error;
-
-/// A walk leaves the range of the curve by at most this factor in the contact radius.
-pub const ROOM: f64 = 3.0;
 
 /// A landing outward is looked for further out by this factor, and up to this multiple of the radius.
 const OUTWARD_STEP: f64 = 1.5;
@@ -30,97 +25,8 @@ const NEAR: f64 = 0.5;
 /// Within this share of its radius the walker stands on a stop.
 const LEFT: f64 = 1e-12;
 
-/// Where a walker stands, and how it goes.
-#[derive(Debug, Clone, Copy)]
-pub struct Walk<'a> {
-    /// The curve of the problem.
-    pub curve: &'a Curve,
-    /// The contact radii between which the curve is asked for: its start and its end.
-    pub range: [f64; 2],
-    /// What is controlled.
-    pub control: Control,
-    /// Where the walker stands; only moves need no such state.
-    pub from: Option<&'a Point>,
-    /// Whether it stands on a limit point of the control.
-    pub on_limit: bool,
-    /// Whether the contact is to shrink.
-    pub inward: bool,
-    /// The longest step, in the scaled unknowns.
-    pub length: f64,
-}
-
-/// Where the edge would land from a limit point, and what it would cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ahead {
-    /// The landing; `None` where the bodies come apart.
-    pub after: Option<State>,
-    /// The energy lost; `None` for a pull-off under a dead load.
-    pub dissipated: Option<f64>,
-}
-
-/// How the walker came to a state.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Arrival {
-    /// By a step.
-    Step,
-    /// At a limit point of the control, with where the jump from there leads, if that is known.
-    Limit(Option<Ahead>),
-    /// By a jump.
-    Jump(Box<Event>),
-    /// Moved to a contact radius.
-    Moved,
-    /// Solved again for a changed problem.
-    Solved,
-}
-
-/// How a request ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum WalkEnd {
-    /// Done as asked.
-    Done,
-    /// At a limit point of the control.
-    AtLimit,
-    /// Whoever took the states did not want more.
-    Paused,
-    /// At the end contact radius.
-    AtEnd,
-    /// At [`ROOM`] times the start radius.
-    OutOfRange,
-    /// It could not go on.
-    Failed(WalkFailure),
-}
-
-/// Why a walk cannot go on.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum WalkFailure {
-    /// There is no state to begin with.
-    #[error("there is no state to {0} from")]
-    NoState(&'static str),
-    /// The curve has no such state.
-    #[error("there is no equilibrium {0}")]
-    NoEquilibrium(&'static str),
-    /// No step by arc length.
-    #[error(transparent)]
-    Step(#[from] StepFailure),
-    /// The basis has no equilibrium where the walker stands.
-    #[error("the basis has no equilibrium here")]
-    NoBasis,
-    /// The edge would have to climb.
-    #[error("the edge cannot run to the next stable state: on the way the potential rises")]
-    Rises,
-    /// The edge runs outward and finds no stable state.
-    #[error("no stable state lies outward at this control value")]
-    NothingOutward,
-    /// The edge runs inward beyond what the basis can tell.
-    #[error("the basis has no equilibrium further in: the landing is not known")]
-    NothingInward,
-    /// The changed problem has no state near the old one.
-    #[error("no equilibrium at this control value near the old contact radius")]
-    NotSolved,
-}
-
-/// Takes the states of a walk, and says whether it is to go on.
-pub type Emit<'a> = dyn FnMut(Arrival, Point) -> bool + 'a;
+/// How often the place of a touch is narrowed.
+const ROUNDS: usize = 80;
 
 /// A place at which a step ends: a limit point of the control, or a corner of the curve.
 #[derive(Debug, Clone, Copy)]
@@ -128,6 +34,12 @@ struct Stop {
     contact_radius: f64,
     is_limit: bool,
     is_corner: bool,
+}
+
+/// A limit point is known to the root of rounding, and so is a touch: the digits beyond differ from table to table, and a replay would too.
+fn rounded(radius: f64) -> f64 {
+    const KNOWN: u64 = 1 << 8;
+    f64::from_bits((radius.to_bits() + KNOWN / 2) & !(KNOWN - 1))
 }
 
 /// The first of `stops`, which ascend, on the way from one radius to another, the latter included.
@@ -142,26 +54,12 @@ fn first_between(stops: &[Stop], from: f64, to: f64) -> Option<Stop> {
 }
 
 impl Walk<'_> {
-    fn equilibrium(&self) -> &Equilibrium {
-        &self.curve.equilibrium
-    }
-
-    /// So many steps of the length asked for, or of a `run` of the length that the curve allows; stops at a limit point.
-    pub fn steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> WalkEnd {
-        self.try_steps(count, run, emit).unwrap_or_else(WalkEnd::Failed)
-    }
-
-    /// Lets the edge run at constant control to the next stable state.
-    pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        self.try_jump(emit).unwrap_or_else(WalkEnd::Failed)
-    }
-
     /// Goes to the state of this contact radius.
     pub fn move_to(&self, s: f64, emit: &mut Emit<'_>) -> WalkEnd {
         let Some(point) = self.equilibrium().explicit(s) else {
             return WalkEnd::Failed(WalkFailure::NoEquilibrium("at that contact radius"));
         };
-        emit(Arrival::Moved, point);
+        emit(self.of_disc(Arrival::Moved, point));
         WalkEnd::Done
     }
 
@@ -170,7 +68,7 @@ impl Walk<'_> {
         let Some(point) = self.equilibrium().explicit(s) else {
             return WalkEnd::Failed(WalkFailure::NoEquilibrium("at the limit point"));
         };
-        emit(Arrival::Limit(self.ahead(&point)), point);
+        emit(self.of_disc(Arrival::Limit(self.ahead(&point)), point));
         WalkEnd::AtLimit
     }
 
@@ -195,7 +93,7 @@ impl Walk<'_> {
         let Some(point) = newton.or_else(|| self.nearest_crossing(value, s)) else {
             return WalkEnd::Failed(WalkFailure::NotSolved);
         };
-        emit(Arrival::Solved, point);
+        emit(self.of_disc(Arrival::Solved, point));
         WalkEnd::Done
     }
 
@@ -226,17 +124,19 @@ impl Walk<'_> {
         let found = self.stops(SPARE * stop.contact_radius).into_iter();
         let mut found = found.min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(stop);
         if !found.is_corner {
-            // A limit point is known to the root of rounding: the digits beyond differ from table to table, and a replay would too.
-            const KNOWN: u64 = 1 << 8;
-            let bits = found.contact_radius.to_bits();
-            found.contact_radius = f64::from_bits((bits + KNOWN / 2) & !(KNOWN - 1));
+            found.contact_radius = rounded(found.contact_radius);
         }
         found
     }
 
-    fn try_steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
+    pub(super) fn disc_steps(
+        &self,
+        count: usize,
+        run: bool,
+        emit: &mut Emit<'_>,
+    ) -> Result<WalkEnd, WalkFailure> {
         let equilibrium = self.equilibrium();
-        let from = self.from.ok_or(WalkFailure::NoState("walk"))?;
+        let from = self.begun("walk")?;
         let [start, end] = self.range;
         let mut settings = settings(equilibrium);
         if !run {
@@ -252,6 +152,7 @@ impl Walk<'_> {
         let outermost = equilibrium.contact_radius(&here).max(start);
         let mut stops = self.stops(outermost);
         let mut known = outermost.max(self.curve.solution.reach());
+        let mut touching = matches!(self.at, At::Touch(_));
         for _ in 0..count {
             if !run {
                 // In steps by hand the length asked for counts, not the one the last step would allow.
@@ -264,24 +165,36 @@ impl Walk<'_> {
                 known = 1.2 * s;
                 stops = self.stops(known);
             }
-            if let Some(stop) = first_between(&stops, before, s) {
-                let stop = self.located(stop);
+            let stop = first_between(&stops, before, s).map(|stop| self.located(stop));
+            let to = stop.map_or(s, |stop| stop.contact_radius);
+            // One on which it stands is left behind.
+            let touch = if touching { None } else { self.touch_between(before, to) };
+            touching = false;
+            if let Some((radius, crest)) = touch {
+                let point = equilibrium.explicit(radius).map(turned);
+                let point = point.ok_or(WalkFailure::NoEquilibrium("at the touch"))?;
+                let mut point = point.after(&here);
+                point.rounds = next.rounds;
+                emit(self.of_disc(Arrival::Touch(crest), point));
+                return Ok(WalkEnd::AtTouch);
+            }
+            if let Some(stop) = stop {
                 let point = equilibrium.explicit(stop.contact_radius).map(turned);
                 let point = point.ok_or(WalkFailure::NoEquilibrium("at the next limit point"))?;
                 let mut point = point.after(&here);
                 point.rounds = next.rounds;
                 here = point.clone();
                 if stop.is_limit {
-                    emit(Arrival::Limit(self.ahead(&point)), point);
+                    emit(self.of_disc(Arrival::Limit(self.ahead(&point)), point));
                     return Ok(WalkEnd::AtLimit);
                 }
-                if !emit(Arrival::Step, point) {
+                if !emit(self.of_disc(Arrival::Step, point)) {
                     return Ok(WalkEnd::Paused);
                 }
                 continue;
             }
             here = next.clone();
-            if !emit(Arrival::Step, next) {
+            if !emit(self.of_disc(Arrival::Step, next)) {
                 return Ok(WalkEnd::Paused);
             }
             if self.inward && s < end {
@@ -292,6 +205,72 @@ impl Walk<'_> {
             }
         }
         Ok(WalkEnd::Done)
+    }
+
+    /// Where, on the way from one contact radius to another, the next crest touches, and its radius: one that touches or overlaps at the
+    /// start does not.
+    fn touch_between(&self, from: f64, to: f64) -> Option<(f64, f64)> {
+        let equilibrium = self.equilibrium();
+        let judge = equilibrium.judge();
+        let crest = |s: f64| {
+            let delta = equilibrium.basis.equilibrium(&equilibrium.problem, s)?.approach;
+            judge.judge(s, delta).nearest
+        };
+        let wave = equilibrium.problem.gap.feature_length().unwrap_or(from);
+        let [start, end] = [from, to].map(crest);
+        let (mut near, mut far) = ((from, start?.gap), (to, end?.gap));
+        if near.1 <= ROUNDING * wave || far.1 >= 0.0 || near.1.is_nan() {
+            return None;
+        }
+        let mut at = end?.radius;
+        let mut side = 0;
+        for _ in 0..ROUNDS {
+            // The Illinois rule.
+            let mut s = (near.0 * far.1 - far.0 * near.1) / (far.1 - near.1);
+            if !((s > near.0 && s < far.0) || (s < near.0 && s > far.0)) {
+                s = 0.5 * (near.0 + far.0);
+            }
+            if (far.0 - near.0).abs() <= 4.0 * f64::EPSILON * s {
+                break;
+            }
+            let found = crest(s)?;
+            at = found.radius;
+            if found.gap > 0.0 {
+                near = (s, found.gap);
+                if side == 1 {
+                    far.1 *= 0.5;
+                }
+                side = 1;
+            } else {
+                far = (s, found.gap);
+                if side == -1 {
+                    near.1 *= 0.5;
+                }
+                side = -1;
+                if found.gap == 0.0 {
+                    break;
+                }
+            }
+        }
+        Some((rounded(far.0), at))
+    }
+
+    /// A jump outward on whose way a crest touches, so that rings take part in it; `None` where the disc alone runs.
+    pub(super) fn runs_into_crests(&self) -> Option<Jumped> {
+        let from = self.from.filter(|_| self.equilibrium().problem.work_of_adhesion > 0.0)?;
+        let outward = match self.at {
+            At::Limit => self.bend(from) < 0.0,
+            At::Nothing | At::Touch(_) => !self.inward,
+        };
+        if !outward {
+            return None;
+        }
+        self.try_rings().ok().filter(Jumped::has_touched)
+    }
+
+    /// The second derivative of the control along the curve: below zero at its maximum.
+    fn bend(&self, point: &Point) -> f64 {
+        self.equilibrium().control_row(self.control).dot(&point.curvature())
     }
 
     /// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
@@ -314,8 +293,8 @@ impl Walk<'_> {
         Ok(tracer.step(here)?)
     }
 
-    fn try_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
-        let from = self.from.ok_or(WalkFailure::NoState("jump"))?;
+    pub(super) fn disc_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
+        let from = self.begun("jump")?;
         let (curve, leaves, landing) = self.landing(from)?;
         let event = Event::new(&curve, self.control, leaves, landing, Losses::Twice);
         let point = match landing {
@@ -323,7 +302,7 @@ impl Walk<'_> {
             None => Some(from.clone()),
         };
         let point = point.ok_or(WalkFailure::NoEquilibrium("at the landing"))?;
-        emit(Arrival::Jump(Box::new(event)), point);
+        emit(self.of_disc(Arrival::Jump(Box::new(event)), point));
         Ok(WalkEnd::Done)
     }
 
@@ -338,7 +317,7 @@ impl Walk<'_> {
             let monotone = curve.monotone(self.control);
             let place = curve.solution.place(s.min(curve.solution.reach())).ok_or(WalkFailure::NoBasis)?;
             // Away from the stable side of a limit point; from any other state, as walked.
-            let limit = if self.on_limit { nearest_limit(&monotone, s) } else { None };
+            let limit = if self.at == At::Limit { nearest_limit(&monotone, s) } else { None };
             let (place, stretch, run) = match limit {
                 Some((index, limit)) => match limit.turn {
                     Turn::Minimum => (limit.place, index + 1, Run::Inward),
@@ -372,7 +351,10 @@ impl Walk<'_> {
 
     /// Where the edge runs from the limit point `from`, and what that costs; `None` where it is not known.
     fn ahead(&self, from: &Point) -> Option<Ahead> {
-        let on_limit = Self { on_limit: true, ..*self };
+        let on_limit = self.standing(from, At::Limit);
+        if let Some(jumped) = on_limit.runs_into_crests() {
+            return Some(jumped.ahead());
+        }
         let (curve, leaves, landing) = on_limit.landing(from).ok()?;
         let after = landing.map(|place| curve.state(place));
         let dissipated = energy::loss(self.control, &curve.state(leaves), after.as_ref());

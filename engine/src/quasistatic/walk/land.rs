@@ -1,0 +1,263 @@
+//! Where edges land that run at held control, with the rings that they make on the way.
+
+use super::arrival::{Ahead, Arrival, Reached, WalkEnd, WalkFailure};
+use super::corner::on_corner;
+use super::edges::{self, Edges};
+use super::walker::{At, Walk};
+use crate::annuli::{AnnuliError, Contacts, Ground};
+use crate::continuation::Vector;
+use crate::problem::Control;
+use crate::quasistatic::cycle::path::first_crest;
+use crate::quasistatic::cycle::{Balance, CycleError, CycleState, Direction, EVEN, Held, Passed, PassedKind};
+use crate::quasistatic::unload::{Event, EventKind};
+use crate::quasistatic::{Point, State, energy};
+use nalgebra::{DMatrix, DVector};
+
+/// How often the table is made longer for one landing.
+const LONGER: usize = 12;
+
+/// A new contact without adhesion begins at an approach further by this share of λ²/ρ.
+const LIFT: f64 = 1e-3;
+
+/// A jump, and where it lands.
+pub(super) struct Jumped {
+    pub ground: Ground,
+    /// None where the bodies come apart.
+    pub held: Option<Held>,
+    pub event: Event,
+    pub passed: Vec<Passed>,
+}
+
+impl Jumped {
+    /// Whether a crest touched on the way.
+    pub fn has_touched(&self) -> bool {
+        self.passed.iter().any(|passed| passed.kind == PassedKind::Touch)
+    }
+
+    /// What it costs.
+    pub fn ahead(&self) -> Ahead {
+        Ahead { after: self.event.after, dissipated: self.event.dissipated }
+    }
+}
+
+impl Walk<'_> {
+    /// The state of a disc, with what is to be known of it.
+    pub(super) fn of_disc(&self, arrival: Arrival, point: Point) -> Reached {
+        let equilibrium = self.equilibrium();
+        let state = equilibrium.state(&point);
+        Reached {
+            arrival,
+            stability: equilibrium.stability(&point),
+            stiffness: equilibrium.stiffness(&point),
+            admissibility: equilibrium.admissibility(&point),
+            digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
+            state,
+            point,
+        }
+    }
+
+    /// The state of a point with rings, with what is to be known of it.
+    pub(super) fn of_rings(&self, ground: &Ground, arrival: Arrival, point: Point) -> Option<Reached> {
+        let equilibrium = self.equilibrium();
+        let base = edges::contacts(&equilibrium.scales, &point);
+        let held = Edges::near(ground, equilibrium, base).held(&point, Control::Displacement)?;
+        let judged = edges::judged(equilibrium, ground, &point, &held);
+        let edges::Judged { state, stability, stiffness, admissibility, digits } = judged;
+        Some(Reached { arrival, point, state, stability, stiffness, admissibility, digits })
+    }
+
+    /// The landed edges as a state: one disc, or more.
+    pub(super) fn landed(
+        &self,
+        ground: &Ground,
+        arrival: Arrival,
+        held: &Held,
+    ) -> Result<Reached, WalkFailure> {
+        let contacts = &held.state.contacts;
+        let missing = WalkFailure::NoEquilibrium("at the landing");
+        if contacts.rings.is_empty() {
+            let point = self.equilibrium().explicit(contacts.disc).ok_or(missing)?;
+            return Ok(self.of_disc(arrival, point));
+        }
+        let edges = Edges::near(ground, self.equilibrium(), contacts.clone());
+        let point = edges.point(held).ok_or(missing.clone())?;
+        self.of_rings(ground, arrival, point).ok_or(missing)
+    }
+
+    /// Lets the edges run: with a ring from a touch; from a limit point to the side on which the control cannot follow; from any other
+    /// unstable state as walked.
+    pub(super) fn try_rings(&self) -> Result<Jumped, WalkFailure> {
+        let from = self.begun("jump")?;
+        let scales = &self.equilibrium().scales;
+        let [delta, _] = edges::device(scales, from);
+        let mut radius = edges::contacts(scales, from).outermost();
+        for _ in 0..LONGER {
+            let ground = self.ground(radius, delta)?;
+            let table = &self.equilibrium().table;
+            let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
+            match self.jumped(ground.clone(), from) {
+                Err(CycleError::State(AnnuliError::BeyondGap { .. })) if !whole => {
+                    radius = 1.5 * ground.reach();
+                }
+                Err(CycleError::State(AnnuliError::BeyondGap { .. })) => {
+                    return Err(WalkFailure::NothingOutward);
+                }
+                Err(CycleError::Cancelled) => return Err(WalkFailure::Stable),
+                Err(error) => return Err(WalkFailure::Edges(error.to_string())),
+                Ok(jumped) => return Ok(jumped),
+            }
+        }
+        Err(WalkFailure::NothingOutward)
+    }
+
+    /// The same on a gap known so far; [`CycleError::Cancelled`] where nothing runs.
+    fn jumped(&self, ground: Ground, from: &Point) -> Result<Jumped, CycleError> {
+        let equilibrium = self.equilibrium();
+        let scales = &equilibrium.scales;
+        let lost = |control_value| CycleError::Lost { control_value };
+        let contacts = edges::contacts(scales, from);
+        let [delta, force] = edges::device(scales, from);
+        // Without adhesion a ring begins with no width, a little further on.
+        let adheres = equilibrium.problem.work_of_adhesion > 0.0;
+        let control = if adheres { self.control } else { Control::Displacement };
+        let balance = self.balance(&ground, control);
+        let mut value = control.value(delta, force);
+        let edges = Edges::near(&ground, equilibrium, contacts.clone());
+        let before = edges.held(from, control).ok_or(lost(value))?;
+        let mut passed = Vec::new();
+        let (start, sense) = match self.at {
+            At::Touch(radius) => {
+                if !adheres {
+                    value += LIFT * ground.wave.powi(2) / ground.crest;
+                }
+                passed.push(Passed { kind: PassedKind::Touch, radius });
+                (balance.seeded(&contacts, radius, value)?, 1.0)
+            }
+            At::Limit => {
+                let row = edges.control_row(control);
+                // Beyond a maximum of the control there is nothing near for a contact that is larger, beyond a minimum for one that
+                // is smaller.
+                // On a corner of the gap there is no bend, but a slope on the side towards the axis: stored tangents run inward.
+                let bend = if on_corner(&ground, &contacts) { &from.tangent() } else { &from.curvature() };
+                let sense = if row.dot(bend) < 0.0 { 1.0 } else { -1.0 };
+                let signs = contacts.edges();
+                let along = from.tangent();
+                let null = Vector::from_iterator(
+                    signs.len(),
+                    signs.iter().zip(along.iter().skip(2)).map(|(edge, e)| edge.sign * e),
+                );
+                (balance.kicked(&contacts, &null, sense), sense)
+            }
+            At::Nothing => {
+                let null = falling(&before).ok_or(CycleError::Cancelled)?;
+                let sense = if self.inward { -1.0 } else { 1.0 };
+                (balance.kicked(&contacts, &null, sense), sense)
+            }
+        };
+        let held = balance.run(start, value, sense, EVEN, &mut passed)?;
+        let gamma = balance.work_of_adhesion;
+        let direction = if sense > 0.0 { Direction::Loading } else { Direction::Unloading };
+        let state = |held: &Held| CycleState::new(held, gamma, direction, 0);
+        let (old, new) = (state(&before), held.as_ref().map(state));
+        let crests: Vec<f64> = passed
+            .iter()
+            .filter(|passed| passed.kind == PassedKind::Touch)
+            .map(|passed| passed.radius)
+            .collect();
+        let bounded = new.is_some() || control != Control::Force;
+        let by_area =
+            bounded.then(|| balance.area_between(Some(&old), new.as_ref(), value, &crests)).flatten();
+        let [before, after] = [Some(&old), new.as_ref()].map(|state| state.map(plain));
+        let before = before.ok_or(lost(value))?;
+        let event = Event {
+            kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+            control_value: value,
+            dissipated: if adheres { energy::loss(control, &before, after.as_ref()) } else { Some(0.0) },
+            dissipated_by_area: if adheres { by_area } else { None },
+            before,
+            after,
+        };
+        Ok(Jumped { ground, held, event, passed })
+    }
+
+    /// The first touch of bodies that were apart and what it jumps to: where a walk begins that begins apart.
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where the gap has no least value, or the edges do not land.
+    pub fn first_touch(&self, emit: &mut super::arrival::Emit<'_>) -> WalkEnd {
+        match self.touched() {
+            Ok(reached) => {
+                emit(reached);
+                WalkEnd::Done
+            }
+            Err(failure) => WalkEnd::Failed(failure),
+        }
+    }
+
+    fn touched(&self) -> Result<Reached, WalkFailure> {
+        let said = |error: CycleError| WalkFailure::Edges(error.to_string());
+        let adheres = self.equilibrium().problem.work_of_adhesion > 0.0;
+        let mut radius = self.range[0];
+        for _ in 0..LONGER {
+            let ground = self.ground(radius, 0.0)?;
+            let whole = ground.reach() >= self.equilibrium().table.end() * (1.0 - 1e-9);
+            let crest = first_crest(&ground);
+            let Some(crest) = crest else {
+                if whole {
+                    return Err(WalkFailure::NeverTouches);
+                }
+                radius = 1.5 * ground.reach();
+                continue;
+            };
+            let control = if adheres { self.control } else { Control::Displacement };
+            let value = match control {
+                Control::Force => 0.0,
+                _ if adheres => crest.gap,
+                _ => crest.gap + LIFT * ground.wave.powi(2) / ground.crest,
+            };
+            let balance = self.balance(&ground, control);
+            let none = Contacts::default();
+            let mut passed = Vec::new();
+            let landed = balance
+                .seeded(&none, crest.radius, value)
+                .and_then(|start| balance.run(start, value, 1.0, EVEN, &mut passed));
+            let held = match landed {
+                Err(CycleError::State(AnnuliError::BeyondGap { .. })) if !whole => {
+                    radius = 1.5 * ground.reach();
+                    continue;
+                }
+                landed => landed.map_err(said)?.ok_or(WalkFailure::NoEquilibrium("after the first touch"))?,
+            };
+            return self.landed(&ground, Arrival::Touch(crest.radius), &held);
+        }
+        Err(WalkFailure::NothingOutward)
+    }
+}
+
+fn plain(state: &CycleState) -> State {
+    State {
+        contact_radius: state.contact_radius,
+        approach: state.approach,
+        force: state.force,
+        energy: state.energy,
+    }
+}
+
+/// The direction in which unstable edges run: the eigenvector of the least eigenvalue of J; `None` where they are stable.
+fn falling(held: &Held) -> Option<DVector<f64>> {
+    let j = &held.jacobian;
+    let lowest = Balance::least_eigenvalue(held);
+    if lowest > 0.0 || lowest.is_nan() {
+        return None;
+    }
+    let n = j.nrows();
+    // J = S·diag(e κ), S symmetric and κ the same at every edge.
+    let roots: Vec<f64> = held.state.contacts.edges().iter().map(|edge| edge.radius.sqrt()).collect();
+    let symmetric = DMatrix::from_fn(n, n, |i, k| {
+        0.5 * (j[(i, k)] * roots[i] / roots[k] + j[(k, i)] * roots[k] / roots[i])
+    });
+    let eigen = symmetric.symmetric_eigen();
+    let least = eigen.eigenvalues.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?.0;
+    let vector = eigen.eigenvectors.column(least);
+    Some(DVector::from_fn(n, |i, _| vector[i] / roots[i]))
+}

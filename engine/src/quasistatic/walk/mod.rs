@@ -1,0 +1,71 @@
+//! A walk along the equilibrium curve, one request at a time: steps, runs, jumps, moves.
+//!
+//! A [`Walk`] says where the walker stands and how it goes; each state it arrives at is handed over with how it came about.
+//! A step that would pass a limit point of the control, a touch of the next crest, or a corner of the curve, stops exactly there. At a
+//! touch the walk goes on without the new contact, through states that are not admissible, or lets it run: then there are rings, and the
+//! same steps lead along all edges. All quantities are reduced.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | [`walker`] | where a walker stands |
+//! | [`arrival`] | what it arrives at |
+//! | `disc` | steps and jumps of one disc |
+//! | [`edges`] | any number of edges as a system of equations |
+//! | `rings` | steps with rings |
+//! | `corner` | steps past corners of the gap |
+//! | `touch` | where a crest touches |
+//! | `land` | where edges land that run |
+
+pub mod arrival;
+mod corner;
+mod disc;
+pub mod edges;
+mod land;
+mod rings;
+mod touch;
+pub mod walker;
+
+pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
+pub use walker::{At, ROOM, Walk};
+
+impl Walk<'_> {
+    /// So many steps of the length asked for, or of a `run` of the length that the curve allows; stops at a limit point of the control and
+    /// where a crest touches.
+    pub fn steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> WalkEnd {
+        let end = if self.has_rings() {
+            self.ring_steps(count, run, emit)
+        } else {
+            self.disc_steps(count, run, emit)
+        };
+        end.unwrap_or_else(WalkEnd::Failed)
+    }
+
+    /// Lets the edges run at constant control to the next stable state; from a touch with the new contact.
+    pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
+        self.try_jump(emit).unwrap_or_else(WalkEnd::Failed)
+    }
+
+    fn try_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
+        let from = self.begun("jump")?;
+        let is_touch = matches!(self.at, At::Touch(_));
+        let jumped = if self.has_rings() || is_touch {
+            self.try_rings()?
+        } else {
+            match self.runs_into_crests() {
+                Some(jumped) => jumped,
+                None => return self.disc_jump(emit),
+            }
+        };
+        let adheres = self.curve.equilibrium.problem.work_of_adhesion > 0.0;
+        let arrival = if adheres { Arrival::Jump(Box::new(jumped.event)) } else { Arrival::Step };
+        let reached = match &jumped.held {
+            Some(held) => self.landed(&jumped.ground, arrival, held)?,
+            None if self.has_rings() => self
+                .of_rings(&jumped.ground, arrival, from.clone())
+                .ok_or(WalkFailure::NoEquilibrium("before the jump"))?,
+            None => self.of_disc(arrival, from.clone()),
+        };
+        emit(reached);
+        Ok(WalkEnd::Done)
+    }
+}

@@ -1,0 +1,86 @@
+//! Where a walker stands.
+
+use crate::annuli::Ground;
+use crate::problem::Control;
+use crate::quasistatic::curve::Curve;
+use crate::quasistatic::cycle::Balance;
+use crate::quasistatic::equilibrium::Equilibrium;
+use crate::quasistatic::{Point, walk::arrival::WalkFailure, walk::edges};
+use std::sync::Arc;
+
+/// A walk leaves the range of the curve by at most this factor in the contact radius.
+pub const ROOM: f64 = 3.0;
+
+/// The table of the gap goes beyond the outermost edge by this factor.
+const BEYOND: f64 = 1.3;
+
+/// What a walker stands on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum At {
+    /// Nothing that a step would end at.
+    Nothing,
+    /// A limit point of the control.
+    Limit,
+    /// A crest that touches at this radius, a length.
+    Touch(f64),
+}
+
+/// Where a walker stands, and how it goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Walk<'a> {
+    /// The curve of the problem.
+    pub curve: &'a Curve,
+    /// The contact radii between which the curve is asked for: its start and its end.
+    pub range: [f64; 2],
+    /// What is controlled.
+    pub control: Control,
+    /// Where the walker stands; only moves need no such state.
+    pub from: Option<&'a Point>,
+    /// What it stands on.
+    pub at: At,
+    /// Whether the contact is to shrink.
+    pub inward: bool,
+    /// The longest step, in the scaled unknowns.
+    pub length: f64,
+}
+
+impl Walk<'_> {
+    pub(super) fn equilibrium(&self) -> &Equilibrium {
+        &self.curve.equilibrium
+    }
+
+    /// The same of a walker that stands elsewhere.
+    pub(super) fn standing<'b>(&'b self, from: &'b Point, at: At) -> Walk<'b> {
+        Walk { from: Some(from), at, ..*self }
+    }
+
+    /// The state to begin with, for what `what` says.
+    pub(super) fn begun(&self, what: &'static str) -> Result<&Point, WalkFailure> {
+        self.from.ok_or(WalkFailure::NoState(what))
+    }
+
+    /// Whether it stands in a contact with rings.
+    pub(super) fn has_rings(&self) -> bool {
+        self.from.is_some_and(edges::has_rings)
+    }
+
+    /// The gap out to where, with an outermost edge at `radius` and the approach `delta`, something could touch.
+    pub(super) fn ground(&self, radius: f64, delta: f64) -> Result<Ground, WalkFailure> {
+        let table = &self.equilibrium().table;
+        let mut reach = BEYOND * radius.max(self.range[0]);
+        loop {
+            let ground = Ground::new(Arc::clone(table), reach, &mut || true);
+            let ground = ground.map_err(|error| WalkFailure::Edges(error.to_string()))?;
+            let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
+            if whole || BEYOND * ground.can_touch_up_to(delta).max(radius) <= ground.reach() {
+                return Ok(ground);
+            }
+            reach = 1.5 * ground.reach();
+        }
+    }
+
+    /// The equilibrium of contacts on `ground` under `control`.
+    pub(super) fn balance<'a>(&self, ground: &'a Ground, control: crate::problem::Control) -> Balance<'a> {
+        Balance { ground, work_of_adhesion: self.equilibrium().problem.work_of_adhesion, control }
+    }
+}
