@@ -260,7 +260,9 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
     // The presets with the reasons why some cannot be read, and an attempt at each of those.
     let shipped = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/presets"))
         .expect("the shipped presets")
-        .filter(|entry| entry.as_ref().is_ok_and(|file| file.path().extension().is_some_and(|end| end == "toml")))
+        .filter(|entry| {
+            entry.as_ref().is_ok_and(|file| file.path().extension().is_some_and(|end| end == "toml"))
+        })
         .count();
     for down in shipped..shipped + 2 * HOSTILE.len() {
         pty.keys("o");

@@ -213,7 +213,30 @@ impl Case {
     /// # Errors
     /// [`CaseError::Start`] when there is no equilibrium at the start.
     pub fn trace(&self, curve: &Curve) -> Result<(Branch, CurveStop), CaseError> {
-        curve.traced(|settings| settings.points = TRACE_POINTS, || true).ok_or_else(|| self.no_start())
+        self.trace_while(curve, || true)
+    }
+
+    /// The same; `go_on` is asked before each point.
+    ///
+    /// # Errors
+    /// As [`Case::trace`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn trace_while(
+        &self,
+        curve: &Curve,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<(Branch, CurveStop), CaseError> {
+        let mut wanted = true;
+        let traced = curve.traced(
+            |settings| settings.points = TRACE_POINTS,
+            || {
+                wanted = wanted && go_on();
+                wanted
+            },
+        );
+        if !wanted {
+            return Err(CaseError::Cancelled);
+        }
+        traced.ok_or_else(|| self.no_start())
     }
 
     /// The quasi-static unloading along `curve`.

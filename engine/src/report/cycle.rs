@@ -168,7 +168,7 @@ impl CycleReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed, and when `go_on` said no.
     pub fn compute(preset: &Preset, areas: Areas, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
-        let case = Case::new(preset)?;
+        let case = Case::prepare(preset, &mut |_| go_on(0.0))?;
         let cycle = case.cycle(case.control, None, areas, go_on)?;
         Ok(Self::new(preset, &case, &cycle))
     }

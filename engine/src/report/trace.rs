@@ -8,7 +8,7 @@ use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::preset::Preset;
 use crate::problem::Control;
-use crate::quasistatic::overlap::overlaps;
+use crate::quasistatic::overlap::{overlaps, overlaps_while};
 use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
@@ -200,10 +200,19 @@ impl TraceReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
-        let case = Case::new(preset)?;
-        let curve = case.curve(|| true)?;
-        let (branch, stop) = case.trace(&curve)?;
-        Ok(Self::new(preset, &case, &curve, &branch.points, stop))
+        Self::compute_while(preset, &|_| true)
+    }
+
+    /// The same; `go_on` is told the share of the basis that is built, then 1, and asked often.
+    ///
+    /// # Errors
+    /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn compute_while(preset: &Preset, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &mut |share| go_on(share))?;
+        let curve = case.curve(|| go_on(1.0))?;
+        let (branch, stop) = case.trace_while(&curve, || go_on(1.0))?;
+        let overlapping = overlaps_while(&curve, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
+        Ok(Self::with(preset, &case, &curve, &branch.points, stop, &overlapping))
     }
 
     /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
@@ -227,14 +236,25 @@ impl TraceReport {
 
     /// The document of a curve of `case`, its points `traced` along it by arc length.
     pub fn new(preset: &Preset, case: &Case, curve: &Curve, traced: &[Point], stop: CurveStop) -> Self {
+        Self::with(preset, case, curve, traced, stop, &overlaps(curve))
+    }
+
+    /// The same where the inadmissible states are known already.
+    fn with(
+        preset: &Preset,
+        case: &Case,
+        curve: &Curve,
+        traced: &[Point],
+        stop: CurveStop,
+        overlapping: &[Overlap],
+    ) -> Self {
         let units = case.units();
         let equilibrium = &curve.equilibrium;
-        let overlapping = overlaps(curve);
-        let inadmissible = OverlapReport::all(&overlapping, units);
+        let inadmissible = OverlapReport::all(overlapping, units);
         let points: Vec<PointReport> = traced
             .iter()
             .enumerate()
-            .map(|(step, point)| PointReport::new(case, equilibrium, step, point, &overlapping))
+            .map(|(step, point)| PointReport::new(case, equilibrium, step, point, overlapping))
             .collect();
         let limit_points: Vec<LimitReport> = case
             .controls()
@@ -282,5 +302,41 @@ impl TraceReport {
             return rows::csv(COLUMNS, &self.points);
         }
         rows::csv(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::UnloadReport;
+    use crate::{Material, Shape, Start};
+    use std::cell::Cell;
+
+    #[test]
+    fn a_document_that_is_no_longer_wanted_is_cancelled_at_every_question() {
+        let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
+        let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None };
+        let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
+        let trace = |go_on: &dyn Fn(f64) -> bool| TraceReport::compute_while(&preset, go_on).err();
+        let unload = |go_on: &dyn Fn(f64) -> bool| UnloadReport::compute_while(&preset, go_on).err();
+        let ways: [&dyn Fn(&dyn Fn(f64) -> bool) -> Option<CaseError>; 2] = [&trace, &unload];
+        for compute in ways {
+            let asked = Cell::new(0_u32);
+            let count = |_| {
+                asked.set(asked.get() + 1);
+                true
+            };
+            assert_eq!(compute(&count), None);
+            let all = asked.get();
+            assert!(all >= 5, "{all}");
+            for number in 1..=all {
+                asked.set(0);
+                let until = |_| {
+                    asked.set(asked.get() + 1);
+                    asked.get() < number
+                };
+                assert_eq!(compute(&until), Some(CaseError::Cancelled), "{number} of {all}");
+            }
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::gap::wave_index;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced};
 use crate::quasistatic::overlap::passed_while;
-use crate::quasistatic::{Event, EventKind, Overlap, State, Unloading};
+use crate::quasistatic::{Event, EventKind, Losses, Overlap, State, Unloading};
 use crate::units::Quantity;
 use serde::Serialize;
 
@@ -119,10 +119,19 @@ impl UnloadReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
-        let case = Case::new(preset)?;
-        let curve = case.curve(|| true)?;
-        let unloading = case.unload(&curve, case.control)?;
-        let passed = passed_while(&curve, &unloading.pieces, &mut || true).unwrap_or_default();
+        Self::compute_while(preset, &|_| true)
+    }
+
+    /// The same; `go_on` is told the share of the basis that is built, then 1, and asked often.
+    ///
+    /// # Errors
+    /// As [`UnloadReport::compute`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn compute_while(preset: &Preset, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &mut |share| go_on(share))?;
+        let curve = case.curve(|| go_on(1.0))?;
+        let unloading = case.unload_while(&curve, case.control, Losses::Twice, || go_on(1.0))?;
+        let passed =
+            passed_while(&curve, &unloading.pieces, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
         let mut report = Self::new(preset, &case, &unloading).checked(&case, &unloading, &passed);
         report.warnings.extend(case.unsettled(&unloading));
         Ok(report)
