@@ -403,7 +403,7 @@ fn reach(reduced: &Reduced, wanted: Start) -> f64 {
 }
 
 /// The table of the gap, shared by all problems with the same gap: adhesion, modulus, device and start are no part of it.
-fn table(
+pub(crate) fn table(
     shape: &Shape,
     reduced: &Reduced,
     reach: f64,

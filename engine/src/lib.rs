@@ -81,6 +81,8 @@ mod fixtures;
 #[doc(hidden)]
 pub mod gap;
 #[doc(hidden)]
+pub mod measured;
+#[doc(hidden)]
 pub mod preset;
 #[doc(hidden)]
 pub mod problem;

@@ -1,0 +1,220 @@
+//! Least squares with Huber's loss, by Levenberg and Marquardt with Nielsen's damping.
+//!
+//! ```text
+//! minimize  Σ m_i ρ(r_i),   ρ = r²/2 for |r| ≤ c, c|r| − c²/2 beyond;      weights w = m ψ/r = m min(1, c/|r|)
+//! (JᵀWJ + μ D²) h = −JᵀWr,   D_j the largest length of column j of √W J so far
+//! ```
+//!
+//! Each round the QR factors of √W J are taken once; a damped step then costs a matrix of 2p rows. K. Levenberg (1944),
+//! D. W. Marquardt (1963); the damping: H. B. Nielsen, IMM-REP-1999-05. `levenberg-marquardt` 0.15 is of another nalgebra than
+//! ours, and has neither weights nor a way to be stopped.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Residuals at some parameters, with their derivatives by column.
+#[derive(Debug, Clone)]
+pub struct Evaluated {
+    /// r.
+    pub residuals: DVector<f64>,
+    /// ∂r/∂u.
+    pub jacobian: DMatrix<f64>,
+}
+
+/// What is fitted.
+pub trait LeastSquares {
+    /// The residuals at `u`; `None` where there are none.
+    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>>;
+
+    /// The same with derivatives.
+    fn evaluate(&self, u: &[f64]) -> Option<Evaluated>;
+
+    /// How often each residual counts; none counts once.
+    fn counts(&self) -> Option<&[f64]> {
+        None
+    }
+}
+
+/// Settings of one minimization.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Rounds at most.
+    pub rounds: usize,
+    /// Steps that would move the residuals by less than this share of their size end it.
+    pub tolerance: f64,
+    /// The size of a residual that is as good as none: what the tolerance is a share of where residuals vanish.
+    pub resolution: f64,
+    /// c: residuals beyond it count linearly; infinite for plain squares.
+    pub huber: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY }
+    }
+}
+
+/// How a minimization ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// No step would change anything.
+    Converged,
+    /// The rounds were used up.
+    Rounds,
+    /// It was no longer wanted.
+    Cancelled,
+}
+
+/// The best that was found.
+#[derive(Debug, Clone)]
+pub struct Minimum {
+    /// u.
+    pub parameters: Vec<f64>,
+    /// Residuals and derivatives there.
+    pub at: Evaluated,
+    /// Σ m ρ.
+    pub cost: f64,
+    /// How it ended.
+    pub ending: Ending,
+    /// How many rounds it took.
+    pub rounds: usize,
+}
+
+/// ρ.
+fn loss(r: f64, c: f64) -> f64 {
+    if r.abs() <= c { 0.5 * r * r } else { c * r.abs() - 0.5 * c * c }
+}
+
+/// ψ/r.
+#[must_use]
+pub fn weight(r: f64, c: f64) -> f64 {
+    if r.abs() <= c { 1.0 } else { c / r.abs() }
+}
+
+fn cost(residuals: &DVector<f64>, counts: Option<&[f64]>, c: f64) -> f64 {
+    let count = |i: usize| counts.map_or(1.0, |counts| counts[i]);
+    residuals.iter().enumerate().map(|(i, r)| count(i) * loss(*r, c)).sum()
+}
+
+/// R and −Qᵀr of √W J, and the lengths of its columns.
+struct Factored {
+    r: DMatrix<f64>,
+    right: DVector<f64>,
+    lengths: DVector<f64>,
+}
+
+impl Factored {
+    fn of(at: &Evaluated, counts: Option<&[f64]>, c: f64) -> Self {
+        let roots = DVector::from_iterator(
+            at.residuals.len(),
+            at.residuals
+                .iter()
+                .enumerate()
+                .map(|(i, r)| (counts.map_or(1.0, |counts| counts[i]) * weight(*r, c)).sqrt()),
+        );
+        let mut jacobian = at.jacobian.clone();
+        for mut column in jacobian.column_iter_mut() {
+            column.component_mul_assign(&roots);
+        }
+        let mut right = -at.residuals.component_mul(&roots);
+        let lengths = DVector::from_iterator(jacobian.ncols(), jacobian.column_iter().map(|column| column.norm()));
+        let qr = jacobian.qr();
+        qr.q_tr_mul(&mut right);
+        let r = qr.r();
+        let right = right.rows(0, r.nrows()).into_owned();
+        Self { r, right, lengths }
+    }
+
+    /// The damped step.
+    fn step(&self, mu: f64, scales: &DVector<f64>) -> Option<DVector<f64>> {
+        let (rows, p) = self.r.shape();
+        let stacked = DMatrix::from_fn(rows + p, p, |i, j| {
+            if i < rows {
+                self.r[(i, j)]
+            } else if i - rows == j {
+                mu.sqrt() * scales[j]
+            } else {
+                0.0
+            }
+        });
+        let mut right = DVector::zeros(rows + p);
+        right.rows_mut(0, rows).copy_from(&self.right);
+        let qr = stacked.qr();
+        qr.q_tr_mul(&mut right);
+        let step = qr.r().solve_upper_triangular(&right.rows(0, p).into_owned())?;
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+}
+
+/// Minimizes from `start`, as long as `go_on` answers yes before each round; `None` where there is nothing at the start.
+pub fn minimize(
+    problem: &dyn LeastSquares,
+    start: &[f64],
+    settings: &Settings,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Minimum> {
+    /// The first damping, its smallest change and the largest that is tried.
+    const FIRST: f64 = 1e-3;
+    const LARGEST: f64 = 1e16;
+    let c = settings.huber;
+    let counts = problem.counts();
+    let mut u = start.to_vec();
+    let mut at = problem.evaluate(&u)?;
+    let mut best = cost(&at.residuals, counts, c);
+    if !best.is_finite() {
+        return None;
+    }
+    let mut scales = DVector::zeros(u.len());
+    let (mut mu, mut growth) = (FIRST, 2.0);
+    let end = |u: Vec<f64>, at, cost, ending, rounds| {
+        Some(Minimum { parameters: u, at, cost, ending, rounds })
+    };
+    for round in 0..settings.rounds {
+        if !go_on() {
+            return end(u, at, best, Ending::Cancelled, round);
+        }
+        let factored = Factored::of(&at, counts, c);
+        for (scale, length) in scales.iter_mut().zip(factored.lengths.iter()) {
+            // A column of nothing: the parameter stays where it is.
+            *scale = f64::max(*scale, if *length > 0.0 { *length } else { f64::MIN_POSITIVE });
+        }
+        loop {
+            let Some(step) = factored.step(mu, &scales) else {
+                (mu, growth) = (mu * growth, 2.0 * growth);
+                if mu > LARGEST {
+                    return end(u, at, best, Ending::Converged, round);
+                }
+                continue;
+            };
+            let moved = (&factored.r * &step).norm();
+            let size = (2.0 * best).sqrt() + settings.resolution * (at.residuals.len() as f64).sqrt();
+            let is_last = moved <= settings.tolerance * size;
+            let next: Vec<f64> = u.iter().zip(step.iter()).map(|(u, h)| u + h).collect();
+            let found = problem.residuals(&next).map(|r| cost(&r, counts, c)).filter(|cost| cost.is_finite());
+            let predicted = moved * moved + 2.0 * mu * step.component_mul(&scales).norm_squared();
+            let gain = found.map_or(-1.0, |cost| 2.0 * (best - cost) / predicted);
+            if let Some(cost) = found.filter(|cost| *cost < best || (is_last && *cost <= best))
+                && let Some(evaluated) = problem.evaluate(&next)
+            {
+                (u, at, best) = (next, evaluated, cost);
+                mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));
+                growth = 2.0;
+                if is_last {
+                    return end(u, at, best, Ending::Converged, round + 1);
+                }
+                break;
+            }
+            if is_last {
+                return end(u, at, best, Ending::Converged, round + 1);
+            }
+            (mu, growth) = (mu * growth, 2.0 * growth);
+            if mu > LARGEST {
+                return end(u, at, best, Ending::Converged, round);
+            }
+        }
+    }
+    end(u, at, best, Ending::Rounds, settings.rounds)
+}
+
+#[cfg(test)]
+#[path = "nist.rs"]
+mod tests;

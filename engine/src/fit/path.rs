@@ -1,0 +1,260 @@
+//! The curve that measured points lie on, for one set of values: arcs of equilibria and the lines of jumps between them.
+//!
+//! Without snaps it is the whole equilibrium curve, its unstable part too, so that it passes smoothly through the pull-off as
+//! values change. With snaps it is the path of a quasi-static unloading, jumps included, and behind the pull-off the unstable
+//! stretch that begins there.
+
+use crate::case;
+use crate::disc::{Basis, Exact, Solution};
+use crate::gap::Gap;
+use crate::measured::Abscissa;
+use crate::preset::Preset;
+use crate::problem::{Control, Reduced, Units};
+use crate::quasistatic::{Curve, Detail, Losses, unload::unload_while};
+use std::sync::Arc;
+
+/// x, P and s.
+pub type Place = [f64; 3];
+
+/// A point of the path: its piece and where on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Foot {
+    /// On an arc, at this contact radius.
+    Radius(f64),
+    /// At the outer end of a piece.
+    Outer,
+    /// At its inner end.
+    Inner,
+    /// On a line, this share of the way from its inner to its outer end.
+    Share(f64),
+}
+
+/// A piece of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Piece {
+    /// Equilibria between two radii, the outer first.
+    Arc([f64; 2]),
+    /// A jump, by its ends, that before it first: x, P, s.
+    Line([Place; 2]),
+}
+
+/// A corner of the polyline that stands for the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    /// Where it is.
+    pub at: Place,
+    /// Its piece.
+    pub piece: usize,
+    /// s on an arc, the share on a line.
+    pub along: f64,
+}
+
+/// What a path must reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// The largest x, P and s of the points; minus infinity where there are none.
+    pub most: Place,
+    /// A contact radius that it reaches in any case.
+    pub radius: f64,
+    /// The length by which a gap without one of its own is reduced.
+    pub length: f64,
+}
+
+/// The path of one preset.
+#[derive(Debug, Clone)]
+pub struct Path {
+    solution: Arc<dyn Solution>,
+    units: Units,
+    abscissa: Abscissa,
+    /// 1/k; 0 where x is no way of a spring.
+    compliance: f64,
+    /// Its pieces, running inward.
+    pub pieces: Vec<Piece>,
+    /// Its corners, running inward.
+    pub vertices: Vec<Vertex>,
+    /// The outermost radius.
+    pub outermost: f64,
+    /// The snaps before the pull-off.
+    pub snaps: usize,
+    /// The smallest force.
+    pub least_force: f64,
+}
+
+/// Contact radii begin at this share of the outermost.
+const INNERMOST: f64 = 1e-3;
+/// How far beyond the points the path goes.
+const MARGIN: f64 = 1.15;
+
+impl Path {
+    /// The path of `preset`, whose device is `control`; `None` where it has none that reaches so far.
+    pub fn new(preset: &Preset, control: Control, abscissa: Abscissa, reach: &Reach) -> Option<Self> {
+        let length = preset.gap.length().unwrap_or(reach.length);
+        let reduced = preset.problem().reduced_by(length);
+        let units = reduced.units;
+        let compliance = match (abscissa, control) {
+            (Abscissa::Position, Control::Stiffness(k)) => 1.0 / k,
+            _ => 0.0,
+        };
+        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &mut |_| true).ok()?;
+        let x_of = |delta: f64, force: f64, s: f64| {
+            let (delta, force) = (delta * units.length, force * units.force);
+            if abscissa == Abscissa::Radius { s * units.length } else { delta + compliance * force }
+        };
+        let outermost = outermost(&reduced, &Exact::new(Arc::clone(&table), 0.0), reach, &x_of)?;
+        let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
+        let innermost = INNERMOST * outermost;
+        let mut curve =
+            Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, || true)?;
+        let held = control.in_units(units.stiffness);
+        curve.hold(held);
+        let mut path = Self {
+            solution: Arc::clone(&curve.solution),
+            units,
+            abscissa,
+            compliance,
+            pieces: Vec::new(),
+            vertices: Vec::new(),
+            outermost: outermost * units.length,
+            snaps: 0,
+            least_force: f64::INFINITY,
+        };
+        // A rising stretch outside a falling one, or one of either: a curve without snaps.
+        let inside = |s: f64| s > innermost && s < outermost;
+        let limits = curve.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
+        let unloading = if limits > 1 { unload_while(&curve, held, Losses::Once, || true).ok() } else { None };
+        match unloading.filter(|unloading| unloading.events.iter().any(|event| event.after.is_some())) {
+            None => path.pieces.push(Piece::Arc([outermost, innermost].map(|s| s * units.length))),
+            Some(unloading) => {
+                let mut events = unloading.events.iter();
+                for piece in &unloading.pieces {
+                    path.pieces.push(Piece::Arc(piece.map(|s| s * units.length)));
+                    let Some(event) = events.next() else { break };
+                    if let Some(after) = &event.after {
+                        let ends = [&event.before, after].map(|state| {
+                            let s = state.contact_radius;
+                            [x_of(state.approach, state.force, s), state.force * units.force, s * units.length]
+                        });
+                        path.pieces.push(Piece::Line(ends));
+                        path.snaps += 1;
+                    } else {
+                        // The unstable stretch behind the pull-off.
+                        let from = event.before.contact_radius;
+                        let monotone = curve.monotone(held);
+                        let to = monotone
+                            .limits
+                            .iter()
+                            .map(|limit| limit.contact_radius)
+                            .filter(|s| *s < from * (1.0 - 1e-9))
+                            .fold(innermost, f64::max);
+                        path.pieces.push(Piece::Arc([from, to].map(|s| s * units.length)));
+                    }
+                }
+            }
+        }
+        path.draw(&curve);
+        Some(path)
+    }
+
+    /// The corners of the polyline.
+    fn draw(&mut self, curve: &Curve) {
+        let mut vertices = Vec::new();
+        for (piece, what) in self.pieces.iter().enumerate() {
+            let mut add = |at: Place, along: f64| vertices.push(Vertex { at, piece, along });
+            match what {
+                Piece::Line([before, after]) => {
+                    add(*before, 1.0);
+                    add(*after, 0.0);
+                }
+                Piece::Arc([outer, inner]) => {
+                    let on = |s: f64| s < *outer && s > *inner;
+                    if let Some((at, _)) = self.at(*outer) {
+                        add(at, *outer);
+                    }
+                    for sample in &curve.samples {
+                        let s = sample.contact_radius * self.units.length;
+                        if on(s) {
+                            add(self.place(s, sample.approach, sample.force), s);
+                        }
+                    }
+                    if let Some((at, _)) = self.at(*inner) {
+                        add(at, *inner);
+                    }
+                }
+            }
+        }
+        self.least_force = vertices.iter().map(|vertex: &Vertex| vertex.at[1]).fold(f64::INFINITY, f64::min);
+        self.vertices = vertices;
+    }
+
+    /// x, P and s of a reduced state.
+    fn place(&self, s: f64, delta: f64, force: f64) -> Place {
+        let (delta, force) = (delta * self.units.length, force * self.units.force);
+        let x = if self.abscissa == Abscissa::Radius { s } else { delta + self.compliance * force };
+        [x, force, s]
+    }
+
+    /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
+    pub fn at(&self, s: f64) -> Option<(Place, Place)> {
+        let reduced = s / self.units.length;
+        let place = self.solution.place(reduced)?;
+        let local = self.solution.at(place);
+        let by_radius = local.slopes.map(|slope| slope / local.stretch);
+        let delta = by_radius[0];
+        let force = by_radius[1] * self.units.force / self.units.length;
+        let x = if self.abscissa == Abscissa::Radius { 1.0 } else { delta + self.compliance * force };
+        Some((self.place(s, local.approach, local.force), [x, force, 1.0]))
+    }
+
+    /// Where a foot is on this path.
+    pub fn foot(&self, piece: usize, foot: Foot) -> Option<Place> {
+        match (self.pieces.get(piece)?, foot) {
+            (Piece::Arc(_), Foot::Radius(s)) => self.at(s).map(|(at, _)| at),
+            (Piece::Arc([s, _]), Foot::Outer) | (Piece::Arc([_, s]), Foot::Inner) => self.at(*s).map(|(at, _)| at),
+            (Piece::Line([at, _]), Foot::Outer) | (Piece::Line([_, at]), Foot::Inner) => Some(*at),
+            (Piece::Line([before, after]), Foot::Share(t)) => {
+                Some(std::array::from_fn(|i| after[i] + t * (before[i] - after[i])))
+            }
+            _ => None,
+        }
+    }
+
+    /// x at the force `p` on the outermost branch, by the polyline.
+    pub fn x_at_force(&self, p: f64) -> Option<f64> {
+        let pairs = self.vertices.windows(2).take_while(|pair| pair[1].at[1] <= pair[0].at[1]);
+        let mut pairs = pairs.skip_while(|pair| pair[1].at[1] > p);
+        let pair = pairs.next()?;
+        let [a, b] = [pair[0].at, pair[1].at];
+        (a[1] >= p && a[1] > b[1]).then(|| b[0] + (p - b[1]) / (a[1] - b[1]) * (a[0] - b[0]))
+    }
+}
+
+/// The reduced radius from which the curve reaches beyond all points.
+fn outermost(
+    reduced: &Reduced,
+    basis: &Exact,
+    reach: &Reach,
+    x_of: &dyn Fn(f64, f64, f64) -> f64,
+) -> Option<f64> {
+    const FIRST: f64 = 1e-7;
+    const GROWTH: f64 = 1.5;
+    let largest = reduced.largest_contact();
+    let units = reduced.units;
+    let mut s = FIRST;
+    let mut before = [f64::INFINITY; 2];
+    for _ in 0..120 {
+        if s >= largest {
+            return Some(largest);
+        }
+        let at = basis.equilibrium(reduced, s)?;
+        let here = [x_of(at.approach, at.force, s), at.force * units.force];
+        // Small contacts have an approach and a force near zero too: only beyond the pull-off both rise.
+        let rises = here[0] > before[0] && here[1] > before[1];
+        let enough = here[0] >= reach.most[0] && here[1] >= reach.most[1];
+        if rises && enough && s * units.length >= reach.most[2].max(reach.radius) {
+            return Some((MARGIN * s).min(largest));
+        }
+        before = here;
+        s *= GROWTH;
+    }
+    None
+}

@@ -1,0 +1,170 @@
+//! Columns → points in SI or reduced units.
+
+use super::read::{Column, Measured};
+use super::role::{Role, Segment};
+use crate::problem::Control;
+use crate::units::{Quantity, UnitSystem, number::said};
+use thiserror::Error;
+
+/// What x is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Abscissa {
+    /// The approach δ.
+    Approach,
+    /// The way Δ = δ + P/k of the far end of a spring.
+    Position,
+    /// The contact radius s.
+    Radius,
+}
+
+impl Abscissa {
+    /// Its name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Position => "position",
+            Self::Radius => "contact radius",
+        }
+    }
+}
+
+/// The points of a file, in its order; lengths and forces in SI or reduced units, signs as in the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// What x is.
+    pub abscissa: Abscissa,
+    /// x.
+    pub x: Vec<f64>,
+    /// P.
+    pub force: Vec<f64>,
+    /// s, where it is measured beside δ or Δ.
+    pub radius: Option<Vec<f64>>,
+    /// The place of the last digit of x, of P and of s.
+    pub steps: [f64; 3],
+    /// The branch of each, where the file says it.
+    pub segments: Option<Vec<Segment>>,
+}
+
+/// Why columns give no points.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PointsError {
+    /// Units on a problem without.
+    #[error(
+        "{}the {role} has a unit, {unit}, and the problem is in reduced units, where columns are pure numbers: write them \
+         without, or set units = \"SI\"",
+        header.map_or_else(String::new, |line| format!("line {line}: "))
+    )]
+    Reduced {
+        /// The line of the header.
+        header: Option<usize>,
+        /// Which column.
+        role: &'static str,
+        /// Its unit.
+        unit: String,
+    },
+    /// A file that states a stiffness in N/m on a problem without units.
+    #[error("the file states a spring of {0:?} N/m, and the problem is in reduced units: set units = \"SI\"")]
+    ReducedSpring(f64),
+    /// Two stiffnesses.
+    #[error("the file states a spring of {file}, and path.control.stiffness is {preset}: one of them is wrong")]
+    Stiffness {
+        /// The file's, safe to show.
+        file: String,
+        /// The preset's, safe to show.
+        preset: String,
+    },
+    /// A deflection or a position without a spring.
+    #[error("the {0} needs the stiffness of the spring: set path.control.stiffness")]
+    NoSpring(&'static str),
+    /// A negative contact radius.
+    #[error("row {row}: the contact radius {radius:?} is negative: are the columns swapped?")]
+    NegativeRadius {
+        /// The row, from 1.
+        row: usize,
+        /// The radius.
+        radius: f64,
+    },
+    /// A column that does not vary.
+    #[error("the {0} is the same in all rows")]
+    Constant(&'static str),
+}
+
+/// Stiffnesses this near to each other are one: files round.
+const SAME: f64 = 1e-3;
+
+/// The stiffness of the device, where the preset or the file states one, in the preset's base units.
+///
+/// # Errors
+/// [`PointsError`] where both do and differ, or the problem has no units.
+pub fn stiffness(file: Option<f64>, control: Control, units: &UnitSystem) -> Result<Option<f64>, PointsError> {
+    match (file, control) {
+        (Some(k), _) if *units == UnitSystem::Reduced => Err(PointsError::ReducedSpring(k)),
+        (Some(k), Control::Stiffness(preset)) if (k / preset - 1.0).abs() > SAME => {
+            let shown = |k| said(units, Quantity::ForcePerLength, k);
+            Err(PointsError::Stiffness { file: shown(k), preset: shown(preset) })
+        }
+        (_, Control::Stiffness(preset)) => Ok(Some(preset)),
+        (file, _) => Ok(file),
+    }
+}
+
+impl Measured {
+    /// The points of a problem in `units` whose device has the stiffness `spring`, in its base units.
+    ///
+    /// Of an approach and a position the approach is taken, of a force and a deflection the force.
+    ///
+    /// # Errors
+    /// [`PointsError`].
+    pub fn points(&self, units: &UnitSystem, spring: Option<f64>) -> Result<Points, PointsError> {
+        if *units == UnitSystem::Reduced
+            && let Some(column) = self.columns.iter().find(|column| column.unit.is_some())
+        {
+            let unit = column.unit.as_ref().map_or_else(String::new, crate::units::Unit::ascii);
+            return Err(PointsError::Reduced { header: self.header, role: column.role.word(), unit });
+        }
+        let column = |role| self.columns.iter().find(|column| column.role == role);
+        let (abscissa, x) = [
+            (Abscissa::Approach, Role::Approach),
+            (Abscissa::Position, Role::Position),
+            (Abscissa::Radius, Role::Radius),
+        ]
+        .into_iter()
+        .find_map(|(abscissa, role)| Some((abscissa, column(role)?)))
+        .ok_or(PointsError::Constant("x"))?;
+        if abscissa == Abscissa::Position && spring.is_none() {
+            return Err(PointsError::NoSpring("position"));
+        }
+        let (x, x_step) = base(x);
+        let (force, force_step) = match (column(Role::Force), column(Role::Deflection)) {
+            (Some(force), _) => base(force),
+            (None, Some(deflection)) => {
+                let k = spring.ok_or(PointsError::NoSpring("deflection"))?;
+                let (values, step) = base(deflection);
+                (values.into_iter().map(|d| k * d).collect(), k * step)
+            }
+            (None, None) => return Err(PointsError::Constant("force")),
+        };
+        let radius = column(Role::Radius).map(base);
+        let radii = if abscissa == Abscissa::Radius { Some(&x) } else { radius.as_ref().map(|(s, _)| s) };
+        if let Some((at, s)) = radii.and_then(|radii| radii.iter().enumerate().find(|(_, s)| **s < 0.0)) {
+            return Err(PointsError::NegativeRadius { row: at + 1, radius: *s });
+        }
+        for (values, what) in [(&x, abscissa.name()), (&force, "force")] {
+            if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
+                return Err(PointsError::Constant(what));
+            }
+        }
+        let radius = radius.filter(|_| abscissa != Abscissa::Radius);
+        let steps = [x_step, force_step, radius.as_ref().map_or(0.0, |(_, step)| *step)];
+        let radius = radius.map(|(values, _)| values);
+        Ok(Points { abscissa, x, force, radius, steps, segments: self.segments.clone() })
+    }
+}
+
+/// The values of a column and its step in base units.
+fn base(column: &Column) -> (Vec<f64>, f64) {
+    match &column.unit {
+        None => (column.values.clone(), column.step),
+        Some(unit) => (column.values.iter().map(|x| unit.to_si(*x)).collect(), unit.to_si(column.step)),
+    }
+}

@@ -1,0 +1,220 @@
+//! What a column is, by its name or because a person says so.
+
+use crate::text::{closest, quote};
+use crate::units::{Dimension, Quantity, Unit};
+use thiserror::Error;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// δ, a length.
+    Approach,
+    /// The way of the device's far end, a length: Δ but for its sign and its zero.
+    Position,
+    /// How far the spring of the device is bent, a length.
+    Deflection,
+    /// P, a force.
+    Force,
+    /// s, a length.
+    Radius,
+    /// Which branch a row belongs to.
+    Segment,
+}
+
+/// Which branch a row belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Segment {
+    /// The bodies come together.
+    Approach,
+    /// They go apart.
+    Retraction,
+    /// Neither: a pause.
+    Other,
+}
+
+impl Segment {
+    /// Its name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Retraction => "retraction",
+            Self::Other => "pause",
+        }
+    }
+
+    /// What a cell says; `None` for a word that is not known.
+    pub fn of(text: &str) -> Option<Self> {
+        let word = text.to_ascii_lowercase();
+        let is = |words: &[&str]| words.contains(&word.as_str());
+        if is(&["false", "0", "0.0", "approach", "extend", "advance", "loading", "load", "trace", "in"]) {
+            Some(Self::Approach)
+        } else if is(&[
+            "true", "1", "1.0", "retract", "retraction", "withdraw", "unloading", "unload", "retrace", "out",
+        ]) {
+            Some(Self::Retraction)
+        } else if is(&["2", "2.0", "pause", "hold", "dwell", "intermediate"]) {
+            Some(Self::Other)
+        } else {
+            None
+        }
+    }
+}
+
+/// The roles with the names by which a header says them, in lower case, spaces for underscores.
+const NAMES: [(Role, &[&str]); 6] = [
+    (Role::Approach, &["approach", "indentation", "delta", "δ", "displacement", "depth", "tip position", "penetration"]),
+    (
+        Role::Position,
+        &["position", "height", "piezo", "z", "stage", "height measured", "height piezo", "z piezo", "piezo height", "extension"],
+    ),
+    (Role::Deflection, &["deflection", "defl", "bending"]),
+    (Role::Force, &["force", "load", "p", "f", "normal force"]),
+    (Role::Radius, &["contact radius", "radius", "s", "a"]),
+    (Role::Segment, &["segment", "branch", "direction", "phase"]),
+];
+
+impl Role {
+    /// All, in the order in which messages name them.
+    pub const ALL: [Self; 6] =
+        [Self::Approach, Self::Position, Self::Deflection, Self::Force, Self::Radius, Self::Segment];
+
+    /// The word by which `--columns` says it; `x` says [`Role::Approach`] too.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Approach => "approach",
+            Self::Position => "position",
+            Self::Deflection => "deflection",
+            Self::Force => "force",
+            Self::Radius => "radius",
+            Self::Segment => "segment",
+        }
+    }
+
+    /// What is measured; none for a segment.
+    pub fn quantity(self) -> Option<Quantity> {
+        match self {
+            Self::Force => Some(Quantity::Force),
+            Self::Segment => None,
+            _ => Some(Quantity::Length),
+        }
+    }
+
+    /// What a header's name says.
+    pub fn of(name: &str) -> Option<Self> {
+        let name = name.to_lowercase().replace(['_', '-'], " ");
+        let name = name.trim();
+        NAMES.iter().find(|(_, names)| names.contains(&name)).map(|(role, _)| *role)
+    }
+}
+
+/// The dimensions that units in a header have.
+pub(super) fn dimensions() -> [Dimension; 2] {
+    [Quantity::Length.dimension(), Quantity::Force.dimension()]
+}
+
+/// Where a column stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// Its number, from 1.
+    Number(usize),
+    /// Its name in the header.
+    Name(String),
+}
+
+/// One column as a person says it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said {
+    /// What it is.
+    pub role: Role,
+    /// Where it stands.
+    pub place: Place,
+    /// Its unit, where that is said.
+    pub unit: Option<Unit>,
+}
+
+/// What a person says of the columns of a file; empty leaves it to the header.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spec(pub Vec<Said>);
+
+/// Why a text says nothing of columns.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SpecError {
+    /// No `ROLE=COLUMN`.
+    #[error("\"{0}\" is not of the form ROLE=COLUMN, as in x=1,force=2 or position=Z [nm],force=F [nN]")]
+    Form(String),
+    /// An unknown role.
+    #[error(
+        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius or segment{}",
+        meant.map_or_else(String::new, |word| format!("; did you mean {word}?"))
+    )]
+    Role {
+        /// What was given, safe to show.
+        text: String,
+        /// What it resembles.
+        meant: Option<&'static str>,
+    },
+    /// A column number that is none.
+    #[error("column 0: columns are counted from 1")]
+    Zero,
+    /// A role said twice.
+    #[error("{0} is said twice")]
+    Twice(&'static str),
+    /// A unit that is none of its quantity.
+    #[error("the unit \"{unit}\" of {role} is not {expected}")]
+    Unit {
+        /// The role.
+        role: &'static str,
+        /// What was given, safe to show.
+        unit: String,
+        /// What is expected, in words.
+        expected: &'static str,
+    },
+}
+
+impl Spec {
+    /// What a text such as `x=1,force=Load [mN]` says.
+    ///
+    /// # Errors
+    /// [`SpecError`].
+    pub fn parse(text: &str) -> Result<Self, SpecError> {
+        let mut said: Vec<Said> = Vec::new();
+        for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+            let (word, place) = part.split_once('=').ok_or_else(|| SpecError::Form(quote(part)))?;
+            let (word, place) = (word.trim().to_lowercase(), place.trim());
+            let known = Role::ALL.into_iter().find(|role| role.word() == word);
+            let role = known.or((word == "x").then_some(Role::Approach)).ok_or_else(|| SpecError::Role {
+                text: quote(&word),
+                meant: closest(&word, Role::ALL.into_iter().map(Role::word)),
+            })?;
+            if said.iter().any(|other| other.role == role) {
+                return Err(SpecError::Twice(role.word()));
+            }
+            let (name, unit) = match place.strip_suffix(']').and_then(|place| place.rsplit_once('[')) {
+                Some((name, unit)) => (name.trim(), Some(unit_of(role, unit.trim())?)),
+                None => (place, None),
+            };
+            if name.is_empty() {
+                return Err(SpecError::Form(quote(part)));
+            }
+            let place = match name.parse::<usize>() {
+                Ok(0) => return Err(SpecError::Zero),
+                Ok(number) => Place::Number(number),
+                Err(_) => Place::Name(name.to_owned()),
+            };
+            said.push(Said { role, place, unit });
+        }
+        Ok(Self(said))
+    }
+}
+
+/// The unit `text` of a column of this role.
+pub(super) fn unit_of(role: Role, text: &str) -> Result<Unit, SpecError> {
+    let quantity = role.quantity();
+    let expected = quantity.map_or("known: a segment has no unit", |quantity| match quantity {
+        Quantity::Force => "a unit of force",
+        _ => "a unit of length",
+    });
+    let unit = Unit::parse(text, 0).ok();
+    unit.filter(|unit| quantity.is_some_and(|quantity| quantity.dimension() == unit.dimension()))
+        .ok_or_else(|| SpecError::Unit { role: role.word(), unit: quote(text), expected })
+}

@@ -1,0 +1,244 @@
+//! Files good, bad and damaged; signs, branches, noise.
+
+use super::branches::Asked;
+use super::*;
+use crate::gap::shapes::split_mix::SplitMix64;
+use crate::units::{DisplayUnits, UnitSystem};
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+fn si() -> UnitSystem {
+    UnitSystem::Si(DisplayUnits::default())
+}
+
+/// A JKR curve of E* = R = 1, γ = 0.01 by s: approach from δ = −0.1 to 0.05 and back, as rows (δ, P, is retraction).
+fn jkr(noise: f64) -> Vec<(f64, f64, bool)> {
+    let gamma = 0.01;
+    let mut random = SplitMix64::new(3);
+    let mut normal = move || (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
+    let state = |s: f64| {
+        let root = (TAU * gamma * s).sqrt();
+        (s * s - root, 4.0 / 3.0 * s * s * s - 2.0 * s * root)
+    };
+    let mut rows = Vec::new();
+    let attached = |delta: f64| {
+        let (mut lo, mut hi) = (0.128, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (lo + hi);
+            if state(middle).0 > delta { hi = middle } else { lo = middle }
+        }
+        state(lo).1
+    };
+    for i in 0..=300 {
+        let delta = -0.1 + 0.0005 * f64::from(i);
+        let force = if delta < 0.0 { 0.0 } else { attached(delta) };
+        rows.push((delta, force + noise * normal(), false));
+    }
+    for i in 0..=300 {
+        let delta = 0.05 - 0.0005 * f64::from(i);
+        let force = if delta < -0.0735 { 0.0 } else { attached(delta) };
+        rows.push((delta, force + noise * normal(), true));
+    }
+    rows
+}
+
+fn csv(rows: &[(f64, f64, bool)]) -> String {
+    rows.iter().fold("delta, force, segment\n".to_owned(), |mut text, (x, p, back)| {
+        writeln!(text, "{x:?},{p:?},{back}").unwrap();
+        text
+    })
+}
+
+fn branches(text: &str) -> Result<Branches, BranchError> {
+    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    measured.points(&UnitSystem::Reduced, Some(1.0)).unwrap().branches(&Asked::default())
+}
+
+/// x and P of all points.
+fn strip(list: &[Branch]) -> Vec<[f64; 2]> {
+    list.iter().flat_map(|b| b.attached.iter().chain(&b.free)).map(|p| [p.x, p.force]).collect()
+}
+
+#[test]
+fn every_separator_unit_and_name_gives_the_same_points() {
+    let rows = jkr(0.0);
+    for (header, separator) in [
+        ("indentation [um], Force (nN)", ", "),
+        ("delta/um\tload/nN", "\t"),
+        ("\"depth\" [um];F [nN]", ";"),
+        ("# displacement [um] force [nN]", "  "),
+    ] {
+        let text = rows.iter().fold(format!("% a remark\n\n{header}\n"), |mut text, (x, p, _)| {
+            writeln!(text, "{x:?}{separator}{p:?}").unwrap();
+            text
+        });
+        let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+        let points = measured.points(&si(), None).unwrap();
+        assert_eq!(points.abscissa, Abscissa::Approach, "{header}");
+        assert!((points.x[0] + 1e-7).abs() < 1e-20 && (points.force[300] - 1e-9 * rows[300].1).abs() < 1e-20);
+        let refused = measured.points(&UnitSystem::Reduced, None).unwrap_err().to_string();
+        assert!(refused.contains("has a unit, um, and the problem is in reduced units"), "{refused}");
+    }
+}
+
+#[test]
+fn a_tab_file_states_its_spring_and_its_segments() {
+    let mut text = "# BEGIN METADATA\n# {\n#   \"spring constant\": 0.043,\n#   \"speed\": [1, 2]\n# }\n# END METADATA\n#\n\
+                    # force\theight (measured)\theight (piezo)\tindex\tsegment\n"
+        .to_owned();
+    for (i, (x, p, back)) in jkr(1e-5).iter().enumerate() {
+        let p = 1e-3 * p;
+        let z = -(x + p / 0.043);
+        writeln!(text, "{p:e}\t{z:e}\t{z:e}\t{i}\t{}", if *back { "True" } else { "False" }).unwrap();
+    }
+    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    assert_eq!(measured.stiffness, Some(0.043));
+    assert!(measured.notes[0].contains("columns 2 and 3 are both a position: the first is read"));
+    let points = measured.points(&si(), measured.stiffness).unwrap();
+    assert_eq!(points.abscissa, Abscissa::Position);
+    let branches = points.branches(&Asked::default()).unwrap();
+    assert_eq!(branches.turned, [true, false], "heights fall as the tip comes down: {:?}", branches.notes);
+    assert_eq!(branches.list.len(), 2);
+    assert!(matches!(measured.points(&si(), None), Err(PointsError::NoSpring("position"))));
+    use crate::problem::Control;
+    let both = points::stiffness(measured.stiffness, Control::Stiffness(0.05), &si()).unwrap_err();
+    assert!(both.to_string().contains("path.control.stiffness is 0.05 N/m"), "{both}");
+    assert_eq!(points::stiffness(measured.stiffness, Control::Displacement, &si()), Ok(Some(0.043)));
+}
+
+#[test]
+fn the_free_part_the_jump_and_the_noise_are_found() {
+    for segments in [true, false] {
+        let mut text = csv(&jkr(1e-4));
+        if !segments {
+            text = text.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
+        }
+        let found = branches(&text).unwrap();
+        let [approach, retraction] = &found.list[..] else { panic!("{:?}", found.notes) };
+        assert_eq!((approach.segment, retraction.segment), (Segment::Approach, Segment::Retraction));
+        assert_eq!(approach.free.len(), 200);
+        let apart = 300 - jkr(0.0)[301..].iter().take_while(|(x, ..)| *x >= -0.0735).count() + 1;
+        assert_eq!(retraction.free.len(), apart);
+        assert!((found.noise.sigma[1] / 1e-4 - 1.0).abs() < 0.2, "{:?}", found.noise);
+        assert!(found.baseline.unwrap().abs() < 3e-5);
+        assert!(!found.noise.assumed[1] && found.noise.assumed[0], "{:?}", found.noise);
+    }
+}
+
+#[test]
+fn flipped_signs_are_turned_and_said_and_swapped_columns_refused() {
+    let rows = jkr(1e-4);
+    for (sx, sp) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+        let turned: Vec<_> = rows.iter().map(|(x, p, back)| (sx * x, sp * p, *back)).collect();
+        let found = branches(&csv(&turned)).unwrap();
+        assert_eq!(found.turned, [sx < 0.0, sp < 0.0], "{:?}", found.notes);
+        assert_eq!(found.notes.len(), usize::from(sx < 0.0) + usize::from(sp < 0.0));
+        let right = branches(&csv(&rows)).unwrap();
+        assert!(strip(&found.list) == strip(&right.list));
+    }
+    let swapped: Vec<_> = rows.iter().map(|(x, p, back)| (*p, *x, *back)).collect();
+    assert!(branches(&csv(&swapped)) == Err(BranchError::Swapped));
+}
+
+#[test]
+fn an_unordered_file_is_refused_and_one_with_segments_read_backwards_is_the_same() {
+    let mut rows = jkr(1e-4);
+    let right = branches(&csv(&rows)).unwrap();
+    rows.reverse();
+    let back = branches(&csv(&rows)).unwrap();
+    assert!(strip(&right.list) == strip(&back.list));
+    assert_eq!(right.noise, back.noise);
+    let mut random = SplitMix64::new(9);
+    for i in (1..rows.len()).rev() {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index below the length")]
+        rows.swap(i, (random.unit() * (i + 1) as f64) as usize);
+    }
+    assert!(matches!(branches(&csv(&rows)), Err(BranchError::Unordered { .. })));
+    let measured = parse(csv(&rows).as_bytes(), &Spec::default()).unwrap();
+    let asked = Asked { sigma: [Some(1e-5), Some(1e-4), None], ..Asked::default() };
+    let shuffled = measured.points(&UnitSystem::Reduced, None).unwrap().branches(&asked).unwrap();
+    assert!(strip(&right.list) == strip(&shuffled.list));
+}
+
+#[test]
+fn what_a_person_says_of_columns_is_read_or_refused() {
+    let text = "a b c\n".to_owned() + &"1 2 3\n2 3 5\n".repeat(6);
+    let unknown = parse(text.as_bytes(), &Spec::default()).unwrap_err().to_string();
+    // b and c are nothing, a alone is a radius.
+    assert!(unknown.starts_with("line 1: there is no column of the force"), "{unknown}");
+    let spec = Spec::parse("x=c, force=2 [nN]").unwrap();
+    let measured = parse(text.as_bytes(), &spec).unwrap();
+    assert_eq!(measured.columns[0].values[..2], [3.0, 5.0]);
+    assert_eq!(measured.columns[1].unit.as_ref().unwrap().ascii(), "nN");
+    for (said, expected) in [
+        ("x", "\"x\" is not of the form ROLE=COLUMN"),
+        ("forse=1", "did you mean force?"),
+        ("x=0", "columns are counted from 1"),
+        ("x=1,approach=2", "approach is said twice"),
+        ("force=1 [um]", "the unit \"um\" of force is not a unit of force"),
+    ] {
+        let message = Spec::parse(said).unwrap_err().to_string();
+        assert!(message.contains(expected), "{said}: {message}");
+    }
+    for (said, expected) in [("x=9,force=1", "no column 9: a row has 3"), ("x=q,force=1", "no column \"q\"; there is \"a\"")] {
+        let message = parse(text.as_bytes(), &Spec::parse(said).unwrap()).unwrap_err().to_string();
+        assert!(message.contains(expected), "{said}: {message}");
+    }
+}
+
+#[test]
+fn two_hundred_broken_files_are_a_sentence_each() {
+    let good = csv(&jkr(1e-4)[..40]);
+    let damage: [(&str, &str); 10] = [
+        ("x", "column 1: the approach \"x\" is no number"),
+        ("1,5e", "has 4 cells, and the first row has 3"),
+        ("", "column 1: the approach is missing"),
+        ("NaN", "is out of range"),
+        ("1e300", "is out of range"),
+        ("-inf", "is out of range"),
+        ("1\u{202e}2", "holds control or invisible characters"),
+        ("1;2", "is no number"),
+        ("0x10", "is no number"),
+        ("--3", "is no number"),
+    ];
+    let mut told = 0;
+    for line in 0..20 {
+        for (cell, expected) in damage {
+            let lines: Vec<&str> = good.lines().collect();
+            let rest = lines[line + 2].split_once(',').unwrap().1;
+            let bad = format!("{cell},{rest}");
+            let text = lines[..line + 2].iter().copied().chain([bad.as_str()]).chain(lines[line + 3..].iter().copied());
+            let text: Vec<&str> = text.collect();
+            let message = parse(text.join("\n").as_bytes(), &Spec::default()).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("line {}: ", line + 3)) && message.contains(expected), "{message}");
+            assert!(!message.contains('\n'));
+            told += 1;
+        }
+    }
+    assert_eq!(told, 200);
+    // Whatever the bytes, there is an answer.
+    let mut random = SplitMix64::new(1);
+    for _ in 0..2000 {
+        let mut bytes = good.clone().into_bytes();
+        for _ in 0..3 {
+            let bits = random.bits();
+            let at = usize::try_from(bits >> 16).unwrap_or(0) % bytes.len();
+            bytes[at] = bits.to_le_bytes()[0];
+        }
+        if let Ok(measured) = parse(&bytes, &Spec::default())
+            && let Ok(points) = measured.points(&UnitSystem::Reduced, Some(1.0))
+        {
+            let _ = points.branches(&Asked::default());
+        }
+    }
+    for (text, expected) in [
+        (&b"\xff"[..], "line 1: is not UTF-8"),
+        (b"", "has 0 rows, and a measured curve has 8 to 1000000"),
+        (b"1\n2\n", "1 columns without a header"),
+        (b"1 2 3\n", "3 columns without a header"),
+        (b"delta [nN], force\n1,2\n", "the unit \"nN\" of approach is not a unit of length"),
+    ] {
+        let message = parse(text, &Spec::default()).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+}
