@@ -13,12 +13,17 @@
 
 pub mod axis;
 pub mod count;
+pub mod equations;
 pub mod explicit;
 pub mod family;
 pub mod law;
+pub mod lines;
+pub mod map;
 pub mod weight;
 
 pub use axis::{Axis, AxisError, COMPLIANCE, Spacing};
 pub use count::{Cause, Change, Passage, even};
+pub use equations::{Equations, Sort};
 pub use family::{Family, FamilyError};
 pub use law::{Cusp, Law};
+pub use map::{Counts, Map, MapLine, MapPoint};

@@ -1,0 +1,304 @@
+//! The map of two numbers: lines of cusps, landings and starts, and the number of snaps in every cell.
+
+use super::count::{Cause, even};
+use super::equations::{Equations, Sort};
+use super::family::{At, Family, FamilyError};
+use super::law::adhesion_of;
+use super::lines::Traced;
+use crate::gap::Gap;
+use crate::quasistatic::monotone::weighted;
+
+/// Columns of the map in which cusps are looked for, and those in which landings are, with their samples.
+const CUSP_COLUMNS: u32 = 24;
+const LANDING_COLUMNS: u32 = 12;
+const LANDING_SAMPLES: u32 = 24;
+
+/// Cells a side of the grid on which cusps are looked for where neither number is the work of adhesion.
+const CUSP_CELLS: u32 = 14;
+
+/// On both sides of a line the snaps are counted so far from it, in shares.
+const ASIDE: f64 = 2e-3;
+
+/// A point of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapPoint {
+    /// s, reduced.
+    pub contact_radius: f64,
+    /// The shares of both axes.
+    pub at: [f64; 2],
+    /// The weighted control there.
+    pub control_value: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+}
+
+/// A line of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapLine {
+    /// What it is of.
+    pub sort: Sort,
+    /// The crest at which it is, by its number from the axis; none without a wave.
+    pub crest: Option<u32>,
+    /// Its points in order.
+    pub points: Vec<MapPoint>,
+    /// Its swallowtails.
+    pub tips: Vec<MapPoint>,
+    /// At each point, whether the number of snaps differs on its two sides; empty before that is known.
+    pub changes: Vec<bool>,
+}
+
+/// The lines of a map.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Map {
+    /// The lines.
+    pub lines: Vec<MapLine>,
+    /// What is to be said of them.
+    pub notes: Vec<String>,
+}
+
+/// The number of snaps over a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Counts {
+    /// The shares of the columns and of the rows.
+    pub shares: [Vec<f64>; 2],
+    /// The snaps, a row for each share up the map; none where there is no path.
+    pub cells: Vec<Vec<Option<usize>>>,
+}
+
+impl Family {
+    /// The lines of the map of both axes. `go_on` is asked now and then; what is found until it says no is given.
+    ///
+    /// # Errors
+    /// The gap cannot be tabulated somewhere, or a value is out of its range.
+    pub fn map(&self, go_on: &dyn Fn() -> bool) -> Result<Map, FamilyError> {
+        let mut map = Map::default();
+        if let Some(lines) = self.explicit_cusps()? {
+            for (points, tips) in lines {
+                let point = |born: &super::explicit::Born| self.point_at(&born.at, born.contact_radius);
+                let points: Vec<MapPoint> = points.iter().filter_map(point).collect();
+                let tips = tips.iter().filter_map(point).collect();
+                map.lines.push(self.line_of(Sort::Cusp, points, tips));
+            }
+        } else {
+            let cusps = Equations::new(self, Sort::Cusp);
+            self.follow(&cusps, self.cusp_starts(go_on), &mut map, go_on);
+        }
+        let landings = Equations::new(self, Sort::Landing);
+        self.follow(&landings, self.landing_starts(go_on), &mut map, go_on);
+        if self.has_fixed_start() {
+            let starts = Equations::new(self, Sort::Start);
+            self.follow(&starts, self.start_starts(go_on), &mut map, go_on);
+        }
+        map.lines.retain(|line| line.points.len() > 1);
+        let corners = self.member(&[0.5; 2]).and_then(|member| member.law(&[0.5; 2]));
+        if corners.is_ok_and(|law| !law.cusps(self.radii).1.is_empty()) {
+            map.notes.push(
+                "the second derivative of the gap jumps: there the law has corners, which are no cusps, and pairs of limit \
+                 points that begin at them are not on a line"
+                    .to_owned(),
+            );
+        }
+        Ok(map)
+    }
+
+    /// Whether the start is the same contact radius all over the map.
+    fn has_fixed_start(&self) -> bool {
+        matches!(self.preset.path.start, crate::problem::Start::ContactRadius(_))
+            && self.axes.iter().all(|axis| !axis.key.starts_with("path.start"))
+    }
+
+    /// Traces the lines through `starts` that are on none yet.
+    fn follow(&self, of: &Equations<'_>, starts: Vec<Vec<f64>>, map: &mut Map, go_on: &dyn Fn() -> bool) {
+        let mut known: Vec<Traced> = Vec::new();
+        for y in starts {
+            if !go_on() {
+                return;
+            }
+            if known.iter().any(|line| line.has(&y)) {
+                continue;
+            }
+            let Some(line) = of.line(&y, go_on) else { continue };
+            let point = |y: &Vec<f64>| {
+                let (radii, shares) = y.split_at(of.radii());
+                let s = radii.first().map_or(self.radii[1], |s| s * of.unit);
+                self.point_at(&[shares[0], shares[1]], s)
+            };
+            let points = line.points.iter().filter_map(point).collect();
+            let tips = line.tips.iter().filter_map(point).collect();
+            map.lines.push(self.line_of(of.sort, points, tips));
+            known.push(line);
+        }
+    }
+
+    fn line_of(&self, sort: Sort, points: Vec<MapPoint>, tips: Vec<MapPoint>) -> MapLine {
+        let middle = points.get(points.len() / 2);
+        let crest = middle.and_then(|point| self.crest(point.contact_radius));
+        MapLine { sort, crest, points, tips, changes: Vec::new() }
+    }
+
+    /// The number of the crest nearest to the radius `s`, reduced, from the axis.
+    pub fn crest(&self, s: f64) -> Option<u32> {
+        let wave = self.preset.gap.wavelength()? / self.length;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded, and from 0 to some thousand")]
+        Some((s / wave).round().clamp(0.0, 1e9) as u32)
+    }
+
+    fn point_at(&self, at: &[f64; 2], s: f64) -> Option<MapPoint> {
+        let local = self.member(at).ok()?.local(s)?;
+        let (approach, force) = (local.approach(), local.force());
+        let control_value = weighted(local.control, approach, force);
+        Some(MapPoint { contact_radius: s, at: *at, control_value, approach, force })
+    }
+
+    /// Points on lines of cusps.
+    fn cusp_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+        let of = Equations::new(self, Sort::Cusp);
+        if let (Some(adhesion), Some(factor)) = (self.adhesion(), self.adhesion_factor()) {
+            // Along the adhesion every cusp of the law is one of the map.
+            let other = 1 - adhesion;
+            let mut starts = Vec::new();
+            for share in even(CUSP_COLUMNS) {
+                if !go_on() {
+                    break;
+                }
+                let mut at = [0.5; 2];
+                at[other] = share;
+                for cusp in self.cusps(&at) {
+                    at[adhesion] = self.axes[adhesion].share(adhesion_of(cusp.value) / factor);
+                    if (0.0..=1.0).contains(&at[adhesion]) {
+                        let y = [cusp.contact_radius / of.unit, at[0], at[1]];
+                        starts.extend(of.polished(&y, 1 + other));
+                    }
+                }
+            }
+            return starts;
+        }
+        let shares = even(CUSP_CELLS);
+        let mut rows: Vec<Vec<Vec<[f64; 2]>>> = Vec::new();
+        for y in &shares {
+            let row = shares.iter().map(|x| {
+                let at = [*x, *y];
+                let root = self.member(&at).map_or(f64::NAN, |member| member.root);
+                let cusps = if go_on() { self.cusps(&at) } else { Vec::new() };
+                cusps.iter().map(|cusp| [cusp.contact_radius, cusp.value - root]).collect()
+            });
+            rows.push(row.collect());
+        }
+        let mut starts = Vec::new();
+        let near = 0.3 * of.unit;
+        let mut between = |a: [usize; 2], b: [usize; 2]| {
+            for [s, off] in &rows[a[1]][a[0]] {
+                let nearest = rows[b[1]][b[0]].iter().min_by(|x, y| (x[0] - s).abs().total_cmp(&(y[0] - s).abs()));
+                let Some([t, other]) = nearest.filter(|[t, other]| (t - s).abs() < near && off * other < 0.0) else {
+                    continue;
+                };
+                let share = off / (off - other);
+                let mix = |a: f64, b: f64| a + share * (b - a);
+                let at = [0, 1].map(|k| mix(shares[a[k]], shares[b[k]]));
+                let held = if a[0] == b[0] { 1 } else { 2 };
+                starts.extend(of.polished(&[mix(*s, *t) / of.unit, at[0], at[1]], held));
+            }
+        };
+        let n = shares.len();
+        for j in 0..n {
+            for i in 0..n {
+                if i + 1 < n {
+                    between([i, j], [i + 1, j]);
+                }
+                if j + 1 < n {
+                    between([i, j], [i, j + 1]);
+                }
+            }
+        }
+        starts
+    }
+
+    /// Points on landing lines: where the number of snaps changes without a birth.
+    fn landing_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+        let of = Equations::new(self, Sort::Landing);
+        // Along the axis that keeps the gap, where one does: a table serves a whole column.
+        let along = if self.keeps_gap(1) || !self.keeps_gap(0) { 1 } else { 0 };
+        let mut starts = Vec::new();
+        for share in even(LANDING_COLUMNS) {
+            let mut at = [share; 2];
+            at[along] = 0.0;
+            for change in self.changes(along, &at, &even(LANDING_SAMPLES), go_on) {
+                if let Cause::Landing([outer, inner]) = change.cause {
+                    at[along] = change.share;
+                    let y = [outer / of.unit, inner / of.unit, at[0], at[1]];
+                    starts.extend(of.polished(&y, 2 + (1 - along)));
+                }
+            }
+        }
+        starts
+    }
+
+    /// Points at which the start of the path is a limit point.
+    fn start_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+        let of = Equations::new(self, Sort::Start);
+        let off = |at: At<'_>| {
+            let member = self.member(at).ok()?;
+            Some(member.local(self.radii[1])?.edge.value - member.root)
+        };
+        let shares = even(CUSP_COLUMNS);
+        let mut starts = Vec::new();
+        for along in [0, 1] {
+            for held in &shares {
+                if !go_on() {
+                    return starts;
+                }
+                let place = |share: f64| {
+                    let mut at = [*held; 2];
+                    at[along] = share;
+                    at
+                };
+                for pair in shares.windows(2) {
+                    let (Some(a), Some(b)) = (off(&place(pair[0])), off(&place(pair[1]))) else { continue };
+                    if (a > 0.0) != (b > 0.0) {
+                        let share = pair[0] + (pair[1] - pair[0]) * a / (a - b);
+                        starts.extend(of.polished(&place(share), 1 - along));
+                    }
+                }
+            }
+        }
+        starts
+    }
+
+    /// Says of every line where the number of snaps changes across it.
+    pub fn mark_changes(&self, map: &mut Map, go_on: &dyn Fn() -> bool) {
+        for line in &mut map.lines {
+            let points = &line.points;
+            let changes = (0..points.len()).map(|k| {
+                let (a, b) = (points[k.saturating_sub(1)].at, points[(k + 1).min(points.len() - 1)].at);
+                let along = [b[0] - a[0], b[1] - a[1]];
+                let length = along[0].hypot(along[1]).max(f64::MIN_POSITIVE);
+                let aside = |by: f64| {
+                    let at = points[k].at;
+                    [at[0] - by * along[1] / length, at[1] + by * along[0] / length]
+                        .map(|share| share.clamp(0.0, 1.0))
+                };
+                let snaps = |by| self.passage(&aside(by)).map(|passage| passage.snaps);
+                go_on() && snaps(-ASIDE) != snaps(ASIDE)
+            });
+            line.changes = changes.collect();
+        }
+    }
+
+    /// The snaps on a grid of so many columns and rows, cell by cell; `None` when `go_on` said no.
+    pub fn counts(&self, [columns, rows]: [u32; 2], go_on: &dyn Fn() -> bool) -> Option<Counts> {
+        let shares = [even(columns), even(rows)];
+        let mut cells = vec![vec![None; shares[0].len()]; shares[1].len()];
+        // Column by column, so that a table serves a whole one.
+        for (i, x) in shares[0].iter().enumerate() {
+            for (j, y) in shares[1].iter().enumerate() {
+                if !go_on() {
+                    return None;
+                }
+                cells[j][i] = self.passage(&[*x, *y]).map(|passage| passage.snaps);
+            }
+        }
+        Some(Counts { shares, cells })
+    }
+}
