@@ -100,13 +100,14 @@ fn a_count_is_so_many_steps_and_the_length_is_the_longest_step() {
 #[test]
 fn undo_moves_a_cursor_a_step_after_it_makes_a_branch_and_nothing_is_erased() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Command::Steps(3));
+    session.all(&[Id::Step, Id::Step, Id::Step]);
     let first = session.radius();
     session.all(&[Id::Undo, Id::Undo]).does(Id::Reverse).does(Id::Step);
     assert!(session.radius() > first);
     assert_eq!(session.model.history.nodes().len(), 5);
     session.all(&[Id::Undo, Id::Redo]);
     assert_eq!(session.model.history.cursor(), Some(4));
+    // The step, the way, and the first step.
     session.all(&[Id::Undo, Id::Undo, Id::Undo, Id::Undo]);
     assert!(session.status().contains("nothing to undo"));
 }
@@ -125,8 +126,10 @@ fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
     assert!((after.approach - before.approach).abs() < 1e-9);
     assert!((after.force / before.force - 1.0).abs() > 1e-3);
     assert_ne!(session.model.shown_events()[0].before, events[0].before);
-    // Turned further it is one change for undo.
+    // Turned further it is another command.
     session.does(Id::More).does(Id::Undo);
+    assert_eq!(session.model.history.current().unwrap().state, after);
+    session.does(Id::Undo);
     assert!(!session.model.is_unsaved());
     assert_eq!(session.model.history.current().unwrap().state, before);
     assert_eq!(session.model.shown_events()[0], events[0]);
@@ -464,7 +467,7 @@ fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_
     assert!(update(&mut session.model, Id::Axes.into()).is_empty());
     // Late answers of older states do not replace newer ones.
     let newest = session.model.profile.clone().unwrap();
-    session.does(Id::Undo);
+    session.all(&[Id::Undo, Id::Undo]);
     let back = shown(&session);
     assert_ne!(back, newest.profile.contact_radius.to_bits());
     answer(&mut session.model, Reply::Profile(newest));

@@ -16,8 +16,8 @@ pub fn is_available(model: &Model, id: Id) -> bool {
         // Without a curve, which was given up or failed, it is computed again.
         Needs::WalkerOrNoCurve => is_walking || !model.is_computing(),
         Needs::Jump => model.can_jump(),
-        Needs::Undo => model.history.parent().is_some() || model.is_ahead(),
-        Needs::Redo => model.history.redo_target().is_some(),
+        Needs::Undo => model.can_travel(model.undo.past()),
+        Needs::Redo => model.can_travel(model.undo.future()),
         Needs::Branches => branches::are_several(&model.history),
         Needs::Curve => model.curve.is_some(),
         Needs::Pins => !model.pins.is_empty(),
@@ -29,7 +29,7 @@ pub fn is_available(model: &Model, id: Id) -> bool {
 pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
     let apart = model.history.current().is_some_and(Node::is_apart);
     match id {
-        Id::Undo | Id::UndoCommand => "this is the start: there is nothing to undo".to_owned(),
+        Id::Undo => "this is the start: there is nothing to undo".to_owned(),
         Id::Redo => "there is nothing to redo".to_owned(),
         Id::Branches => {
             format!(

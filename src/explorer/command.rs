@@ -67,6 +67,18 @@ pub enum Command {
     },
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
+    /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).
+    Travel {
+        id: Id,
+        count: usize,
+        /// Whether single states along the walk are counted instead, as scripts of earlier versions did.
+        states: bool,
+    },
+    /// The value of a key turned; which one was selected when the key was pressed, before what it waits for.
+    Turn {
+        id: Id,
+        key: Key,
+    },
     /// Go to the last state walked with exactly these δ, P and s (reduced).
     GoToState([f64; 3]),
     /// Go to this node of the walk.
@@ -120,13 +132,13 @@ impl Command {
     /// Its row in the table.
     pub fn id(&self) -> Id {
         match self {
-            Self::Plain(id) => *id,
+            Self::Plain(id) | Self::Travel { id, .. } => *id,
             Self::Steps(_) => Id::Step,
             Self::RunOf(_) => Id::Run,
             Self::StepLength(_) => Id::StepLength,
             Self::SelectEvent(_) => Id::SelectEvent,
             Self::MoveTo(_) => Id::MoveTo,
-            Self::Assign(_) => Id::Assign,
+            Self::Assign(_) | Self::Turn { .. } => Id::Assign,
             Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
             Self::Pick { .. } => Id::NextPanel,
             Self::TakeBack => Id::Cancel,

@@ -193,8 +193,7 @@ fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<Str
     let ways = [Some(differences(&now, &start.preset)), changes(&now, &start.preset)];
     let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(lost)?;
     let open = script::line(&Command::OpenWith { name: name.clone(), assignments }).ok_or_else(lost)?;
-    let head = "# A session of pulloff: `pulloff run` walks it again.";
-    Ok(std::iter::once(head).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(
+    Ok(std::iter::once(script::HEAD).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(
         String::new(),
         |mut text, line| {
             text.push_str(line);

@@ -12,6 +12,8 @@ const CHUNK: usize = 256;
 struct TreeNode {
     node: Node,
     forward: Option<usize>,
+    /// Its lasting number: pruning keeps it, and it grows from node to node.
+    id: u64,
 }
 
 /// A place to come back to: a node, and the child last gone to from there.
@@ -32,6 +34,7 @@ pub struct History {
     numbering: u64,
     /// The tree is pruned when it has so many nodes.
     prune_at: usize,
+    next_id: u64,
 }
 
 impl History {
@@ -48,7 +51,7 @@ impl History {
         }
         let mut tree = Self::default();
         for (node, forward) in nodes {
-            tree.add(TreeNode { node, forward });
+            tree.grow(node, forward);
         }
         tree.cursor = cursor;
         Some(tree)
@@ -82,6 +85,25 @@ impl History {
     /// The node of a number.
     pub fn node(&self, number: usize) -> Option<&Node> {
         self.entry(number).map(|entry| &entry.node)
+    }
+
+    /// The lasting number of the current node.
+    pub fn id(&self) -> Option<u64> {
+        self.entry(self.cursor?).map(|entry| entry.id)
+    }
+
+    /// The number of the node of a lasting number, or of the last one before it that was not pruned.
+    pub fn find(&self, id: u64) -> Option<usize> {
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            if self.entry(middle).is_some_and(|entry| entry.id <= id) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low.checked_sub(1)
     }
 
     /// All nodes, by number; a node comes behind its parent.
@@ -138,6 +160,12 @@ impl History {
         }
     }
 
+    fn grow(&mut self, node: Node, forward: Option<usize>) {
+        let id = self.next_id;
+        self.next_id += 1;
+        self.add(TreeNode { node, forward, id });
+    }
+
     /// Appends a node behind the current one and stands on it.
     pub fn push(&mut self, mut node: Node) {
         node.parent = self.cursor;
@@ -155,25 +183,36 @@ impl History {
         if let Some(parent) = node.parent {
             self.set_forward(parent, at);
         }
-        self.add(TreeNode { node, forward: None });
+        self.grow(node, None);
         self.stand(at);
-        if self.len() > self.prune_at.max(prune::MOST) {
-            self.prune();
-        }
     }
 
-    /// Forgets plain states far back, and numbers the others anew.
-    fn prune(&mut self) {
+    /// Of a walk that has become long forgets plain states far back, and numbers the others anew; those of the lasting
+    /// numbers in `held`, ascending, stay.
+    pub fn shorten(&mut self, held: &[u64]) {
+        if self.len() <= self.prune_at.max(prune::MOST) {
+            return;
+        }
         let nodes: Vec<&Node> = self.nodes().collect();
-        let stays = prune::staying(&nodes, self.cursor);
-        let mut tree = Self { revision: self.revision + 1, numbering: self.numbering + 1, ..Self::default() };
+        let is_held = |at: usize| {
+            self.cursor == Some(at)
+                || self.entry(at).is_some_and(|entry| held.binary_search(&entry.id).is_ok())
+        };
+        let stays = prune::staying(&nodes, is_held);
+        let mut tree = Self {
+            revision: self.revision + 1,
+            numbering: self.numbering + 1,
+            next_id: self.next_id,
+            ..Self::default()
+        };
         // The new number of each node, or of the last one before it that stays.
         let mut place: Vec<usize> = Vec::with_capacity(nodes.len());
         for (at, node) in nodes.iter().enumerate() {
             let parent = node.parent.map(|parent| place[parent]);
             if stays[at] {
                 place.push(tree.len());
-                tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, forward: None });
+                let id = self.entry(at).map_or(0, |entry| entry.id);
+                tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, forward: None, id });
             } else {
                 // The first node has no parent, and stays.
                 place.push(parent.unwrap_or(0));

@@ -96,11 +96,20 @@ impl Journal {
         self.start.as_deref()
     }
 
-    /// The lines that lead to `preset`, walked `way` (inward or not, step length); `failed` where it has no curve.
-    pub fn so_far(&self, preset: &Preset, way: (bool, f64), failed: bool) -> Result<Vec<String>, String> {
+    /// The lines that lead to `preset`, or to the walker's state where there is none, walked `way` (inward or not, step
+    /// length); `failed` where it has no curve.
+    pub fn so_far(
+        &self,
+        preset: Option<&Preset>,
+        way: (bool, f64),
+        failed: bool,
+    ) -> Result<Vec<String>, String> {
         let mut journal = self.clone();
         journal.abandoned();
-        journal.sync(preset, Some(way), failed);
+        let own = journal.replay.as_ref().map(|replay| replay.preset.clone());
+        if let Some(preset) = preset.or(own.as_ref()) {
+            journal.sync(preset, Some(way), failed);
+        }
         journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
     }
 

@@ -19,6 +19,7 @@
 //! | [`theory`] | closed forms drawn over a curve |
 //! | [`nudge`] | a parameter changed by a little |
 //! | [`setting`], [`node`], [`history`] | the walk: the problem of a state, a state, and the tree of all states |
+//! | [`undo`] | where the session stood before each command |
 //! | [`branches`] | the branches of the walk, and what each ended with |
 //! | `prune` | which states of a long walk may be forgotten |
 //! | [`curve`] | the equilibrium curve of a problem, and what belongs to its control |
@@ -70,6 +71,7 @@ pub mod session;
 pub mod setting;
 pub mod status_line;
 pub mod theory;
+pub mod undo;
 pub mod update;
 pub mod view;
 pub mod walk;

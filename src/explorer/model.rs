@@ -11,6 +11,7 @@ use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::setting::same_curve;
+use super::undo::{Place, Undo};
 use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
@@ -51,6 +52,14 @@ pub enum Question {
     ReplacePage(super::export::Page, String),
 }
 
+/// What commands wait for besides walks and curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Awaits {
+    Nothing,
+    /// A file that will change the problem.
+    File,
+}
+
 /// A walk request that is running.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Walking {
@@ -58,6 +67,8 @@ pub struct Walking {
     pub made: usize,
     /// Those it was asked for; a run goes on until something happens.
     pub wanted: Option<usize>,
+    /// Whether nobody asked for it: the state is solved again for other values.
+    pub solves: bool,
 }
 
 /// The admissibility check of the curve on the screen.
@@ -125,14 +136,17 @@ pub struct Model {
     pub device: Option<bool>,
     pub history: History,
     pub journal: Journal,
+    pub undo: Undo,
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
     /// Whether the walk of a resumed session has been tried on its first curve already.
     pub is_tried: bool,
     pub walking: Option<Walking>,
-    /// Commands that wait for the walk or the curve, in order.
+    /// Commands that wait for the walk, the curve or a file, in order.
     pub queue: VecDeque<Command>,
+    /// What they wait for besides.
+    pub awaits: Awaits,
     pub panel: Panel,
     pub parameter: usize,
     pub event: usize,
@@ -162,7 +176,7 @@ pub struct Model {
 /// What there was before values were tried.
 #[derive(Debug, Clone)]
 pub struct Untried {
-    pub preset: Preset,
+    pub place: Place,
     pub mark: Mark,
     pub journal: Journal,
 }
@@ -194,11 +208,13 @@ impl Model {
             device: None,
             history: History::default(),
             journal: Journal::default(),
+            undo: Undo::default(),
             inward: true,
             length: FIRST_LENGTH,
             is_tried: false,
             walking: None,
             queue: VecDeque::new(),
+            awaits: Awaits::Nothing,
             panel: Panel::Problem,
             parameter: 0,
             event: 0,
@@ -244,10 +260,8 @@ impl Model {
     /// The lines of a script that leads to where the session is now.
     pub fn script(&self) -> Result<Vec<String>, String> {
         // Values whose curve was given up have no state: nothing was done with them.
-        let preset = match &self.curve {
-            Some(curve) if matches!(self.curve_error, Some(CurveError::GivenUp(_))) => &curve.setting.preset,
-            _ => &self.preset,
-        };
+        let given_up = matches!(self.curve_error, Some(CurveError::GivenUp(_)));
+        let preset = (!given_up).then_some(&self.preset);
         let failed = matches!(self.curve_error, Some(CurveError::Failed(_)));
         self.journal.so_far(preset, (self.inward, self.length), failed)
     }
@@ -328,7 +342,32 @@ impl Model {
         self.windows[view as usize]
     }
 
-    /// Whether the values have been changed since the walker's state was made: undo takes that back first.
+    /// Where the session stands, for undo.
+    pub fn place(&self) -> Place {
+        Place {
+            preset: self.preset.clone(),
+            node: self.history.id(),
+            inward: self.inward,
+            length: self.length,
+            settled: self.is_settled() || self.is_tried,
+            shelved: None,
+        }
+    }
+
+    /// Whether the session stands at `place`.
+    pub fn is_at(&self, place: &Place) -> bool {
+        let own = (self.history.id(), self.inward, self.length.to_bits());
+        place.shelved.is_none()
+            && own == (place.node, place.inward, place.length.to_bits())
+            && self.preset == place.preset
+    }
+
+    /// Whether any of `places` is another than where the session stands.
+    pub(super) fn can_travel(&self, places: &[Arc<Place>]) -> bool {
+        places.iter().rev().any(|place| !self.is_at(place))
+    }
+
+    /// Whether the values have been changed since the walker's state was made.
     pub fn is_ahead(&self) -> bool {
         self.history.current().is_some_and(|node| {
             !same_curve(&node.setting.preset, &self.preset) && !matches!(node.kind, NodeKind::Stale(_))

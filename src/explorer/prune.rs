@@ -13,8 +13,8 @@ const LEFT: usize = 3_750;
 /// So many of the newest are never pruned.
 const NEWEST: usize = 2_000;
 
-/// Which of `nodes` stay, the walker standing on `cursor`.
-pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
+/// Which of `nodes` stay; those that are held do.
+pub(super) fn staying(nodes: &[&Node], is_held: impl Fn(usize) -> bool) -> Vec<bool> {
     let count = nodes.len();
     let old = count.saturating_sub(NEWEST);
     let mut stays = vec![true; count];
@@ -23,7 +23,7 @@ pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
     let is_plain = |at: usize| {
         // Its one child is a step like itself: neither an end, nor a fork, nor the state before something.
         let single = matches!(children[at][..], [child] if nodes[child].kind == NodeKind::Step);
-        nodes[at].kind == NodeKind::Step && single && cursor != Some(at) && nodes[at].parent.is_some()
+        nodes[at].kind == NodeKind::Step && single && !is_held(at) && nodes[at].parent.is_some()
     };
     loop {
         let plain: Vec<usize> = (0..old).filter(|at| stays[*at] && is_plain(*at)).collect();
@@ -37,7 +37,7 @@ pub(super) fn staying(nodes: &[&Node], cursor: Option<usize>) -> Vec<bool> {
         }
     }
     let repeated: Vec<usize> = (0..old)
-        .filter(|at| cursor != Some(*at) && children[*at].is_empty() && is_repeated(nodes, &children, *at))
+        .filter(|at| !is_held(*at) && children[*at].is_empty() && is_repeated(nodes, &children, *at))
         .take(surplus)
         .collect();
     for at in repeated {

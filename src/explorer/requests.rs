@@ -3,7 +3,7 @@
 use super::effect::{Check, Effect, Wish};
 use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
-use super::model::{Checking, Level, Model};
+use super::model::{Awaits, Checking, Model};
 use super::node::NodeKind;
 use super::view::{EventSource, View};
 use pulloff_engine::gap::Shape;
@@ -102,10 +102,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     model.is_tried = false;
     let knobs = model.knobs().len();
     model.parameter = model.parameter.min(knobs.saturating_sub(1));
-    if !model.queue.is_empty() {
-        model.tell(Level::Info, "what was asked of the walk and not begun is left: the values changed");
-    }
-    let mut effects = stop(model);
+    let mut effects = stop_walk(model);
     if model.shows_its_curve() {
         // Back at the values of the curve on the screen: the one being computed is no longer wanted.
         model.curve_shown = model.curve_wanted;
@@ -120,6 +117,12 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
 /// Ends the walk that runs and forgets the commands that wait for it.
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
+    model.awaits = Awaits::Nothing;
+    stop_walk(model)
+}
+
+/// Ends the walk that runs.
+pub(super) fn stop_walk(model: &Model) -> Vec<Effect> {
     model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 

@@ -4,23 +4,26 @@
 //! |---|---|
 //! | `update.rs` | hands commands and replies to the code for each; selecting |
 //! | `curve` | what follows from a new curve |
-//! | `walk` | steps, runs, jumps and undo |
+//! | `walk` | steps, runs, jumps |
+//! | `turns` | what waits for what, and what undo can take back |
+//! | `travel` | undo, redo, branches |
 //! | `values` | parameters changed |
 //! | `files` | opening, saving and exporting |
 
 mod curve;
 mod files;
+mod travel;
+mod turns;
 mod values;
 mod walk;
 
 use super::availability::{is_available, why_unavailable};
 use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
-use super::job::Job;
+use super::job::{Done, Job};
 use super::loops::has_crests;
-use super::model::{Level, Model};
-use super::nudge::Amount;
-use super::requests::{browse, file, stop, take_back, want_check, want_curve, want_loop};
+use super::model::{Awaits, Level, Model};
+use super::requests::{browse, file, stop, want_check, want_curve, want_loop};
 use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
 use super::{background_jobs, look};
@@ -31,11 +34,10 @@ use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{greek, show_name};
 use pulloff_engine::units::Quantity;
+use travel::{by_states, go_to, go_to_state, travel, travel_to};
+use turns::{Turn, enqueue, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
-use walk::{go_to, go_to_state, restart, scale_length, travel, travel_to, walk, walked};
-
-/// Commands waiting for a walk or a curve; more key presses than these are a held key.
-const QUEUE: usize = 1000;
+use walk::{restart, scale_length, walk, walked};
 
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
@@ -46,15 +48,14 @@ pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
 
 /// What a command does to the model, and what it wants done.
 ///
-/// A command of the walk waits for the walk that runs and for the curve of values changed before it: keys come late and
-/// together over a slow line, and mean what they mean one by one.
+/// What changes the walk or the values is done in the order in which it came: it waits for the walk that runs, for the
+/// curve where it needs one, and for what waits already. So keys that come late and together over a slow line mean what
+/// they mean one by one.
 pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     model.message = None;
-    if waits(model, &command) {
-        if model.queue.len() < QUEUE {
-            model.queue.push_back(command);
-        }
-        return Vec::new();
+    let turn = Turn::of(&command);
+    if turn > Turn::None && (!model.queue.is_empty() || is_blocked(model, &command)) {
+        return enqueue(model, command);
     }
     let mut effects = allowed(model, command);
     effects.extend(look::want_profile(model));
@@ -63,46 +64,40 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects
 }
 
-fn waits(model: &Model, command: &Command) -> bool {
-    match command {
-        // Pressed again it ends a run.
-        Command::Plain(Id::Run) => model.is_computing() && model.walking.is_none(),
-        Command::Plain(
-            Id::Step
-            | Id::NextLimit
-            | Id::PreviousLimit
-            | Id::Jump
-            | Id::Restart
-            | Id::MoveTo
-            | Id::SelectEvent,
-        )
-        | Command::Steps(_)
-        | Command::RunOf(_)
-        | Command::MoveTo(_)
-        | Command::SelectEvent(_) => model.is_busy(),
-        Command::Plain(Id::Reverse | Id::Halve | Id::Double) | Command::StepLength(_) => {
-            !model.queue.is_empty()
-        }
-        _ => false,
-    }
-}
-
-/// Does what is allowed now; what is not is refused with the reason, and what waits behind it with it.
+/// Does what is allowed now; what is not is refused with the reason. What it changed can be taken back.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
-    if is_available(model, command.id()) {
+    // Which states there are says the tree, not undo.
+    let by_states = matches!(command, Command::Travel { states: true, .. } | Command::GoToState(_));
+    if !by_states && !is_available(model, command.id()) {
+        model.tell(Level::Error, why_unavailable(model, command.id()));
+        return Vec::new();
+    }
+    let is_travel =
+        matches!(command, Command::Plain(Id::Undo | Id::Redo) | Command::Travel { states: false, .. });
+    if is_travel || Turn::of(&command) == Turn::None && command != Id::Edit.into() {
         return obey(model, command);
     }
-    model.queue.clear();
-    model.tell(Level::Error, why_unavailable(model, command.id()));
-    Vec::new()
+    recorded(model, |model| obey(model, command))
 }
 
-/// Does the commands that waited, in order, until one of them makes the others wait again.
+/// Takes what came of a file.
+fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
+    if matches!(done, Done::Opened(_) | Done::Read(_) | Done::Assigned(_) | Done::Failed(_)) {
+        model.awaits = Awaits::Nothing;
+    }
+    // What was saved is no change of the session.
+    if matches!(done, Done::Saved { .. }) {
+        return file_done(model, done);
+    }
+    recorded(model, |model| file_done(model, done))
+}
+
+/// Does the commands that waited, in order, until one of them has to wait again.
 fn go_on(model: &mut Model) -> Vec<Effect> {
     let mut effects = Vec::new();
-    while effects.is_empty() && !model.is_busy() {
+    while model.queue.front().is_some_and(|command| !is_blocked(model, command)) {
         let Some(command) = model.queue.pop_front() else { break };
-        effects = allowed(model, command);
+        effects.extend(allowed(model, command));
     }
     effects
 }
@@ -137,6 +132,9 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         }
         Command::GoTo { node, numbering } => go_to(model, node, numbering),
         Command::GoToState(state) => go_to_state(model, state),
+        Command::Travel { id, count, states: false } => travel(model, id, count),
+        Command::Travel { id, count, states: true } => by_states(model, id, count),
+        Command::Turn { id, key } => turn(model, id, Some(&key)),
         Command::Unpin(number) => {
             look::unpin(model, number);
             Vec::new()
@@ -157,16 +155,14 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
 /// What a reply does to the model, and what follows from it.
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
-        Reply::Curve { id, result } => curve_came(model, id, result).unwrap_or_else(|| go_on(model)),
+        Reply::Curve { id, result } => curve_came(model, id, result).unwrap_or_default(),
         Reply::Progress { id, progress } => {
             if id == model.curve_wanted && model.is_computing() {
                 model.progress = Some(progress);
             }
             return Vec::new();
         }
-        Reply::Walked { id, made, outcome } => {
-            walked(model, id, made, outcome).unwrap_or_else(|| go_on(model))
-        }
+        Reply::Walked { id, made, outcome } => walked(model, id, made, outcome).unwrap_or_default(),
         Reply::Checked { id, curve } => {
             checked(model, id, curve);
             Vec::new()
@@ -191,8 +187,9 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             model.pins.came(number, curve);
             Vec::new()
         }
-        Reply::File(done) => file_done(model, *done),
+        Reply::File(done) => file_came(model, *done),
     };
+    effects.extend(go_on(model));
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
@@ -205,7 +202,10 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::NextLimit => return walk(model, Action::ToLimit),
         Id::PreviousLimit => {
             model.inward = !model.inward;
-            return walk(model, Action::ToLimit);
+            let effects = walk(model, Action::ToLimit);
+            // Refused, it turns nothing round.
+            model.inward ^= model.walking.is_none();
+            return effects;
         }
         Id::Jump => return walk(model, Action::Jump),
         Id::Run => return if model.walking.is_some() { stop(model) } else { walk(model, Action::ToLimit) },
@@ -213,13 +213,9 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),
         Id::Double => scale_length(model, 2.0),
-        Id::Undo | Id::UndoCommand if model.is_ahead() => return take_back(model),
-        Id::Undo | Id::UndoCommand | Id::Redo => return travel(model, id),
+        Id::Undo | Id::Redo => return travel(model, id, 1),
         Id::Control => return change_control(model),
-        Id::Less => return turn(model, false, Amount::Fine),
-        Id::More => return turn(model, true, Amount::Fine),
-        Id::MuchLess => return turn(model, false, Amount::Coarse),
-        Id::MuchMore => return turn(model, true, Amount::Coarse),
+        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => return turn(model, id, None),
         Id::Edit => return select(model),
         Id::Up if model.panel == Panel::Charts => look::go(model, 0.0, 1.0),
         Id::Down if model.panel == Panel::Charts => look::go(model, 0.0, -1.0),
@@ -361,7 +357,12 @@ fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
 
 /// Enter on an event.
 fn select(model: &mut Model) -> Vec<Effect> {
-    if model.panel == Panel::Events { go_to_event(model) } else { Vec::new() }
+    match model.panel {
+        // Chosen in the list of a curve that will have gone, or in the middle of a walk.
+        Panel::Events if model.is_busy() => update(model, Command::SelectEvent(model.event + 1)),
+        Panel::Events => go_to_event(model),
+        _ => Vec::new(),
+    }
 }
 
 /// The walker goes to the limit point of the selected event.
@@ -378,10 +379,6 @@ fn go_to_event(model: &mut Model) -> Vec<Effect> {
     }
     let Some(curve) = model.curve.clone() else { return Vec::new() };
     let Ok(unloading) = &curve.unloading else { return Vec::new() };
-    if model.is_busy() {
-        // Chosen in the list of a curve that will have gone, or in the middle of a walk.
-        return update(model, Command::SelectEvent(model.event + 1));
-    }
     let Some(event) = unloading.events.get(model.event) else {
         if !model.shown_inadmissible().is_empty() {
             model.tell(Level::Info, "no state to go to: the next crest would touch before");

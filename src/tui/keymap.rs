@@ -128,7 +128,6 @@ fn usual(id: Id) -> &'static [Key] {
         // Typed, since each takes a value.
         Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo => &[],
         Id::Undo => &[Char('u')],
-        Id::UndoCommand => &[Char('U')],
         Id::Redo => &[Ctrl('r')],
         Id::Branches => &[Char('B')],
         Id::Restart => &[Char('0')],

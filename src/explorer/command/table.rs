@@ -23,7 +23,7 @@ pub enum Needs {
     WalkerOrNoCurve,
     /// A state in which the edge can run.
     Jump,
-    /// A state or a value to go back to.
+    /// A command to take back.
     Undo,
     Redo,
     /// A second branch of the walk.
@@ -76,9 +76,8 @@ commands! {
         Halve "halve-step" Nothing "half step": "halve the step length";
         Double "double-step" Nothing "double step": "double the step length";
         StepLength "step-length" Nothing ("length") "step length": "the longest step, as a share of every quantity's range";
-        Undo "undo" Undo "undo": "back to the state before; nothing is erased";
-        UndoCommand "undo-command" Undo "undo all": "back to where the last command began: a run, a count of steps";
-        Redo "redo" Redo "redo": "forward again along the last branch walked";
+        Undo "undo" Undo ("number") "undo": "take the last command back, whatever it was; no state is erased";
+        Redo "redo" Redo ("number") "redo": "do again what was taken back";
         Branches "branches" Branches ("branch") "branches": "the branches of the walk: what each ended with, and back to it";
         Restart "restart" WalkerOrNoCurve "restart": "back to the start state";
         Control "control" Nothing ("control") "control": "control the displacement, the force, or a spring's far end";

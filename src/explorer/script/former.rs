@@ -1,4 +1,8 @@
 //! The lines of a session of before, as they read now.
+//!
+//! In the first version `undo` and `redo` went by single states of the walk, and `undo-command` by whole commands; in the
+//! second `undo` takes a command back. A script that a session wrote says its version in its first line; a session has
+//! the version in its format. A script written by hand is of the newest.
 
 use super::lexer::{quoted, split};
 use crate::explorer::command::{Id, row_of};
@@ -24,6 +28,30 @@ pub fn without_former(lines: Vec<String>) -> (Vec<String>, Option<String>) {
         format!("the walk goes back over \"{line}\", which has no meaning any more: the exact basis needs no functions")
     });
     (kept, broken)
+}
+
+/// The first line of a script that a session writes.
+pub const HEAD: &str = "# A session of pulloff, version 2: `pulloff run` walks it again.";
+/// The same of the first version.
+const FIRST_HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
+/// What the first version called the command that took a whole command back.
+pub(super) const UNDO_COMMAND: &str = "undo-command";
+
+/// Whether a script was written by a session of the first version.
+pub(super) fn is_first_version(text: &str) -> bool {
+    text.lines().next().is_some_and(|line| line.trim_end() == FIRST_HEAD)
+}
+
+/// A line of the first version as it reads now.
+pub fn by_states(line: &str) -> Cow<'_, str> {
+    let bare = line.split('#').next().unwrap_or_default();
+    match bare.split_whitespace().collect::<Vec<_>>()[..] {
+        [name] if name == row_of(Id::Undo).name || name == row_of(Id::Redo).name => {
+            format!("{name} 1 states").into()
+        }
+        [UNDO_COMMAND] => row_of(Id::Undo).name.into(),
+        _ => line.into(),
+    }
 }
 
 /// Whether a line goes to a state made before.
@@ -76,6 +104,19 @@ mod tests {
             ]
         );
         assert_eq!(broken, None);
+    }
+
+    #[test]
+    fn undo_of_the_first_version_goes_by_states() {
+        for (line, reads) in [
+            ("undo", "undo 1 states"),
+            (" redo  # forward", "redo 1 states"),
+            ("undo-command", "undo"),
+            ("set title=undo", "set title=undo"),
+            ("try undo", "try undo"),
+        ] {
+            assert_eq!(by_states(line), reads);
+        }
     }
 
     #[test]

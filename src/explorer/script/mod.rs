@@ -11,7 +11,9 @@
 //! | `control displacement`, `force`, `stiffness=K`, or nothing | what is controlled, or the next of them |
 //! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their way |
 //! | `next-limit`, `run-to instability` | to the next limit point of the control |
-//! | `run [N]`, `previous-limit`, `jump`, `undo`, `redo`, `restart` | as the keys of these names |
+//! | `run [N]`, `previous-limit`, `jump`, `restart` | as the keys of these names |
+//! | `undo [N]`, `redo [N]` | so many commands taken back, done again |
+//! | `undo N states`, `redo N states` | so many single states along the walk, with their values |
 //! | `select-event N` | to the event of this number in the list |
 //! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves kept and taken away |
 //! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events` or `script` |
@@ -45,7 +47,7 @@ mod read;
 
 pub use complete::{Completion, complete};
 pub use fault::{Fault, LONGEST};
-pub(super) use former::without_former;
+pub(super) use former::{HEAD, by_states, without_former};
 pub use parse::{for_script, parse};
 pub use permissions::Permission;
 pub use play::{Failed, play};

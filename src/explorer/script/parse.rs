@@ -1,6 +1,7 @@
 //! Words → a command.
 
 use super::fault::Fault;
+use super::former::UNDO_COMMAND;
 use super::lexer::{Word, split};
 use super::print::overlay_name;
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
@@ -143,6 +144,9 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         return Err(Fault::new(name.column, "try stands in a script, once, before a command"));
     }
     let Some(row) = ROWS.iter().find(|row| row.name == name.text) else {
+        if name.text == UNDO_COMMAND {
+            return Err(Fault::new(name.column, "undo takes a whole command back: write undo"));
+        }
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([RUN_TO.0, TRY]).collect();
         return Err(unknown(name, "command", &names));
     };
@@ -150,6 +154,10 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
     let command = match row.id {
         Id::Step if !bare => Command::Steps(count(rest.need("a number of steps")?, MOST_STEPS)?),
         Id::Run if !bare => Command::RunOf(count(rest.need("a number of states")?, MOST_STEPS)?),
+        Id::Undo | Id::Redo if !bare => {
+            let count = count(rest.need("a number")?, MOST_STEPS)?;
+            Command::Travel { id: row.id, count, states: rest.takes("states") }
+        }
         Id::StepLength => Command::StepLength(length(rest.need("a length")?)?),
         Id::SelectEvent => Command::SelectEvent(count(rest.need("the number of an event")?, MOST_STEPS)?),
         Id::Branches if !bare => {

@@ -9,8 +9,12 @@ pub fn line(command: &Command) -> Option<String> {
     let name = row_of(command.id()).name;
     let rest = match command {
         Command::Plain(_) => String::new(),
-        Command::Steps(count) | Command::RunOf(count) | Command::SelectEvent(count) => format!(" {count}"),
+        Command::Steps(count)
+        | Command::RunOf(count)
+        | Command::SelectEvent(count)
+        | Command::Travel { count, states: false, .. } => format!(" {count}"),
         Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
+        Command::Travel { count, states: true, .. } => format!(" {count} states"),
         Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
         Command::Assign(all) => assignments(all)?,
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
@@ -29,6 +33,7 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Set { .. }
         | Command::Try { .. }
         | Command::TakeBack
+        | Command::Turn { .. }
         | Command::Browse(_)
         | Command::Pick { .. }
         | Command::GoTo { .. }

@@ -3,10 +3,11 @@
 //! What a list of sessions shows stands first; it is read without the rest being understood.
 
 use super::number::{Real, floats, reals};
+use super::places::{Places, of_walk};
 use super::problems::{Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
-use super::unreadable::{FORMAT, Unreadable, WITHIN};
+use super::unreadable::{BY_COMMANDS, FORMAT, Unreadable};
 use crate::explorer::journal::{Beginning, Kept, Replay};
 use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
@@ -78,6 +79,8 @@ pub struct Document {
     settled: bool,
     cursor: Option<usize>,
     nodes: Vec<Saved>,
+    #[serde(default)]
+    undo: Places,
 }
 
 /// The script that leads to where the session is.
@@ -105,12 +108,19 @@ impl Script {
         }
     }
 
-    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<Kept, Unreadable> {
+    fn back(
+        self,
+        format: u32,
+        preset: impl Fn(usize) -> Result<Preset, Unreadable>,
+    ) -> Result<Kept, Unreadable> {
         let start =
             self.start.map(|(source, at)| Ok(Beginning { source: source.back()?, preset: preset(at)? }));
         let replay =
             self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
-        let (lines, left_out) = script::without_former(self.lines);
+        let (mut lines, left_out) = script::without_former(self.lines);
+        if format < BY_COMMANDS {
+            lines = lines.iter().map(|line| script::by_states(line).into_owned()).collect();
+        }
         Ok(Kept {
             lines: Arc::new(lines),
             start: start.transpose()?,
@@ -164,9 +174,10 @@ impl Document {
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
         let journal = Script::of(&snapshot.journal, &mut problems);
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
+        let undo = Places::of(&snapshot.undo, &snapshot.history, |preset| problems.preset(preset));
         let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
         Self {
-            format: WITHIN,
+            format: FORMAT,
             program_version: env!("CARGO_PKG_VERSION").to_owned(),
             ended,
             saved_at,
@@ -186,6 +197,7 @@ impl Document {
             settled: snapshot.settled,
             cursor: snapshot.history.cursor(),
             nodes,
+            undo,
         }
     }
 
@@ -193,11 +205,7 @@ impl Document {
     /// to them by it.
     /// Errors: That of `keep`.
     pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Arc<Rows>) -> Result<String, E>) -> Result<(), E> {
-        self.problems.lay_aside(keep)?;
-        if self.problems.has_rows_beside() {
-            self.format = FORMAT;
-        }
-        Ok(())
+        self.problems.lay_aside(keep)
     }
 
     /// Takes the rows of profiles back within: `fetch` gives r and h of the file with a hash; it is told the name of the
@@ -244,6 +252,7 @@ impl Document {
         let history = tree::history(self.nodes, self.cursor, &settings)
             .ok_or_else(|| Unreadable::Damaged("the states make no walk".to_owned()))?;
         let pins = self.pins.iter().map(|(number, at)| Ok((*number, preset(*at)?)));
+        let undo = if self.format < BY_COMMANDS { of_walk(&history) } else { self.undo.back(preset)? };
         Ok(Snapshot {
             session: 0,
             preset: preset(self.preset)?,
@@ -251,10 +260,11 @@ impl Document {
             source: self.source.back()?,
             fingerprint: self.fingerprint,
             history,
+            undo,
             settled: self.settled,
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
-            journal: self.journal.back(preset)?,
+            journal: self.journal.back(self.format, preset)?,
             was_former,
         })
     }

@@ -16,6 +16,7 @@
 //! | [`document`] | the same as JSON |
 //! | `problems` | the presets and settings of a document, each once |
 //! | `tree` | the nodes of the walk |
+//! | `places` | what undo goes back to |
 //! | `number` | numbers bit for bit |
 //! | `unreadable` | why a session cannot be read |
 //!
@@ -23,6 +24,7 @@
 
 pub mod document;
 mod number;
+mod places;
 mod problems;
 pub mod snapshot;
 mod tree;

@@ -190,11 +190,6 @@ pub(super) struct Restored {
 }
 
 impl Problems {
-    /// Whether there are rows of profiles in files of their own.
-    pub(super) fn has_rows_beside(&self) -> bool {
-        self.profiles.iter().any(|profile| matches!(profile, Profile::Beside { .. }))
-    }
-
     /// Gives the rows within to `keep`, which says the hash of the file they are in, and holds no more than that.
     pub(super) fn lay_aside<E>(
         &mut self,

@@ -7,6 +7,7 @@ use crate::explorer::journal::{Journal, Kept};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
+use crate::explorer::undo::Undo;
 use crate::explorer::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::store::{Fingerprint, Loaded, Source};
 use pulloff_engine::preset::Preset;
@@ -23,6 +24,7 @@ pub struct Snapshot {
     pub source: Source,
     pub fingerprint: Option<Fingerprint>,
     pub history: History,
+    pub undo: Undo,
     /// Whether the walker has been tried on the preset as it is.
     pub settled: bool,
     pub pins: Vec<(usize, Preset)>,
@@ -95,11 +97,12 @@ impl Snapshot {
         let shown = model.pins.all().iter().map(|pin| (pin.number, pin.preset().clone()));
         Self {
             session: model.session,
-            preset: model.untried.as_ref().map_or(&model.preset, |before| &before.preset).clone(),
+            preset: model.untried.as_ref().map_or(&model.preset, |before| &before.place.preset).clone(),
             saved: model.saved.clone(),
             source: model.source.clone(),
             fingerprint: model.fingerprint,
             history: model.history.clone(),
+            undo: model.undo.clone(),
             settled: model.is_settled() || model.is_tried,
             pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
             look: Look::of(model),
@@ -144,7 +147,7 @@ impl Snapshot {
         };
         let mut model = Model::new(loaded);
         model.preset = self.preset;
-        model.history = self.history;
+        (model.history, model.undo) = (self.history, self.undo);
         model.journal = Journal::of(self.journal);
         model.is_tried = self.settled;
         self.look.lay_over(&mut model);

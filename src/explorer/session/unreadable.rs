@@ -3,9 +3,11 @@
 use thiserror::Error;
 
 /// The version of the format. A larger one is refused; what is added without a new version has a default.
-pub const FORMAT: u32 = 2;
-/// The version of a session with nothing beside it, which programs before profiles had files of their own read as well.
-pub const WITHIN: u32 = 1;
+///
+/// 1: the first. 2: the rows of profiles can be in files beside it. 3: undo takes back commands, not single states.
+pub const FORMAT: u32 = 3;
+/// The first version in which undo takes back commands.
+pub const BY_COMMANDS: u32 = 3;
 
 /// Why a document is no session of this program.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -51,11 +51,10 @@ pub(super) fn curve_came(
     model.curve_shown = id;
     match result {
         Err(reason) => {
-            model.queue.clear();
             let text = format!("no curve for these values: {reason}");
             model.tell(Level::of(&reason), text.clone());
             model.curve_error = Some(CurveError::Failed(text));
-            Some(Vec::new())
+            None
         }
         Ok(curve) => {
             model.curve_error = None;
@@ -72,15 +71,18 @@ pub(super) fn curve_came(
                 // Solved again once that is over.
                 return Some(Vec::new());
             }
-            let Some(node) = model.history.current() else { return Some(Vec::new()) };
-            let is_stale = matches!(node.kind, NodeKind::Stale(_));
-            if is_tried && is_stale || model.is_on_curve(node) || node.is_apart() {
-                return None;
-            }
-            let state = node.state.in_units(node.setting.units());
-            Some(walk(model, Action::Solve { state }))
+            let is_stale =
+                model.history.current().is_some_and(|node| matches!(node.kind, NodeKind::Stale(_)));
+            if is_tried && is_stale { None } else { solve_again(model) }
         }
     }
+}
+
+/// The walker's state solved for the values of the curve, where it is not on it.
+pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
+    let node = model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
+    let state = node.state.in_units(node.setting.units());
+    Some(walk(model, Action::Solve { state }))
 }
 
 /// The admissibility of the curve on the screen is known.

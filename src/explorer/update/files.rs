@@ -1,5 +1,6 @@
 //! Opening, saving and exporting: what is asked, and what becomes of the answers.
 
+use super::travel::shelve;
 use super::values::rows_came;
 use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
@@ -8,11 +9,13 @@ use crate::explorer::job::{Content, Done, Job};
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::requests::{change, file, want_curve};
+use crate::explorer::undo::Place;
 use crate::print::Format;
 use crate::store::{Overwrite, Source};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
 use std::path::Path;
+use std::sync::Arc;
 
 pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
     let why = match model.source {
@@ -88,7 +91,13 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let mut opened = Model::new(*loaded);
-            opened.follow(model);
+            // What was not walked on is nothing to come back to.
+            let place = (!model.history.is_empty())
+                .then(|| Place { shelved: Some(Arc::new(shelve(model))), ..model.place() });
+            opened.replace(model);
+            if let Some(place) = place {
+                opened.undo.did(place);
+            }
             look::carry_on(model, &mut opened);
             *model = opened;
             return vec![want_curve(model)];

@@ -1,6 +1,6 @@
 //! Values changed, and the curve that follows from them.
 
-use crate::explorer::command::Assignment;
+use crate::explorer::command::{Assignment, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Level, Model, Untried};
@@ -29,8 +29,19 @@ fn contact_stiffness(model: &Model) -> f64 {
     known.unwrap_or_else(|| model.preset.problem().reduced().units.stiffness)
 }
 
-pub(super) fn turn(model: &mut Model, up: bool, amount: Amount) -> Vec<Effect> {
-    let Some((row, _)) = model.selected_knob() else { return Vec::new() };
+/// The selected value, or that of `key`, turned by one of the four commands that turn.
+pub(super) fn turn(model: &mut Model, id: Id, key: Option<&str>) -> Vec<Effect> {
+    let (up, amount) = match id {
+        Id::Less => (false, Amount::Fine),
+        Id::More => (true, Amount::Fine),
+        Id::MuchLess => (false, Amount::Coarse),
+        _ => (true, Amount::Coarse),
+    };
+    let row = match key {
+        Some(key) => model.knobs().into_iter().map(|(row, _)| row).find(|row| row.key == key),
+        None => model.selected_knob().map(|(row, _)| row),
+    };
+    let Some(row) = row else { return Vec::new() };
     let contact = contact_stiffness(model);
     match nudge(&model.preset, &row, up, amount, contact) {
         Ok(preset) => {
@@ -159,8 +170,8 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
 /// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
 pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let before = model.untried.clone().unwrap_or_else(|| {
-        let (preset, mark, journal) = (model.preset.clone(), model.history.mark(), model.journal.clone());
-        Box::new(Untried { preset, mark, journal })
+        let (place, mark, journal) = (model.place(), model.history.mark(), model.journal.clone());
+        Box::new(Untried { place, mark, journal })
     });
     let effects = set(model, key, text);
     model.untried = Some(before);
@@ -175,13 +186,13 @@ pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
     model.history.return_to(before.mark);
     model.journal = before.journal;
     model.journal.abandoned();
-    effects.extend(change(model, before.preset));
+    effects.extend(change(model, before.place.preset));
     effects
 }
 
 /// The preset before the values tried.
 fn before_tried(model: &Model) -> &Preset {
-    model.untried.as_deref().map_or(&model.preset, |before| &before.preset)
+    model.untried.as_deref().map_or(&model.preset, |before| &before.place.preset)
 }
 
 /// Other values for some keys, as one change; those of a file wait for who may read it.

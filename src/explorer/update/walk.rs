@@ -1,11 +1,11 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
-use crate::explorer::command::{Command, Id, LENGTHS};
+use crate::explorer::command::{Id, LENGTHS};
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model, Walking};
 use crate::explorer::node::{Node, NodeKind};
-use crate::explorer::requests::{adopt_parameters, stop, want_curve};
+use crate::explorer::requests::{stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::quasistatic::State;
@@ -48,7 +48,8 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
-    model.walking = Some(Walking { id, made: 0, wanted });
+    let solves = matches!(action, Action::Solve { .. });
+    model.walking = Some(Walking { id, made: 0, wanted, solves });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
@@ -67,12 +68,16 @@ pub(super) fn walked(
         return Some(Vec::new());
     };
     walking.made += made.len();
-    let stepped = walking.wanted.is_some();
+    let (stepped, solves) = (walking.wanted.is_some(), walking.solves);
+    if !solves && !made.is_empty() {
+        model.undo.walked();
+    }
     model.journal.made(made.len());
     let numbering = model.history.numbering();
     for state in made {
         append(model, id, state);
     }
+    model.history.shorten(&model.undo.nodes());
     if numbering == 0 && model.history.numbering() > 0 {
         model.tell(Level::Info, "a long walk: of plain steps far back only every second one is kept");
     }
@@ -97,12 +102,8 @@ pub(super) fn walked(
                 model.tell(Level::Info, format!("paused; {step} steps, {run} runs on"));
             }
         }
-        Outcome::Ended(reason) => {
-            model.queue.clear();
-            model.tell(Level::Info, reason);
-        }
+        Outcome::Ended(reason) => model.tell(Level::Info, reason),
         Outcome::Stopped(reason) => {
-            model.queue.clear();
             if is_unsolved {
                 mark_stale(model, id, &reason);
                 model.tell(Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
@@ -181,72 +182,9 @@ pub(super) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 
-/// Undo, undo of a whole command, and redo: the parameters of the node come back with it.
-pub(super) fn travel(model: &mut Model, id: Id) -> Vec<Effect> {
-    let mut effects = abandon(model);
-    let request = model.history.current().map(|node| node.request);
-    let mut has_gone = false;
-    while if id == Id::Redo { model.history.redo() } else { model.history.undo() } {
-        has_gone = true;
-        // One by one: a replay makes its states by other commands.
-        let one = if id == Id::Redo { id } else { Id::Undo };
-        model.journal.travelled(&one.into(), model.history.current());
-        if id != Id::UndoCommand || model.history.current().map(|node| node.request) != request {
-            break;
-        }
-    }
-    if has_gone {
-        effects.extend(adopt_parameters(model));
-    }
-    effects
-}
-
-/// Back to the node of this number, which is one before the walker's.
-pub(super) fn travel_to(model: &mut Model, node: usize) -> Vec<Effect> {
-    let mut effects = abandon(model);
-    while model.history.cursor() != Some(node) && model.history.undo() {
-        model.journal.travelled(&Id::Undo.into(), model.history.current());
-    }
-    effects.extend(adopt_parameters(model));
-    effects
-}
-
-/// To the end of a branch, its parameters with it.
-pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
-    if model.history.numbering() != numbering || model.history.node(node).is_none() {
-        model.tell(Level::Error, "the walk has changed meanwhile: ask for its branches again");
-        return Vec::new();
-    }
-    let mut effects = abandon(model);
-    if model.history.go(node) {
-        let state = model.history.current().map(|node| node.state);
-        if let Some(State { approach, force, contact_radius, .. }) = state {
-            // By its numbers: a replay numbers its states otherwise.
-            let command = Command::GoToState([approach, force, contact_radius]);
-            model.journal.travelled(&command, model.history.current());
-        }
-        effects.extend(adopt_parameters(model));
-    }
-    effects
-}
-
-/// To the last state made with these δ, P and s, reduced, bit for bit.
-pub(super) fn go_to_state(model: &mut Model, state: [f64; 3]) -> Vec<Effect> {
-    let is_it = |node: &Node| {
-        let State { approach, force, contact_radius, .. } = node.state;
-        [approach, force, contact_radius].iter().zip(&state).all(|(a, b)| a.total_cmp(b).is_eq())
-    };
-    let found = (0..model.history.len()).rev().find(|at| model.history.node(*at).is_some_and(is_it));
-    let Some(found) = found else {
-        model.tell(Level::Error, "no state of the walk has these values");
-        return Vec::new();
-    };
-    go_to(model, found, model.history.numbering())
-}
-
 /// Ends the walk that runs; what it might still make is not waited for.
 pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
-    let effects = stop(model);
+    let effects = stop_walk(model);
     model.walking = None;
     model.journal.abandoned();
     effects

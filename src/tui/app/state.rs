@@ -244,24 +244,13 @@ impl App {
         self.act(id, count)
     }
 
-    /// Does a command so many times, as far as it can be done.
-    pub(super) fn again(&mut self, id: Id, count: usize) -> Vec<Effect> {
-        let mut effects = Vec::new();
-        for _ in 0..count.max(1) {
-            let before = self.model.history.cursor();
-            effects.extend(self.run(id.into()));
-            if self.model.history.cursor() == before {
-                break;
-            }
-        }
-        effects
-    }
-
     /// Does a command, or asks for what it takes.
     pub(super) fn act(&mut self, id: Id, count: Option<usize>) -> Vec<Effect> {
         match id {
             Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
-            Id::Undo | Id::UndoCommand | Id::Redo if count.is_some() => self.again(id, count.unwrap_or(1)),
+            Id::Undo | Id::Redo if count.is_some() => {
+                self.run(Command::Travel { id, count: count.unwrap_or(1), states: false })
+            }
             Id::Help => {
                 self.overlay = Some(Over::Help(Help::default()));
                 Vec::new()

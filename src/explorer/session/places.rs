@@ -1,0 +1,88 @@
+//! What undo goes back to, in a session.
+//!
+//! Commands before another preset was opened are left out: its session is a document of its own.
+
+use super::number::Real;
+use super::unreadable::Unreadable;
+use crate::explorer::history::History;
+use crate::explorer::undo::{Place, Undo};
+use pulloff_engine::preset::Preset;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The places before the commands done, and of those taken back; the newest last.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct Places {
+    past: Vec<Saved>,
+    future: Vec<Saved>,
+}
+
+/// A place, its preset and its state by their numbers in the document.
+#[derive(Debug, Serialize, Deserialize)]
+struct Saved {
+    preset: usize,
+    node: Option<usize>,
+    inward: bool,
+    length: Real,
+    settled: bool,
+}
+
+impl Places {
+    /// Those of `undo`; `preset` numbers their presets.
+    pub(super) fn of(undo: &Undo, history: &History, mut preset: impl FnMut(&Preset) -> usize) -> Self {
+        let mut own = |places: &[Arc<Place>]| -> Vec<Saved> {
+            let first = places.iter().rposition(|place| place.shelved.is_some()).map_or(0, |at| at + 1);
+            let saved = places[first..].iter().map(|place| Saved {
+                preset: preset(&place.preset),
+                node: place.node.and_then(|id| history.find(id)),
+                inward: place.inward,
+                length: Real(place.length),
+                settled: place.settled,
+            });
+            saved.collect()
+        };
+        Self { past: own(undo.past()), future: own(undo.future()) }
+    }
+
+    /// The undo of them.
+    pub(super) fn back(
+        self,
+        preset: impl Fn(usize) -> Result<Preset, Unreadable>,
+    ) -> Result<Undo, Unreadable> {
+        let place = |saved: Saved| {
+            Ok(Place {
+                preset: preset(saved.preset)?,
+                // A tree that is read numbers its nodes anew, from 0.
+                node: saved.node.map(|at| at as u64),
+                inward: saved.inward,
+                length: saved.length.0,
+                settled: saved.settled,
+                shelved: None,
+            })
+        };
+        let [past, future] = [self.past, self.future]
+            .map(|places| places.into_iter().map(place).collect::<Result<Vec<_>, Unreadable>>());
+        Ok(Undo::of(past?, future?))
+    }
+}
+
+/// The undo of a session that has none: before each command that made states of the walk.
+pub(super) fn of_walk(history: &History) -> Undo {
+    let (mut past, mut at) = (Vec::new(), history.cursor());
+    while let Some((here, parent)) = at.and_then(|at| Some((history.node(at)?, history.node(at)?.parent?))) {
+        at = Some(parent);
+        let Some(before) = history.node(parent).filter(|before| before.request != here.request) else {
+            continue;
+        };
+        past.push(Place {
+            preset: before.setting.preset.clone(),
+            node: Some(parent as u64),
+            inward: true,
+            length: crate::explorer::command::FIRST_LENGTH,
+            settled: true,
+            shelved: None,
+        });
+    }
+    past.reverse();
+    Undo::of(past, Vec::new())
+}

@@ -1,0 +1,133 @@
+//! What undo goes back to: where the session stood before each command that changed it.
+//!
+//! A place says all that a command of the walk or of the values can change. States are named by their number in the tree,
+//! which pruning keeps, so going back computes nothing but the curve. Views, pins and the zoom are not in it.
+
+use super::history::History;
+use super::journal::Journal;
+use crate::store::{Fingerprint, Source};
+use pulloff_engine::preset::Preset;
+use std::sync::Arc;
+
+/// So many commands can be taken back.
+pub const MOST: usize = 1000;
+/// So many of them may have opened another preset: each keeps a walk.
+const MOST_OPENED: usize = 8;
+
+/// A session put aside when another preset was opened.
+#[derive(Debug, Clone)]
+pub struct Shelved {
+    pub source: Source,
+    pub saved: Preset,
+    pub fingerprint: Option<Fingerprint>,
+    pub history: History,
+    pub journal: Journal,
+}
+
+/// Where the session stood.
+#[derive(Debug, Clone)]
+pub struct Place {
+    pub preset: Preset,
+    /// The lasting number of the walker's state.
+    pub node: Option<u64>,
+    pub inward: bool,
+    pub length: f64,
+    /// Whether the walker had been tried on these values.
+    pub settled: bool,
+    /// The session it belongs to, where that is another than the one after it.
+    pub shelved: Option<Arc<Shelved>>,
+}
+
+impl Place {
+    /// Whether both are the same but for whether the state has been tried.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.shelved.is_none()
+            && self.node == other.node
+            && (self.inward, self.length.to_bits()) == (other.inward, other.length.to_bits())
+            && self.preset == other.preset
+    }
+}
+
+/// The places before the commands done, and those after the ones taken back; the newest last. A clone is cheap.
+#[derive(Debug, Clone, Default)]
+pub struct Undo {
+    past: Vec<Arc<Place>>,
+    future: Vec<Arc<Place>>,
+    /// Before a walk that has made no state yet.
+    begun: Option<Arc<Place>>,
+}
+
+impl Undo {
+    /// The undo of a session that goes on: the places before it, the newest last, and those taken back.
+    pub fn of(past: Vec<Place>, future: Vec<Place>) -> Self {
+        let [past, future] = [past, future].map(|places| places.into_iter().map(Arc::new).collect());
+        Self { past, future, begun: None }
+    }
+
+    /// The places before the commands done, the newest last.
+    pub fn past(&self) -> &[Arc<Place>] {
+        &self.past
+    }
+
+    /// The places of the commands taken back, the next one last.
+    pub fn future(&self) -> &[Arc<Place>] {
+        &self.future
+    }
+
+    /// A command changed something; `before` is where it began.
+    pub(super) fn did(&mut self, before: Place) {
+        self.begun = None;
+        self.future.clear();
+        self.add(Arc::new(before));
+    }
+
+    fn add(&mut self, place: Arc<Place>) {
+        self.past.push(place);
+        let opened = self.past.iter().rev().enumerate().filter(|(_, place)| place.shelved.is_some());
+        let first = opened.map(|(at, _)| self.past.len() - at).nth(MOST_OPENED);
+        let surplus = self.past.len().saturating_sub(MOST).max(first.unwrap_or(0));
+        self.past.drain(..surplus);
+    }
+
+    /// A walk begins: it is a command that changed something once it has made a state.
+    pub(super) fn begins(&mut self, before: Place) {
+        self.begun = Some(Arc::new(before));
+    }
+
+    /// A walk made a state.
+    pub(super) fn walked(&mut self) {
+        if let Some(before) = self.begun.take() {
+            self.future.clear();
+            self.add(before);
+        }
+    }
+
+    /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other way.
+    /// Places like `here` are passed over: the command came to nothing.
+    pub(super) fn take(&mut self, back: bool, here: &Place) -> Option<Arc<Place>> {
+        self.begun = None;
+        let from = if back { &mut self.past } else { &mut self.future };
+        let at = from.iter().rposition(|place| !place.is_like(here))?;
+        from.truncate(at + 1);
+        from.pop()
+    }
+
+    /// Keeps `place` for the way back from where [`take`](Self::take) led.
+    pub(super) fn keep(&mut self, back: bool, place: Place) {
+        let place = Arc::new(place);
+        if back { self.future.push(place) } else { self.add(place) }
+    }
+
+    /// The lasting numbers of the states of the session shown that it needs.
+    pub(super) fn nodes(&self) -> Vec<u64> {
+        let own = |places: &[Arc<Place>]| -> Vec<u64> {
+            let own = places.iter().rev().take_while(|place| place.shelved.is_none());
+            own.filter_map(|place| place.node).collect()
+        };
+        let begun = self.begun.iter().filter_map(|place| place.node);
+        let mut nodes: Vec<u64> = own(&self.past).into_iter().chain(own(&self.future)).chain(begun).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}

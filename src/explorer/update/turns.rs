@@ -1,0 +1,128 @@
+//! Which commands wait for which, and which of them undo can take back.
+
+use crate::explorer::availability::{is_available, why_unavailable};
+use crate::explorer::command::{Command, Id};
+use crate::explorer::effect::Effect;
+use crate::explorer::job::Job;
+use crate::explorer::model::{Awaits, Level, Model};
+
+/// Commands that may wait; more key presses than these are a held key.
+const QUEUE: usize = 1000;
+
+/// What a command waits for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Turn {
+    /// Nothing: it concerns only what is looked at.
+    None,
+    /// Only for those before it, and the walk they began.
+    InOrder,
+    /// For the newest curve too, and the walker's state on it.
+    Curve,
+}
+
+impl Turn {
+    pub(super) fn of(command: &Command) -> Self {
+        let is_control = |key: &str| key == "path.control";
+        match command {
+            Command::Plain(
+                Id::Step
+                | Id::Run
+                | Id::NextLimit
+                | Id::PreviousLimit
+                | Id::Jump
+                | Id::Restart
+                | Id::MoveTo
+                | Id::SelectEvent
+                | Id::Control
+                | Id::Pin,
+            )
+            | Command::Steps(_)
+            | Command::RunOf(_)
+            | Command::MoveTo(_)
+            | Command::SelectEvent(_) => Self::Curve,
+            // Another control holds the force or approach that the values before it led to.
+            Command::Set { key, .. } | Command::Turn { key, .. } if is_control(key) => Self::Curve,
+            Command::Assign(all) if all.iter().any(|(key, _)| is_control(key)) => Self::Curve,
+            Command::Plain(
+                Id::Reverse
+                | Id::Halve
+                | Id::Double
+                | Id::Undo
+                | Id::Redo
+                | Id::Less
+                | Id::More
+                | Id::MuchLess
+                | Id::MuchMore,
+            )
+            | Command::StepLength(_)
+            | Command::Set { .. }
+            | Command::Try { .. }
+            | Command::Assign(_)
+            | Command::Turn { .. }
+            | Command::Travel { .. }
+            | Command::GoTo { .. }
+            | Command::GoToState(_)
+            | Command::Open(_)
+            | Command::OpenWith { .. } => Self::InOrder,
+            _ => Self::None,
+        }
+    }
+}
+
+/// Whether a command has to wait for what is under way.
+pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
+    // Pressed again it ends a run.
+    if *command == Id::Run.into() && model.walking.is_some_and(|walking| !walking.solves) {
+        return false;
+    }
+    let is_walking = model.walking.is_some_and(|walking| !walking.solves);
+    let waits_for_curve = || Turn::of(command) == Turn::Curve && model.is_busy();
+    model.awaits == Awaits::File || is_walking || waits_for_curve()
+}
+
+/// Lets a command wait for its turn.
+pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
+    let command = match command {
+        // A value is turned when its key is pressed: another may be selected when its turn comes.
+        Command::Plain(id @ (Id::Less | Id::More | Id::MuchLess | Id::MuchMore)) => {
+            if !is_available(model, id) {
+                model.tell(Level::Error, why_unavailable(model, id));
+                return Vec::new();
+            }
+            let Some((row, _)) = model.selected_knob() else { return Vec::new() };
+            Command::Turn { id, key: row.key.clone() }
+        }
+        // What is typed is shown when there is time.
+        Command::Try { .. } => return Vec::new(),
+        command => command,
+    };
+    if model.queue.len() < QUEUE {
+        model.queue.push_back(command);
+    }
+    Vec::new()
+}
+
+/// Does something that undo can take back.
+pub(super) fn recorded(model: &mut Model, act: impl FnOnce(&mut Model) -> Vec<Effect>) -> Vec<Effect> {
+    let before = model.untried.as_ref().map_or_else(|| model.place(), |untried| untried.place.clone());
+    let (session, walking) = (model.session, model.walking.map(|walking| walking.id));
+    let effects = act(model);
+    if effects.iter().any(changes_problem) {
+        model.awaits = Awaits::File;
+    }
+    if model.session != session || model.untried.is_some() {
+        return effects;
+    }
+    if !model.is_at(&before) {
+        model.undo.did(before);
+    } else if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking) {
+        model.undo.begins(before);
+    }
+    effects
+}
+
+/// Whether the answer to an effect is another problem.
+fn changes_problem(effect: &Effect) -> bool {
+    let Effect::File(job) = effect else { return false };
+    matches!(**job, Job::Open { .. } | Job::Read { .. } | Job::Assign { .. })
+}
