@@ -7,8 +7,9 @@ mod home;
 
 use home::{Ended, Home};
 use pulloff::store::Store;
-use pulloff::sweep::{QUANTITIES, Results, Shard, Spec};
+use pulloff::sweep::{Results, Shard, spec};
 use pulloff_engine::gap::Shape;
+use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::KesariLew;
 use rustix::process::{Pid, Signal, kill_process};
@@ -209,7 +210,7 @@ fn random_rows_follow_from_seed_and_number() {
     // Many draws have the mean and the spread that were asked for.
     let store = Store::at(home.path("presets"), &[]);
     let many = RANDOM.replace("draws = 12", "draws = 20000");
-    let spec = Spec::read(&store, home.folder(), "many", &many).unwrap();
+    let spec = spec::read(&store, home.folder(), "many", &many).unwrap();
     let draws: Vec<f64> =
         (0..20000).map(|row| spec.values(row)[2].to_string().parse::<f64>().unwrap()).collect();
     let mean = draws.iter().sum::<f64>() / 2e4;
@@ -593,7 +594,7 @@ key = "groups.adhesion"
 distribution = {{ log-uniform = [0.01, 0.05] }}
 {start}"#
     );
-    Spec::read(&store, home.folder(), "s", &text).unwrap()
+    spec::read(&store, home.folder(), "s", &text).unwrap()
 }
 
 /// The rows of `spec` with an enhancement: its number, its distance from the estimate, the waves; and those without.

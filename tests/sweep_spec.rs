@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::store::Store;
-use pulloff::sweep::{MOST_ROWS, Spec, SpecError};
+use pulloff::sweep::spec;
+use pulloff_engine::sweep::{MOST_ROWS, Spec, SpecError};
 use std::path::Path;
 
 fn read(text: &str) -> Result<Spec, SpecError> {
-    Spec::read(&Store::at("presets", &[]), Path::new("."), "s.toml", text)
+    spec::read(&Store::at("presets", &[]), Path::new("."), "s.toml", text)
 }
 
 fn axis(text: &str) -> String {
@@ -323,7 +324,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
 #[test]
 fn the_identity_is_that_of_what_is_computed() {
     let base = axis("key = 'gap.amplitude'\nvalues = [0.001, 0.002]");
-    let identity = |text: &str| read(text).unwrap().identity();
+    let identity = |text: &str| spec::identity(&read(text).unwrap());
     assert_eq!(identity(&base).len(), 64);
     let same = base.replace("0.001", "1e-3").replace("[[axis]]", "combine = 'grid' # as it is\n[[axis]]");
     assert_eq!(identity(&same), identity(&base));
@@ -338,7 +339,7 @@ fn the_identity_is_that_of_what_is_computed() {
     }
     // A measured profile is known by its data, not by its name.
     let profile = "preset = 'profile'\n[[axis]]\nkey = 'material.work_of_adhesion'\nvalues = [0.01]";
-    assert!(read(profile).unwrap().canonical().contains("\ndata = [\""));
+    assert!(spec::canonical(&read(profile).unwrap()).contains("\ndata = [\""));
 }
 
 #[test]

@@ -63,6 +63,7 @@
 //! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
 //! | `stability` | the law of stability, limit points in two parameters, counts of snaps |
 //! | `report`, `verify` | the one serializable form of results; our numbers against theory |
+//! | `sweep` | one preset over many values of its keys, row by row |
 
 #[doc(hidden)]
 pub mod annuli;
@@ -94,6 +95,8 @@ pub mod report;
 pub mod ritz;
 #[doc(hidden)]
 pub mod stability;
+#[doc(hidden)]
+pub mod sweep;
 #[doc(hidden)]
 pub mod text;
 #[doc(hidden)]

@@ -2,12 +2,13 @@
 
 use super::{Failure, output};
 use crate::store::stream;
-use crate::sweep::axis::SweepAxis;
-use crate::sweep::spec::Design;
-use crate::sweep::{Existing, Output, OutputError, QUANTITIES, Shard, Spec, Summary, merge, run as compute};
+use crate::sweep::{Existing, Output, OutputError, Shard, Summary, merge, run as compute, spec};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pulloff_engine::report::number::{short, significant};
+use pulloff_engine::sweep::axis::SweepAxis;
+use pulloff_engine::sweep::spec::Design;
+use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::text::show_name;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -146,7 +147,7 @@ impl Stop {
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
         output::csv_only(&self.output)?;
-        let spec = Spec::load(&super::problem::store(), &self.spec)?;
+        let spec = spec::load(&super::problem::store(), &self.spec)?;
         let results = self.open(&spec)?;
         let cannot_catch = |cause| Failure::System { what: "cannot catch signals".to_owned(), cause };
         let stop = Stop::catch().map_err(cannot_catch)?;

@@ -1,7 +1,6 @@
 //! The files of profiles: the engine reads no disk, and asks here for the rows that a preset names.
 
 use super::file::{FileError, read_bytes};
-use super::shipped;
 use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
 use pulloff_engine::preset::profile::{Columns, LARGEST, TextError, parse};
@@ -36,17 +35,11 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
     if name.is_empty() || name.chars().any(is_unsafe) {
         return Err(format!("\"{}\" is no name of a file", quote(name)));
     }
-    let columns = if let Some(data) = name.strip_prefix(SHIPPED_DATA) {
-        let text = shipped::data(data).ok_or_else(|| {
-            let known: Vec<String> =
-                shipped::DATA.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();
-            format!("\"{}\" does not come with the program; there is {}", quote(name), known.join(", "))
-        })?;
-        parse(text.as_bytes()).map_err(|error| words(&error))?
-    } else {
-        let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-        read_profile(&path).map_err(|error| words(&error))?
-    };
+    if name.starts_with(SHIPPED_DATA) {
+        return (Files::SHIPPED.0)(folder, name);
+    }
+    let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+    let columns = read_profile(&path).map_err(|error| words(&error))?;
     rows(folder, name, columns)
 }
 

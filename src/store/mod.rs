@@ -3,7 +3,6 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`presets`] | the folder of a person's presets: resolve, load, list, save |
-//! | [`shipped`] | the presets that come with the program, with their data |
 //! | [`data`] | the files of profiles, which the engine is given as rows |
 //! | [`beside`] | the data of a profile copied beside a preset |
 //! | [`name`] | which names a person's preset may have |
@@ -22,7 +21,6 @@ pub mod hash;
 pub mod lock;
 pub mod name;
 pub mod presets;
-pub mod shipped;
 pub mod stream;
 pub mod temporary;
 
@@ -30,4 +28,5 @@ pub use atomic::{Overwrite, WriteError, write_atomically};
 pub use data::{FILES, ProfileError, load, read, read_in, read_profile, read_with};
 pub use file::Fingerprint;
 pub use presets::{Listed, Listing, Loaded, Source, Store, StoreError, make_folder, save_file};
+pub use pulloff_engine::preset::shipped;
 pub use shipped::SHIPPED;

@@ -7,11 +7,12 @@
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
-use super::spec::Spec;
+use super::spec::identity;
 use crate::mend::Mend;
 use crate::store::atomic::{Overwrite, WriteError, check_growing, explained, write_atomically};
 use crate::store::lock::lock_file;
 use crate::store::stream;
+use pulloff_engine::sweep::Spec;
 use pulloff_engine::text::show_path;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -202,7 +203,7 @@ fn check(path: &Path, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
     let shown = || show_path(path);
     let (sidecar, text) =
         Sidecar::read(path).map_err(|cause| OutputError::NotOurs { path: shown(), cause })?;
-    if sidecar.identity != spec.identity() {
+    if sidecar.identity != identity(spec) {
         return Err(OutputError::OtherSweep { path: shown(), what: sidecar::differences(&text, spec) });
     }
     if sidecar.shard() != shard {

@@ -2,10 +2,9 @@
 //!
 //! Numbers have every digit, so the values of a row bring back its problem. A line never holds a line end but its own.
 
-use super::axis::SweepAxis;
-use super::fault::Fault;
-use super::measure::Measured;
-use super::spec::{Design, Spec, values};
+use pulloff_engine::sweep::axis::SweepAxis;
+use pulloff_engine::sweep::spec::{Design, Spec, values};
+use pulloff_engine::sweep::{Column, Fault, Measured};
 use pulloff_engine::text::quote;
 use std::fmt;
 
@@ -50,7 +49,7 @@ fn line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
 #[must_use]
 pub fn names(spec: &Spec) -> Vec<String> {
     let axes = spec.axes.iter().map(|axis| axis.key.clone());
-    let columns = spec.columns.iter().map(super::Column::name);
+    let columns = spec.columns.iter().map(Column::name);
     std::iter::once(ROW.to_owned()).chain(axes).chain(columns).chain([ERROR.to_owned()]).collect()
 }
 

@@ -3,11 +3,10 @@
 //! Threads take the next row each; finished rows wait for those before them in a window of bounded size, beyond which no
 //! row is begun. So the file grows in order whatever the threads do, and memory does not grow with the number of rows.
 
-use super::fault::Fault;
 use super::output::{Faults, Output, OutputError};
 use super::record;
 use super::shard::Shard;
-use super::spec::Spec;
+use pulloff_engine::sweep::{Fault, Spec};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::Range;

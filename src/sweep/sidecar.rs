@@ -3,12 +3,14 @@
 //! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
 //! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
 
-use super::document::SpecText;
 use super::record::{self, Layout};
 use super::shard::Shard;
-use super::spec::{Spec, of_canonical};
+use super::spec::{canonical, identity};
 use crate::mend::Mend;
 use crate::store::file::{self, FileError, read_text};
+use pulloff_engine::sweep::Spec;
+use pulloff_engine::sweep::document::SpecText;
+use pulloff_engine::sweep::spec::of_canonical;
 use pulloff_engine::text::{greek, sanitize, show_path};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use serde::Deserialize;
@@ -90,9 +92,9 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
     let mut text = format!(
         "# What the results beside this file are of. `pulloff sweep` reads it, to go on and to join shards.\n\
          identity = \"{}\"\nshard = \"{shard}\"\nrows = {}\n\n{}",
-        spec.identity(),
+        identity(spec),
         spec.rows,
-        spec.canonical()
+        canonical(spec)
     );
     for ColumnInfo { name, symbol, unit, meaning } in columns(spec) {
         let quoted = |text: String| Value::String(text).to_string();
@@ -132,7 +134,7 @@ const PARTS: [(&[&str], &str); 6] = [
 #[must_use]
 pub fn differences(text: &str, spec: &Spec) -> String {
     let sweep = |text: &str| toml::from_str::<Table>(text).ok()?.remove("sweep");
-    let (theirs, ours) = (sweep(text), sweep(&spec.canonical()));
+    let (theirs, ours) = (sweep(text), sweep(&canonical(spec)));
     let part = |sweep: &Option<Value>, key: &str| sweep.as_ref().and_then(|sweep| sweep.get(key)).cloned();
     let differs = |key: &&str| part(&theirs, key) != part(&ours, key);
     let named = PARTS.iter().filter(|(keys, _)| keys.iter().any(differs)).map(|(keys, name)| {

@@ -1,54 +1,16 @@
-//! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
+//! The spec of a sweep from the disk, and the one form of it by which results are known again.
 
-use super::MOST_ROWS;
-use super::axis::{Points, SweepAxis, overrides, rival};
-use super::document::{Entry, Section, SpecError, SpecText};
-use super::fault::Fault;
-use super::measure::{Measured, measure};
-use super::quantity::{Column, USUAL};
 use crate::mend::Mend;
 use crate::store::file::{self, FileError};
 use crate::store::hash::{hex, sha256};
 use crate::store::{Store, atomic, stream};
 use pulloff_engine::gap::Shape;
-use pulloff_engine::gap::shapes::split_mix::SplitMix64;
-use pulloff_engine::preset::schema::CHOOSERS;
-use pulloff_engine::preset::{Preset, Value, write};
-use pulloff_engine::text::quote;
+use pulloff_engine::preset::{Preset, write};
+use pulloff_engine::sweep::SpecError;
+use pulloff_engine::sweep::spec::{Design, Spec};
 use sha2::{Digest, Sha256};
-use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
-
-/// How the axes make rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Design {
-    /// Every value with every other; the last axis runs fastest.
-    Grid,
-    /// The first values together, then the second ones, …
-    Pairs,
-    /// Drawn at random.
-    Random {
-        draws: u64,
-        /// From which all random numbers follow.
-        seed: u64,
-    },
-}
-
-/// A sweep: what is computed of what.
-#[derive(Debug, Clone)]
-pub struct Spec {
-    pub preset: Preset,
-    /// The axes; at least one.
-    pub axes: Vec<SweepAxis>,
-    pub design: Design,
-    /// The quantities wanted; at least one.
-    pub columns: Vec<Column>,
-    /// The number of rows, from 1 to [`MOST_ROWS`].
-    pub rows: u64,
-}
 
 /// Why a spec cannot be had.
 #[derive(Debug, thiserror::Error)]
@@ -68,168 +30,70 @@ impl Mend for LoadError {
     }
 }
 
-/// What `set` is.
-const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
-/// The words of `combine`.
-const DESIGNS: [&str; 2] = ["grid", "pairs"];
-
-impl Spec {
-    /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
-    /// one where the spec comes through a pipe.
-    pub fn load(store: &Store, path: &Path) -> Result<Self, LoadError> {
-        let (name, text) = stream::read_given(path, file::LARGEST)?;
-        let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
-        Ok(Self::read(store, folder, &name, &text)?)
-    }
-
-    /// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
-    pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = SpecText { name, text };
-        let table = document.parse()?;
-        let section = document.section(&table);
-        section.only(&["preset", "set", "combine", "random", "quantities", "axis"])?;
-        let preset = preset(store, folder, &section)?;
-        let assigned = assigned(&section)?;
-        let axes = section.need("axis", "one or more tables [[axis]]")?;
-        let given = axes.array("one or more tables [[axis]]")?;
-        let tables: Vec<Section<'_>> =
-            given.iter().map(|entry| entry.section("a table [[axis]]")).collect::<Result<_, _>>()?;
-        let key =
-            |table: &Section<'_>| table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned));
-        let fixed = !tables.iter().filter_map(key).any(|key| CHOOSERS.contains(&&*key));
-        let mut read: Vec<SweepAxis> = Vec::new();
-        for table in &tables {
-            let axis = SweepAxis::read(table, &preset, fixed)?;
-            if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
-                return Err(table.fault(&format!("the axis {} is at odds with the axis {other}", axis.key)));
-            }
-            if let Some((entry, key)) = assigned.iter().find(|(_, key)| overrides(&axis.key, key)) {
-                let what = format!(
-                    "set gives {} a value that no row has: the axis {} gives every row its own; remove one of them",
-                    quote(key),
-                    axis.key
-                );
-                return Err(entry.fault(&what));
-            }
-            read.push(axis);
-        }
-        if read.is_empty() {
-            return Err(axes.fault("axis must be one or more tables [[axis]]"));
-        }
-        let design = design(&section)?;
-        let rows = rows(design, &read, &tables)?;
-        Ok(Self { preset, axes: read, design, columns: columns(&section)?, rows })
-    }
-
-    /// The values of the axes in a row below [`rows`](Self::rows), in the order of the axes.
-    #[must_use]
-    pub fn values(&self, row: u64) -> Vec<Value> {
-        values(&self.axes, self.design, row)
-    }
-
-    /// The preset of a row.
-    pub fn problem(&self, row: u64) -> Result<Preset, Fault> {
-        let mut preset = self.preset.clone();
-        let keys = self.axes.iter().map(|axis| &*axis.key);
-        preset.set_all(keys.zip(self.values(row))).map_err(|invalid| Fault::of_value(&invalid))?;
-        Ok(preset)
-    }
-
-    /// The quantities of a row; `None` when `go_on` said no. Whatever goes wrong is a fault of the row.
-    #[must_use]
-    pub fn measure(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<Measured> {
-        match self.problem(row) {
-            Ok(preset) => measure(&preset, &self.columns, go_on),
-            Err(fault) => Some(self.lost(fault)),
-        }
-    }
-
-    /// A row without any quantity.
-    #[must_use]
-    pub fn lost(&self, fault: Fault) -> Measured {
-        Measured { cells: vec![None; self.columns.len()], fault: Some(fault) }
-    }
-
-    /// All that the results follow from, in one form: two specs that differ in it are different sweeps.
-    #[must_use]
-    pub fn canonical(&self) -> String {
-        let mut text = format!("[sweep]\nprogram_version = \"{}\"\n", env!("CARGO_PKG_VERSION"));
-        // Writing to a String cannot fail.
-        let _ = match self.design {
-            Design::Grid => writeln!(text, "combine = \"grid\""),
-            Design::Pairs => writeln!(text, "combine = \"pairs\""),
-            Design::Random { draws, seed } => writeln!(text, "random = {{ draws = {draws}, seed = {seed} }}"),
-        };
-        let names: Vec<String> = self.columns.iter().map(|column| format!("\"{}\"", column.name())).collect();
-        let _ = writeln!(text, "quantities = [{}]", names.join(", "));
-        // Another title makes no other numbers.
-        let untitled = Preset { title: String::new(), ..self.preset.clone() };
-        let _ = writeln!(text, "preset = {}", toml::Value::String(write(&untitled)));
-        let data: Vec<String> = self.data().iter().map(|digest| format!("\"{digest}\"")).collect();
-        if !data.is_empty() {
-            let _ = writeln!(text, "data = [{}]", data.join(", "));
-        }
-        for axis in &self.axes {
-            let _ = writeln!(text, "\n[[sweep.axis]]\nkey = \"{}\"\n{}", axis.key, axis.canonical());
-        }
-        text
-    }
-
-    /// A hash of the canonical form.
-    #[must_use]
-    pub fn identity(&self) -> String {
-        sha256(self.canonical().as_bytes())
-    }
-
-    /// Hashes of the measured profiles it reads, that of the preset first: their names say nothing of their content.
-    fn data(&self) -> Vec<String> {
-        let named = self.axes.iter().filter(|axis| axis.key == "gap.file").flat_map(|axis| {
-            let preset = |value| {
-                let mut preset = self.preset.clone();
-                preset.set(&axis.key, value).ok().map(|()| preset)
-            };
-            (0..axis.count().unwrap_or(0))
-                .filter_map(|at| axis.value(at))
-                .filter_map(preset)
-                .collect::<Vec<_>>()
-        });
-        std::iter::once(self.preset.clone()).chain(named).filter_map(|preset| digest(&preset)).collect()
-    }
+/// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
+/// one where the spec comes through a pipe.
+pub fn load(store: &Store, path: &Path) -> Result<Spec, LoadError> {
+    let (name, text) = stream::read_given(path, file::LARGEST)?;
+    let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
+    Ok(read(store, folder, &name, &text)?)
 }
 
-/// The values of the axes in a row, in the order of the axes.
-pub(super) fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
-    let mut index = row;
-    let mut random = match design {
-        Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
-        Design::Grid | Design::Pairs => None,
+/// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
+pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Spec, SpecError> {
+    let preset = |name: &str, set: &[&str]| {
+        let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
+        let source = if is_path {
+            store.resolve(folder.join(name.strip_prefix("./").unwrap_or(name)))
+        } else {
+            store.resolve(name)
+        };
+        let source = source.map_err(|error| error.to_string())?;
+        store.load(&source, set).map(|loaded| loaded.preset).map_err(|error| error.to_string())
     };
-    // Drawn in the order of the axes; counted from the last, which runs fastest.
-    if let Some(random) = &mut random {
-        let draw = |axis: &SweepAxis| match &axis.points {
-            Points::Drawn(distribution) => Some(distribution.draw(random)),
-            _ => None,
-        };
-        return axes.iter().filter_map(draw).collect();
-    }
-    let mut values: Vec<Value> = Vec::with_capacity(axes.len());
-    for axis in axes.iter().rev() {
-        let count = axis.count().unwrap_or(1).max(1);
-        let own = if design == Design::Grid { index % count } else { index };
-        values.extend(axis.value(own));
-        index = if design == Design::Grid { index / count } else { index };
-    }
-    values.reverse();
-    values
+    Spec::read(&preset, name, text)
 }
 
-/// The axes of a canonical form, as [`Spec::canonical`] writes it, and how they make rows.
-pub(super) fn of_canonical(document: SpecText<'_>) -> Result<(Vec<SweepAxis>, Design), SpecError> {
-    let table = document.parse()?;
-    let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;
-    let axes = sweep.need("axis", "tables")?.array("tables")?;
-    let axes = axes.iter().map(|entry| SweepAxis::of_canonical(&entry.section("a table")?));
-    Ok((axes.collect::<Result<_, _>>()?, design(&sweep)?))
+/// All that the results follow from, in one form: two specs that differ in it are different sweeps.
+#[must_use]
+pub fn canonical(spec: &Spec) -> String {
+    let mut text = format!("[sweep]\nprogram_version = \"{}\"\n", env!("CARGO_PKG_VERSION"));
+    // Writing to a String cannot fail.
+    let _ = match spec.design {
+        Design::Grid => writeln!(text, "combine = \"grid\""),
+        Design::Pairs => writeln!(text, "combine = \"pairs\""),
+        Design::Random { draws, seed } => writeln!(text, "random = {{ draws = {draws}, seed = {seed} }}"),
+    };
+    let names: Vec<String> = spec.columns.iter().map(|column| format!("\"{}\"", column.name())).collect();
+    let _ = writeln!(text, "quantities = [{}]", names.join(", "));
+    // Another title makes no other numbers.
+    let untitled = Preset { title: String::new(), ..spec.preset.clone() };
+    let _ = writeln!(text, "preset = {}", toml::Value::String(write(&untitled)));
+    let data: Vec<String> = data(spec).iter().map(|digest| format!("\"{digest}\"")).collect();
+    if !data.is_empty() {
+        let _ = writeln!(text, "data = [{}]", data.join(", "));
+    }
+    for axis in &spec.axes {
+        let _ = writeln!(text, "\n[[sweep.axis]]\nkey = \"{}\"\n{}", axis.key, axis.canonical());
+    }
+    text
+}
+
+/// A hash of the canonical form.
+#[must_use]
+pub fn identity(spec: &Spec) -> String {
+    sha256(canonical(spec).as_bytes())
+}
+
+/// Hashes of the measured profiles it reads, that of the preset first: their names say nothing of their content.
+fn data(spec: &Spec) -> Vec<String> {
+    let named = spec.axes.iter().filter(|axis| axis.key == "gap.file").flat_map(|axis| {
+        let preset = |value| {
+            let mut preset = spec.preset.clone();
+            preset.set(&axis.key, value).ok().map(|()| preset)
+        };
+        (0..axis.count().unwrap_or(0)).filter_map(|at| axis.value(at)).filter_map(preset).collect::<Vec<_>>()
+    });
+    std::iter::once(spec.preset.clone()).chain(named).filter_map(|preset| digest(&preset)).collect()
 }
 
 /// A hash of the rows of a measured profile.
@@ -240,138 +104,4 @@ fn digest(preset: &Preset) -> Option<String> {
         hash.update(x.to_bits().to_le_bytes());
     }
     Some(hex(hash.finalize().as_slice()))
-}
-
-/// `preset` with the assignments of `set`.
-fn preset(store: &Store, folder: &Path, section: &Section<'_>) -> Result<Preset, SpecError> {
-    let wanted = "the name of a preset, or a preset file (with a '/' or ending in .toml)";
-    let entry = section.need("preset", wanted)?;
-    let name = entry.text(wanted)?;
-    let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
-    let source = if is_path {
-        store.resolve(folder.join(name.strip_prefix("./").unwrap_or(name)))
-    } else {
-        store.resolve(name)
-    };
-    let source = source.map_err(|error| entry.fault(&format!("preset: {error}")))?;
-    let set: Vec<Entry<'_>> =
-        section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(ASSIGNMENTS))?;
-    let set: Vec<&str> = set.iter().map(|entry| entry.text(ASSIGNMENTS)).collect::<Result<_, _>>()?;
-    // The preset itself first, so that a mistake is told where it is made.
-    store.load(&source, &[] as &[&str]).map_err(|error| entry.fault(&format!("preset: {error}")))?;
-    let loaded = store
-        .load(&source, &set)
-        .map_err(|error| section.get("set").unwrap_or_else(|| entry.clone()).fault(&error.to_string()))?;
-    Ok(loaded.preset)
-}
-
-/// The keys to which `set` gives values, each with its place.
-fn assigned<'a>(section: &Section<'a>) -> Result<Vec<(Entry<'a>, String)>, SpecError> {
-    let mut keys = Vec::new();
-    let Some(set) = section.get("set") else { return Ok(keys) };
-    for entry in set.array(ASSIGNMENTS)? {
-        // Whatever is no assignment was refused when it was made.
-        let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
-        let value = DeValue::parse(text.trim()).ok();
-        let table = value.as_ref().and_then(|value| value.get_ref().as_table());
-        let inner = keys_of(key.trim(), table);
-        keys.extend(inner.into_iter().map(|key| (entry.clone(), key)));
-    }
-    Ok(keys)
-}
-
-/// `key`, or the keys below it that an inline table gives values.
-fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
-    let Some(table) = table else { return vec![key.to_owned()] };
-    let below = |(name, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| match &**name.get_ref() {
-        // A parameter is its value, and more.
-        "value" => vec![key.to_owned()],
-        name => keys_of(&format!("{key}.{name}"), value.get_ref().as_table()),
-    };
-    table.iter().flat_map(below).collect()
-}
-
-fn design(section: &Section<'_>) -> Result<Design, SpecError> {
-    match (section.get("random"), section.get("combine")) {
-        (Some(_), Some(combine)) => {
-            Err(combine.fault("combine is of a grid or of pairs: [random] has neither"))
-        }
-        (Some(random), None) => {
-            let random = random.section("a table with draws and seed")?;
-            random.only(&["draws", "seed"])?;
-            let draws = random.need("draws", "the number of rows")?.count(1..=MOST_ROWS)?;
-            let seed = random.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs())?;
-            Ok(Design::Random { draws, seed })
-        }
-        (None, Some(combine)) => match combine.text("\"grid\" or \"pairs\"")? {
-            "grid" => Ok(Design::Grid),
-            "pairs" => Ok(Design::Pairs),
-            other => {
-                let what =
-                    format!("combine = \"{}\" is not known: it must be \"grid\" or \"pairs\"", quote(other));
-                let meant = pulloff_engine::text::closest(other, DESIGNS);
-                Err(combine
-                    .fault(&meant.map_or(what.clone(), |meant| format!("{what}; did you mean {meant}?"))))
-            }
-        },
-        (None, None) => Ok(Design::Grid),
-    }
-}
-
-/// The number of rows; every axis must fit the design.
-fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
-    let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
-    let mut product = 1_u64;
-    for ((axis, table), count) in axes.iter().zip(tables).zip(&counts) {
-        let key = &axis.key;
-        match (design, count) {
-            (Design::Random { .. }, Some(_)) => {
-                return Err(table.fault(&format!("with [random] the axis {key} must have a distribution")));
-            }
-            (Design::Random { draws, .. }, None) => product = draws,
-            (_, None) => {
-                let what =
-                    format!("the axis {key} has a distribution: it needs [random] with draws and seed");
-                return Err(table.fault(&what));
-            }
-            (Design::Grid, Some(count)) => {
-                product = product.checked_mul(*count).filter(|rows| *rows <= MOST_ROWS).ok_or_else(|| {
-                    let counts: Vec<String> = counts.iter().flatten().map(u64::to_string).collect();
-                    table.fault(&format!("{} rows are out of range: at most {MOST_ROWS}", counts.join(" x ")))
-                })?;
-            }
-            (Design::Pairs, Some(count)) => {
-                if counts[0] != Some(*count) {
-                    let first = counts[0].unwrap_or(0);
-                    let what = format!(
-                        "pairs need axes of one length: {key} has {count} values, {} has {first}",
-                        axes[0].key
-                    );
-                    return Err(table.fault(&what));
-                }
-                product = *count;
-            }
-        }
-    }
-    Ok(product)
-}
-
-fn columns(section: &Section<'_>) -> Result<Vec<Column>, SpecError> {
-    let Some(entry) = section.get("quantities") else {
-        return Ok(USUAL.iter().filter_map(|name| Column::named(name).ok()).collect());
-    };
-    let wanted = "an array of names of quantities";
-    let mut columns = Vec::new();
-    for name in entry.array(wanted)? {
-        let column =
-            Column::named(name.text(wanted)?).map_err(|what| name.fault(&format!("quantities: {what}")))?;
-        if columns.contains(&column) {
-            return Err(name.fault(&format!("quantities: {} stands there twice", column.name())));
-        }
-        columns.push(column);
-    }
-    if columns.is_empty() {
-        return Err(entry.fault("quantities is empty: leave it out for the usual ones"));
-    }
-    Ok(columns)
 }

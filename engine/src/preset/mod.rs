@@ -13,6 +13,7 @@
 //! | `given` | values read one by one, with what is wrong with them |
 //! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
 //! | `resolve` | the units of a preset, and its texts with units as numbers in them |
+//! | [`shipped`] | the presets that come with the program, and their data |
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
@@ -45,6 +46,7 @@ mod resolve;
 pub mod rows;
 pub mod schema;
 pub mod shape;
+pub mod shipped;
 pub mod value;
 pub mod values;
 pub mod write;

@@ -2,9 +2,9 @@
 
 use super::fault::Fault;
 use super::stage::{Cell, CurveMinima, Loop, PresetValues, UnloadingPath};
-use pulloff_engine::problem::Control;
-use pulloff_engine::text::{closest, quote};
-use pulloff_engine::units::Quantity as Unit;
+use crate::problem::Control;
+use crate::text::{closest, quote};
+use crate::units::Quantity as Unit;
 
 /// One quantity.
 #[derive(Debug)]

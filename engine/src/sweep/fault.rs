@@ -1,8 +1,8 @@
 //! Why a row has no result, or not all of it.
 
-use pulloff_engine::case::CaseError;
-use pulloff_engine::preset::Invalid;
-use pulloff_engine::text::sanitize;
+use crate::case::CaseError;
+use crate::preset::Invalid;
+use crate::text::sanitize;
 use std::any::Any;
 use std::fmt;
 

@@ -2,13 +2,13 @@
 
 use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
-use pulloff_engine::gap::shapes::split_mix::SplitMix64;
-use pulloff_engine::preset::rows::parameter;
-use pulloff_engine::preset::schema::rivals;
-use pulloff_engine::preset::{Invalid, Preset, Value, groups, model};
-use pulloff_engine::problem::Control;
-use pulloff_engine::report::number::exact;
-use pulloff_engine::text::quote;
+use crate::gap::shapes::split_mix::SplitMix64;
+use crate::preset::rows::parameter;
+use crate::preset::schema::rivals;
+use crate::preset::{Invalid, Preset, Value, groups, model};
+use crate::problem::Control;
+use crate::report::number::exact;
+use crate::text::quote;
 use std::f64::consts::TAU;
 use toml::de::DeValue;
 
@@ -63,7 +63,7 @@ const DISTRIBUTIONS: [&str; 4] = ["uniform", "log-uniform", "normal", "integers"
 
 impl SweepAxis {
     /// Reads `[[axis]]`; `preset` checks its values. With `fixed` no axis changes which keys the preset has.
-    pub(super) fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
+    pub fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
         section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;
         let wanted = "a key of the preset, such as \"gap.amplitude\"";
         let entry = section.need("key", wanted)?;
@@ -86,7 +86,7 @@ impl SweepAxis {
     }
 
     /// Reads an axis of the [`canonical`](Self::canonical) form; its values were checked before.
-    pub(super) fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
+    pub fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
         let entry = section.need("key", "a key")?;
         let key = entry.text("a key")?;
         Ok(Self { key: key.to_owned(), points: Reader { preset: None, key }.points(section, &entry)? })
@@ -103,7 +103,7 @@ impl SweepAxis {
     }
 
     /// Its first value, or a likely one.
-    pub(super) fn first(&self) -> Option<Value> {
+    pub fn first(&self) -> Option<Value> {
         match &self.points {
             Points::Drawn(Distribution::Normal { mean, .. }) => Some((*mean).into()),
             Points::Drawn(Distribution::Uniform([a, _]) | Distribution::LogUniform([a, _])) => {
@@ -217,7 +217,7 @@ impl Distribution {
 }
 
 /// Whether no row of an axis over `axis` has the value that an assignment gives to `key`.
-pub(super) fn overrides(axis: &str, key: &str) -> bool {
+pub fn overrides(axis: &str, key: &str) -> bool {
     let is_part_of = |part: &str, whole: &str| {
         parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
     };
@@ -230,7 +230,7 @@ pub(super) fn overrides(axis: &str, key: &str) -> bool {
 
 /// The key of `before` that sets what `key` sets: itself, or another start or turn, of which only the
 /// later would be left.
-pub(super) fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     before.into_iter().find(|other| *other == key || rivals(key).contains(other))
 }
 

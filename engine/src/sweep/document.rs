@@ -1,7 +1,7 @@
 //! A TOML text read entry by entry, each mistake with its line.
 
-use pulloff_engine::preset::read::{Origin, line};
-use pulloff_engine::text::{closest, quote, sanitize, show_name};
+use crate::preset::read::{Origin, line};
+use crate::text::{closest, quote, sanitize, show_name};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -17,14 +17,14 @@ pub struct SpecError {
 
 /// The text of a file with its name.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SpecText<'a> {
-    pub(super) name: &'a str,
-    pub(super) text: &'a str,
+pub struct SpecText<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
 }
 
 /// A table of the document.
 #[derive(Debug, Clone)]
-pub(super) struct Section<'a> {
+pub struct Section<'a> {
     document: SpecText<'a>,
     /// Its dotted name; empty for the document itself.
     name: String,
@@ -34,15 +34,15 @@ pub(super) struct Section<'a> {
 
 /// A key with its value.
 #[derive(Debug, Clone)]
-pub(super) struct Entry<'a> {
+pub struct Entry<'a> {
     document: SpecText<'a>,
-    pub(super) name: String,
-    pub(super) value: &'a DeValue<'a>,
+    pub name: String,
+    pub value: &'a DeValue<'a>,
     at: usize,
 }
 
 impl<'a> SpecText<'a> {
-    pub(super) fn parse(self) -> Result<DeTable<'a>, SpecError> {
+    pub fn parse(self) -> Result<DeTable<'a>, SpecError> {
         match DeTable::parse(self.text) {
             Ok(table) => Ok(table.into_inner()),
             Err(error) => {
@@ -57,14 +57,14 @@ impl<'a> SpecText<'a> {
         SpecError { origin, what }
     }
 
-    pub(super) fn section(self, table: &'a DeTable<'a>) -> Section<'a> {
+    pub fn section(self, table: &'a DeTable<'a>) -> Section<'a> {
         Section { document: self, name: String::new(), table, at: 0 }
     }
 }
 
 impl<'a> Section<'a> {
     /// Refuses every key that is none of `keys`.
-    pub(super) fn only(&self, keys: &[&str]) -> Result<(), SpecError> {
+    pub fn only(&self, keys: &[&str]) -> Result<(), SpecError> {
         for (key, _) in self.table {
             let name: &str = key.get_ref();
             if !keys.contains(&name) {
@@ -84,24 +84,24 @@ impl<'a> Section<'a> {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
-    pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
+    pub fn get(&self, key: &str) -> Option<Entry<'a>> {
         let (found, value) = self.table.iter().find(|(name, _)| name.get_ref() == key)?;
         let at = found.span().start;
         Some(Entry { document: self.document, name: self.full(key), value: value.get_ref(), at })
     }
 
-    pub(super) fn need(&self, key: &str, allowed: &str) -> Result<Entry<'a>, SpecError> {
+    pub fn need(&self, key: &str, allowed: &str) -> Result<Entry<'a>, SpecError> {
         self.get(key)
             .ok_or_else(|| self.fault(&format!("{} is missing: it must be {allowed}", self.full(key))))
     }
 
-    pub(super) fn fault(&self, what: &str) -> SpecError {
+    pub fn fault(&self, what: &str) -> SpecError {
         self.document.fault(self.at, what.to_owned())
     }
 }
 
 impl<'a> Entry<'a> {
-    pub(super) fn fault(&self, what: &str) -> SpecError {
+    pub fn fault(&self, what: &str) -> SpecError {
         self.document.fault(self.at, what.to_owned())
     }
 
@@ -109,11 +109,11 @@ impl<'a> Entry<'a> {
         self.fault(&format!("{} must be {allowed}, not {}", self.name, found(self.value)))
     }
 
-    pub(super) fn text(&self, allowed: &str) -> Result<&'a str, SpecError> {
+    pub fn text(&self, allowed: &str) -> Result<&'a str, SpecError> {
         self.value.as_str().ok_or_else(|| self.wrong(allowed))
     }
 
-    pub(super) fn array(&self, allowed: &str) -> Result<Vec<Entry<'a>>, SpecError> {
+    pub fn array(&self, allowed: &str) -> Result<Vec<Entry<'a>>, SpecError> {
         let array: &DeArray<'_> = self.value.as_array().ok_or_else(|| self.wrong(allowed))?;
         let entry = |value: &'a toml::Spanned<DeValue<'a>>| Entry {
             document: self.document,
@@ -124,18 +124,18 @@ impl<'a> Entry<'a> {
         Ok(array.iter().map(entry).collect())
     }
 
-    pub(super) fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
+    pub fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
         let allowed = "two values, [from, to]";
         <[Entry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
     }
 
-    pub(super) fn section(&self, allowed: &str) -> Result<Section<'a>, SpecError> {
+    pub fn section(&self, allowed: &str) -> Result<Section<'a>, SpecError> {
         let table = self.value.as_table().ok_or_else(|| self.wrong(allowed))?;
         Ok(Section { document: self.document, name: self.name.clone(), table, at: self.at })
     }
 
     /// A whole number of `range`.
-    pub(super) fn count(&self, range: RangeInclusive<u64>) -> Result<u64, SpecError> {
+    pub fn count(&self, range: RangeInclusive<u64>) -> Result<u64, SpecError> {
         let allowed = format!("a whole number from {} to {}", range.start(), range.end());
         let DeValue::Integer(n) = self.value else { return Err(self.wrong(&allowed)) };
         let n = u64::from_str_radix(n.as_str(), n.radix()).ok().filter(|n| range.contains(n));

@@ -2,17 +2,17 @@
 //! unloading under one control, the loop under one.
 
 use super::fault::Fault;
-use pulloff_engine::case::{Case, CaseError};
-use pulloff_engine::disc::{ExactSolution, Solution};
-use pulloff_engine::gap::Gap;
-use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::{Control, Groups, Problem};
-use pulloff_engine::quasistatic::cycle::{self, Cycle, CycleState};
-use pulloff_engine::quasistatic::monotone::weighted;
-use pulloff_engine::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
-use pulloff_engine::report::number::exact;
-use pulloff_engine::theory::guduru::Guduru;
-use pulloff_engine::theory::kesari_lew::KesariLew;
+use crate::case::{Case, CaseError};
+use crate::disc::{ExactSolution, Solution};
+use crate::gap::Gap;
+use crate::preset::Preset;
+use crate::problem::{Control, Groups, Problem};
+use crate::quasistatic::cycle::{self, Cycle, CycleState};
+use crate::quasistatic::monotone::weighted;
+use crate::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
+use crate::report::number::exact;
+use crate::theory::guduru::Guduru;
+use crate::theory::kesari_lew::KesariLew;
 use std::cell::OnceCell;
 use std::fmt;
 
@@ -223,7 +223,7 @@ impl UnloadingPath {
         Some(Cell::Number(of(&last.before)))
     }
 
-    fn snapping(&self) -> impl Iterator<Item = &pulloff_engine::quasistatic::Event> {
+    fn snapping(&self) -> impl Iterator<Item = &crate::quasistatic::Event> {
         self.unloading.events.iter().filter(|event| event.kind == EventKind::Snap)
     }
 

@@ -4,13 +4,13 @@
 use super::fault::Fault;
 use super::quantity::{Column, Quantity, Stage};
 use super::stage::{Cell, CurveMinima, Loop, PresetValues, StartState, UnloadingPath};
-use pulloff_engine::case::Case;
-use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::Control;
-use pulloff_engine::quasistatic::cycle::Areas;
-use pulloff_engine::quasistatic::overlap::passed_while;
-use pulloff_engine::quasistatic::{Losses, PathStop};
-use pulloff_engine::units::Quantity as Unit;
+use crate::case::Case;
+use crate::preset::Preset;
+use crate::problem::Control;
+use crate::quasistatic::cycle::Areas;
+use crate::quasistatic::overlap::passed_while;
+use crate::quasistatic::{Losses, PathStop};
+use crate::units::Quantity as Unit;
 
 /// The quantities of a preset.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,18 @@
 //! The presets that come with the program: the paper's cases and one of every other gap, embedded from the
-//! top-level `presets` folder with their data.
+//! `presets` folder with their data.
+
+use super::measured::{Files, SHIPPED_DATA, rows, words};
+use super::profile::parse;
+use crate::gap::shapes::Rows;
+use crate::text::quote;
+use std::path::Path;
 
 /// A preset, or data, that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
+    /// Its name.
     pub name: &'static str,
+    /// The whole of it.
     pub text: &'static str,
 }
 
@@ -16,6 +24,21 @@ pub static DATA: &[Shipped] =
 #[must_use]
 pub fn data(name: &str) -> Option<&'static str> {
     DATA.iter().find(|shipped| shipped.name == name).map(|shipped| shipped.text)
+}
+
+/// The rows of the shipped data that `name` means.
+fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+    let Some(wanted) = name.strip_prefix(SHIPPED_DATA) else { return (Files::NONE.0)(folder, name) };
+    let text = data(wanted).ok_or_else(|| {
+        let known: Vec<String> = DATA.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();
+        format!("\"{}\" does not come with the program; there is {}", quote(name), known.join(", "))
+    })?;
+    rows(folder, name, parse(text.as_bytes()).map_err(|error| words(&error))?)
+}
+
+impl Files {
+    /// The data that come with the program, and no other file.
+    pub const SHIPPED: Self = Self(shipped_rows);
 }
 
 /// The preset opened when none is named.
@@ -51,13 +74,13 @@ pub fn find(name: &str) -> Option<&'static Shipped> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::read;
-    use pulloff_engine::gap::Shape;
-    use pulloff_engine::preset::model::{BasisSpec, Preset, is_of_units};
-    use pulloff_engine::preset::schema::Row;
-    use pulloff_engine::preset::shape::is_range;
-    use pulloff_engine::problem::{Control, Groups, Start};
-    use pulloff_engine::ritz::Grading;
+    use crate::gap::Shape;
+    use crate::preset::model::{BasisSpec, Preset, is_of_units};
+    use crate::preset::read_in;
+    use crate::preset::schema::Row;
+    use crate::preset::shape::is_range;
+    use crate::problem::{Control, Groups, Start};
+    use crate::ritz::Grading;
     use std::collections::BTreeSet;
 
     /// How many ranges its parameters have.
@@ -67,7 +90,7 @@ mod tests {
     }
 
     fn load(name: &str) -> Preset {
-        read(name, find(name).unwrap().text).unwrap()
+        read_in(Files::SHIPPED, None, name, find(name).unwrap().text, &[] as &[&str]).unwrap()
     }
 
     #[test]

@@ -1,0 +1,296 @@
+//! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
+
+use super::MOST_ROWS;
+use super::axis::{Points, SweepAxis, overrides, rival};
+use super::document::{Entry, Section, SpecError, SpecText};
+use super::fault::Fault;
+use super::measure::{Measured, measure};
+use super::quantity::{Column, USUAL};
+use crate::gap::shapes::split_mix::SplitMix64;
+use crate::preset::schema::CHOOSERS;
+use crate::preset::{Preset, Value};
+use crate::text::{closest, quote};
+use std::borrow::Cow;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where the preset of a spec comes from: told the name that the spec gives and the `KEY=VALUE` assignments over it, it
+/// answers with the preset, or with why there is none, in words that are safe to show.
+pub type Presets<'a> = &'a dyn Fn(&str, &[&str]) -> Result<Preset, String>;
+
+/// How the axes make rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Design {
+    /// Every value with every other; the last axis runs fastest.
+    Grid,
+    /// The first values together, then the second ones, …
+    Pairs,
+    /// Drawn at random.
+    Random {
+        /// How many rows.
+        draws: u64,
+        /// From which all random numbers follow.
+        seed: u64,
+    },
+}
+
+/// A sweep: what is computed of what.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// What every row begins with.
+    pub preset: Preset,
+    /// The axes; at least one.
+    pub axes: Vec<SweepAxis>,
+    /// How they make rows.
+    pub design: Design,
+    /// The quantities wanted; at least one.
+    pub columns: Vec<Column>,
+    /// The number of rows, from 1 to [`MOST_ROWS`].
+    pub rows: u64,
+}
+
+/// What `set` is.
+const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
+/// The words of `combine`.
+const DESIGNS: [&str; 2] = ["grid", "pairs"];
+
+impl Spec {
+    /// Reads a spec from text that `name` names in messages; its preset comes from `presets`.
+    ///
+    /// # Errors
+    /// The first mistake, with its line.
+    pub fn read(presets: Presets<'_>, name: &str, text: &str) -> Result<Self, SpecError> {
+        let document = SpecText { name, text };
+        let table = document.parse()?;
+        let section = document.section(&table);
+        section.only(&["preset", "set", "combine", "random", "quantities", "axis"])?;
+        let preset = preset(presets, &section)?;
+        let assigned = assigned(&section)?;
+        let axes = section.need("axis", "one or more tables [[axis]]")?;
+        let given = axes.array("one or more tables [[axis]]")?;
+        let tables: Vec<Section<'_>> =
+            given.iter().map(|entry| entry.section("a table [[axis]]")).collect::<Result<_, _>>()?;
+        let key =
+            |table: &Section<'_>| table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned));
+        let fixed = !tables.iter().filter_map(key).any(|key| CHOOSERS.contains(&&*key));
+        let mut read: Vec<SweepAxis> = Vec::new();
+        for table in &tables {
+            let axis = SweepAxis::read(table, &preset, fixed)?;
+            if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
+                return Err(table.fault(&format!("the axis {} is at odds with the axis {other}", axis.key)));
+            }
+            if let Some((entry, key)) = assigned.iter().find(|(_, key)| overrides(&axis.key, key)) {
+                let what = format!(
+                    "set gives {} a value that no row has: the axis {} gives every row its own; remove one of them",
+                    quote(key),
+                    axis.key
+                );
+                return Err(entry.fault(&what));
+            }
+            read.push(axis);
+        }
+        if read.is_empty() {
+            return Err(axes.fault("axis must be one or more tables [[axis]]"));
+        }
+        let design = design(&section)?;
+        let rows = rows(design, &read, &tables)?;
+        Ok(Self { preset, axes: read, design, columns: columns(&section)?, rows })
+    }
+
+    /// The values of the axes in a row below [`rows`](Self::rows), in the order of the axes.
+    #[must_use]
+    pub fn values(&self, row: u64) -> Vec<Value> {
+        values(&self.axes, self.design, row)
+    }
+
+    /// The preset of a row.
+    ///
+    /// # Errors
+    /// A value that the preset does not take.
+    pub fn problem(&self, row: u64) -> Result<Preset, Fault> {
+        let mut preset = self.preset.clone();
+        let keys = self.axes.iter().map(|axis| &*axis.key);
+        preset.set_all(keys.zip(self.values(row))).map_err(|invalid| Fault::of_value(&invalid))?;
+        Ok(preset)
+    }
+
+    /// The quantities of a row; `None` when `go_on` said no. Whatever goes wrong is a fault of the row.
+    #[must_use]
+    pub fn measure(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<Measured> {
+        match self.problem(row) {
+            Ok(preset) => measure(&preset, &self.columns, go_on),
+            Err(fault) => Some(self.lost(fault)),
+        }
+    }
+
+    /// A row without any quantity.
+    #[must_use]
+    pub fn lost(&self, fault: Fault) -> Measured {
+        Measured { cells: vec![None; self.columns.len()], fault: Some(fault) }
+    }
+}
+
+/// The values of the axes in a row, in the order of the axes.
+pub fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
+    let mut index = row;
+    let mut random = match design {
+        Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
+        Design::Grid | Design::Pairs => None,
+    };
+    // Drawn in the order of the axes; counted from the last, which runs fastest.
+    if let Some(random) = &mut random {
+        let draw = |axis: &SweepAxis| match &axis.points {
+            Points::Drawn(distribution) => Some(distribution.draw(random)),
+            _ => None,
+        };
+        return axes.iter().filter_map(draw).collect();
+    }
+    let mut values: Vec<Value> = Vec::with_capacity(axes.len());
+    for axis in axes.iter().rev() {
+        let count = axis.count().unwrap_or(1).max(1);
+        let own = if design == Design::Grid { index % count } else { index };
+        values.extend(axis.value(own));
+        index = if design == Design::Grid { index / count } else { index };
+    }
+    values.reverse();
+    values
+}
+
+/// The axes of a canonical form, as the program keeps it beside results, and how they make rows.
+///
+/// # Errors
+/// What of it is not as it was written.
+pub fn of_canonical(document: SpecText<'_>) -> Result<(Vec<SweepAxis>, Design), SpecError> {
+    let table = document.parse()?;
+    let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;
+    let axes = sweep.need("axis", "tables")?.array("tables")?;
+    let axes = axes.iter().map(|entry| SweepAxis::of_canonical(&entry.section("a table")?));
+    Ok((axes.collect::<Result<_, _>>()?, design(&sweep)?))
+}
+
+/// `preset` with the assignments of `set`.
+fn preset(presets: Presets<'_>, section: &Section<'_>) -> Result<Preset, SpecError> {
+    let wanted = "the name of a preset, or a preset file (with a '/' or ending in .toml)";
+    let entry = section.need("preset", wanted)?;
+    let name = entry.text(wanted)?;
+    let set: Vec<Entry<'_>> =
+        section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(ASSIGNMENTS))?;
+    let set: Vec<&str> = set.iter().map(|entry| entry.text(ASSIGNMENTS)).collect::<Result<_, _>>()?;
+    // The preset itself first, so that a mistake is told where it is made.
+    let preset = presets(name, &[]).map_err(|what| entry.fault(&format!("preset: {what}")))?;
+    if set.is_empty() {
+        return Ok(preset);
+    }
+    presets(name, &set).map_err(|what| section.get("set").unwrap_or(entry).fault(&what))
+}
+
+/// The keys to which `set` gives values, each with its place.
+fn assigned<'a>(section: &Section<'a>) -> Result<Vec<(Entry<'a>, String)>, SpecError> {
+    let mut keys = Vec::new();
+    let Some(set) = section.get("set") else { return Ok(keys) };
+    for entry in set.array(ASSIGNMENTS)? {
+        // Whatever is no assignment was refused when it was made.
+        let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
+        let value = DeValue::parse(text.trim()).ok();
+        let table = value.as_ref().and_then(|value| value.get_ref().as_table());
+        let inner = keys_of(key.trim(), table);
+        keys.extend(inner.into_iter().map(|key| (entry.clone(), key)));
+    }
+    Ok(keys)
+}
+
+/// `key`, or the keys below it that an inline table gives values.
+fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
+    let Some(table) = table else { return vec![key.to_owned()] };
+    let below = |(name, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| match &**name.get_ref() {
+        // A parameter is its value, and more.
+        "value" => vec![key.to_owned()],
+        name => keys_of(&format!("{key}.{name}"), value.get_ref().as_table()),
+    };
+    table.iter().flat_map(below).collect()
+}
+
+fn design(section: &Section<'_>) -> Result<Design, SpecError> {
+    match (section.get("random"), section.get("combine")) {
+        (Some(_), Some(combine)) => {
+            Err(combine.fault("combine is of a grid or of pairs: [random] has neither"))
+        }
+        (Some(random), None) => {
+            let random = random.section("a table with draws and seed")?;
+            random.only(&["draws", "seed"])?;
+            let draws = random.need("draws", "the number of rows")?.count(1..=MOST_ROWS)?;
+            let seed = random.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs())?;
+            Ok(Design::Random { draws, seed })
+        }
+        (None, Some(combine)) => match combine.text("\"grid\" or \"pairs\"")? {
+            "grid" => Ok(Design::Grid),
+            "pairs" => Ok(Design::Pairs),
+            other => {
+                let what =
+                    format!("combine = \"{}\" is not known: it must be \"grid\" or \"pairs\"", quote(other));
+                let meant = closest(other, DESIGNS);
+                Err(combine
+                    .fault(&meant.map_or(what.clone(), |meant| format!("{what}; did you mean {meant}?"))))
+            }
+        },
+        (None, None) => Ok(Design::Grid),
+    }
+}
+
+/// The number of rows; every axis must fit the design.
+fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
+    let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
+    let mut product = 1_u64;
+    for ((axis, table), count) in axes.iter().zip(tables).zip(&counts) {
+        let key = &axis.key;
+        match (design, count) {
+            (Design::Random { .. }, Some(_)) => {
+                return Err(table.fault(&format!("with [random] the axis {key} must have a distribution")));
+            }
+            (Design::Random { draws, .. }, None) => product = draws,
+            (_, None) => {
+                let what =
+                    format!("the axis {key} has a distribution: it needs [random] with draws and seed");
+                return Err(table.fault(&what));
+            }
+            (Design::Grid, Some(count)) => {
+                product = product.checked_mul(*count).filter(|rows| *rows <= MOST_ROWS).ok_or_else(|| {
+                    let counts: Vec<String> = counts.iter().flatten().map(u64::to_string).collect();
+                    table.fault(&format!("{} rows are out of range: at most {MOST_ROWS}", counts.join(" x ")))
+                })?;
+            }
+            (Design::Pairs, Some(count)) => {
+                if counts[0] != Some(*count) {
+                    let first = counts[0].unwrap_or(0);
+                    let what = format!(
+                        "pairs need axes of one length: {key} has {count} values, {} has {first}",
+                        axes[0].key
+                    );
+                    return Err(table.fault(&what));
+                }
+                product = *count;
+            }
+        }
+    }
+    Ok(product)
+}
+
+fn columns(section: &Section<'_>) -> Result<Vec<Column>, SpecError> {
+    let Some(entry) = section.get("quantities") else {
+        return Ok(USUAL.iter().filter_map(|name| Column::named(name).ok()).collect());
+    };
+    let wanted = "an array of names of quantities";
+    let mut columns = Vec::new();
+    for name in entry.array(wanted)? {
+        let column =
+            Column::named(name.text(wanted)?).map_err(|what| name.fault(&format!("quantities: {what}")))?;
+        if columns.contains(&column) {
+            return Err(name.fault(&format!("quantities: {} stands there twice", column.name())));
+        }
+        columns.push(column);
+    }
+    if columns.is_empty() {
+        return Err(entry.fault("quantities is empty: leave it out for the usual ones"));
+    }
+    Ok(columns)
+}
