@@ -1,7 +1,8 @@
 //! The law of stability against known numbers of the waves of Fig. 9, and against the traced curve.
 
+use pulloff_engine::stability::count::EXACTLY;
 use pulloff_engine::stability::law::{adhesion_of, root_of};
-use pulloff_engine::stability::{Axis, Cause, Family, even};
+use pulloff_engine::stability::{Axis, Cause, Family, Onset, even};
 use pulloff_engine::{Control, Material, Preset, Shape, Start};
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -56,7 +57,10 @@ fn cusps_in_the_adhesion_are_those_known_and_a_ninth_under_force() {
     for (row, (ours, force)) in rows(&known["displacement"]).iter().zip(grips.iter().zip(&dead)) {
         let [s, adhesion] = [0, 1].map(|k| row[k].as_f64().unwrap());
         let found = TAU * adhesion_of(ours.value);
-        assert!(same(ours.contact_radius, s, 1e-4) && same(found, adhesion, 1e-5), "{ours:?} {found} {row:?}");
+        assert!(
+            same(ours.contact_radius, s, 1e-4) && same(found, adhesion, 1e-5),
+            "{ours:?} {found} {row:?}"
+        );
         assert!((ours.contact_radius - force.contact_radius).abs() < 1e-9);
         assert!((adhesion_of(ours.value) / adhesion_of(force.value) - 9.0).abs() < 1e-12);
     }
@@ -77,7 +81,8 @@ fn cusps_in_the_amplitude_are_those_known_and_their_lines_pass_them() {
         let lines = family.explicit_cusps().unwrap().unwrap();
         for row in rows(&known[name]) {
             let [s, amplitude] = [0, 1].map(|k| row[k].as_f64().unwrap());
-            let hit = births.iter().find(|[at, share]| same(*at, s, 1e-4) && same(0.0125 * share, amplitude, 1e-6));
+            let hit =
+                births.iter().find(|[at, share]| same(*at, s, 1e-4) && same(0.0125 * share, amplitude, 1e-6));
             let [s, share] = hit.unwrap_or_else(|| panic!("{name} {row:?}: {births:?}"));
             // The line, sampled at radii, is as near to it as its steps are long.
             let near = lines.iter().any(|(points, _)| {
@@ -108,7 +113,9 @@ fn swallowtails_are_those_known() {
             let [s, amplitude, adhesion] = [0, 1, 2].map(|k| row[k].as_f64().unwrap());
             let hit = tips.iter().any(|tip| {
                 let [a, y] = [0, 1].map(|k| family.axes[k].value(tip.at[k]));
-                same(tip.contact_radius, s, 1e-4) && same(a, amplitude, 1e-6) && (ratio * y / adhesion - 1.0).abs() < 3e-4
+                same(tip.contact_radius, s, 1e-4)
+                    && same(a, amplitude, 1e-6)
+                    && (ratio * y / adhesion - 1.0).abs() < 3e-4
             });
             assert!(hit, "{control} {row:?}: {tips:?}");
         }
@@ -122,7 +129,7 @@ fn every_change_of_the_count_is_a_cusp_or_a_landing_where_it_is_known() {
     for (name, most) in [("displacement", 0.0125), ("force", 0.05), ("0.15", 0.0105), ("0.6", 0.0063)] {
         let preset = waves(control(name), start, 0.05, adhesion);
         let family = Family::new(&preset, vec![axis(AMPLITUDE, [1e-5, most], false)]).unwrap();
-        let found = family.changes(0, &[0.0], &even(150), &|| true);
+        let found = family.changes(0, &[0.0], &even(150), EXACTLY, &|| true);
         let rows = rows(&known[name]);
         let words: Vec<_> = found.iter().map(|c| (c.snaps, family.axes[0].value(c.share), c.cause)).collect();
         assert!(found.len() >= rows.len(), "{name}: {words:?}");
@@ -185,10 +192,158 @@ fn times() {
             let ends = [line.points.first(), line.points.last()]
                 .map(|p| p.map(|p| (p.contact_radius, [0, 1].map(|k| family.axes[k].value(p.at[k])))));
             let dim = line.changes.iter().filter(|c| **c).count();
-            println!("{:?} {:?} {} points, {} tips, {dim} change, {ends:?}", line.sort, line.crest, line.points.len(), line.tips.len());
+            println!(
+                "{:?} {:?} {} points, {} tips, {dim} change, {ends:?}",
+                line.sort,
+                line.crest,
+                line.points.len(),
+                line.tips.len()
+            );
         }
         let clock = std::time::Instant::now();
         family.counts([32, 24], &|| true).unwrap();
         println!("counts {:?}", clock.elapsed());
     }
+}
+
+#[test]
+fn the_smallest_amplitude_that_snaps_is_that_known_for_every_device() {
+    let known = &data()["first_pair"];
+    let adhesion = known["adhesion"].as_f64().unwrap();
+    // The first pair of limit points, wherever it is.
+    for row in rows(&known["by_stiffness"]) {
+        let (device, given) = (control(row[0].as_str().unwrap()), row[1].as_f64().unwrap());
+        let preset = waves(device, 0.41, 0.05, adhesion);
+        let family = Family::new(&preset, vec![axis(AMPLITUDE, [0.0, 0.0125], false)]).unwrap();
+        let first = family.births().unwrap()[0][1] * 0.0125;
+        assert!(same(first, given, 1e-6), "{device} {first} {given}");
+    }
+    // The first snap of the path from 0.41.
+    for (device, given) in [("displacement", 0.001215), ("force", 0.002430), ("stiffness=0.15", 0.001076)] {
+        let onset = Onset::of(&waves(control(device), 0.41, 0.05, adhesion), &|| true).unwrap().unwrap();
+        assert!(same(onset.amplitude_over_wavelength, given, 1e-6), "{device} {onset:?}");
+        assert!(matches!(onset.cause, Cause::Cusp(_)));
+    }
+    let mut sphere = waves(Control::Displacement, 0.41, 0.05, adhesion);
+    sphere.set("gap.shape", "sphere".into()).unwrap();
+    assert_eq!(Onset::of(&sphere, &|| true).unwrap(), None);
+}
+
+#[test]
+fn fold_curves_pass_the_limit_points_of_the_curve() {
+    let preset = waves(Control::Displacement, 0.41, 0.05, 0.025);
+    for (key, range, device) in [
+        (ADHESION, [0.005, 0.2], Control::Displacement),
+        (AMPLITUDE, [0.0, 0.06], Control::Force),
+        ("compliance", [0.0, f64::INFINITY], Control::Stiffness(0.3)),
+        ("groups.wavelength_over_radius", [0.03, 0.07], Control::Displacement),
+        ("material.effective_modulus", [0.5, 2.0], Control::Displacement),
+    ] {
+        let mut preset = preset.clone();
+        preset.path.control = device;
+        let along = axis(key, range, false);
+        let share = match (key, device) {
+            ("compliance", Control::Stiffness(k)) => along.share(1.0 / k),
+            ("material.effective_modulus", _) => along.share(1.0),
+            (ADHESION, _) => along.share(0.025),
+            _ => along.share(0.05),
+        };
+        let folds = Family::new(&preset, vec![along]).unwrap().folds(&|| true).unwrap();
+        let case = pulloff_engine::Case::new(&preset).unwrap();
+        let limits = case.curve(|| true).unwrap().limit_points(device);
+        let mut hits = 0;
+        for line in &folds.lines {
+            for pair in line.points.windows(2) {
+                let [a, b] = [pair[0], pair[1]];
+                let part = (share - a.at[0]) / (b.at[0] - a.at[0]);
+                if (0.0..1.0).contains(&part) || part == 1.0 && b.at[0] == 1.0 {
+                    let mix = |x: f64, y: f64| x + part * (y - x);
+                    let s = mix(a.contact_radius, b.contact_radius);
+                    let limit = limits
+                        .iter()
+                        .min_by(|x, y| (x.contact_radius - s).abs().total_cmp(&(y.contact_radius - s).abs()))
+                        .unwrap();
+                    assert!((limit.contact_radius - s).abs() < 1e-3, "{key} {s} {limit:?}");
+                    assert!((limit.approach - mix(a.approach, b.approach)).abs() < 2e-4, "{key} {limit:?}");
+                    let minimum = limit.turn == pulloff_engine::Turn::Minimum;
+                    assert_eq!(minimum, line.is_minimum, "{key} {s}");
+                    hits += 1;
+                }
+            }
+        }
+        assert_eq!(hits, limits.len(), "{key}");
+        // No pair is born there by turning the device alone.
+        assert_eq!(folds.cusps.is_empty(), key == "compliance", "{key}");
+    }
+}
+
+/// The next of a series of numbers between 0 and 1 that looks random.
+fn next(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+#[test]
+fn on_both_sides_of_a_cusp_the_limit_points_differ_by_two() {
+    let mut seed = 20_261_122;
+    let mut cusps = 0;
+    for problem in 0..60 {
+        let mut random = |lo: f64, hi: f64| lo + (hi - lo) * next(&mut seed);
+        let gap = match problem % 3 {
+            0 => Shape::WavySphere {
+                radius_of_curvature: 1.0,
+                amplitude: random(1e-4, 6e-3),
+                wavelength: random(0.03, 0.2),
+            },
+            1 => Shape::Harmonics(std::sync::Arc::new(
+                pulloff_engine::Harmonics::new(
+                    1.0,
+                    (0..3)
+                        .map(|_| pulloff_engine::Harmonic {
+                            amplitude: random(-2e-3, 2e-3),
+                            wavelength: random(0.05, 0.2),
+                            phase: random(0.0, 6.0),
+                        })
+                        .collect(),
+                )
+                .unwrap(),
+            )),
+            _ => {
+                let text = format!(
+                    "r^2/2 + {:.6}*exp(-((r-{:.4})/{:.4})^2)",
+                    random(-2e-3, 2e-3),
+                    random(0.1, 0.3),
+                    random(0.01, 0.04)
+                );
+                Shape::Formula(std::sync::Arc::new(
+                    pulloff_engine::TypedGap::new(&text, Vec::new(), None).unwrap(),
+                ))
+            }
+        };
+        let device = match problem % 4 {
+            0 | 1 => Control::Displacement,
+            2 => Control::Force,
+            _ => Control::Stiffness(random(0.05, 3.0)),
+        };
+        let material = Material { effective_modulus: 1.0, work_of_adhesion: 1e-3, range_of_action: None };
+        let mut preset = Preset::new(material, gap, Start::ContactRadius(0.4));
+        preset.path.control = device;
+        let count = |adhesion: f64| {
+            let mut preset = preset.clone();
+            preset.material.work_of_adhesion = adhesion;
+            let family = Family::new(&preset, Vec::new()).unwrap();
+            let law = family.member(&[]).unwrap().law(&[]).unwrap();
+            let solution = pulloff_engine::disc::ExactSolution::new(law.panels, adhesion);
+            pulloff_engine::quasistatic::Monotone::of(&solution, device).limits.len() as i64
+        };
+        let family = Family::new(&preset, Vec::new()).unwrap();
+        for cusp in family.cusps(&[]) {
+            let adhesion = adhesion_of(cusp.value);
+            let [below, above] = [-1e-6, 1e-6].map(|by| count(adhesion * (1.0 + by)));
+            let born = if cusp.is_minimum { above - below } else { below - above };
+            assert_eq!(born, 2, "problem {problem}: {cusp:?} {below} {above}");
+            cusps += 1;
+        }
+    }
+    assert!(cusps > 200, "{cusps}");
 }

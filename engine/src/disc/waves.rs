@@ -60,6 +60,39 @@ pub fn transform(curvature: f64, waves: &[Wave], spans: &[Span]) -> Vec<[[f64; N
     samples
 }
 
+/// g, ∫₀ᵃ g, and g', g'', g''' at one radius, without a table.
+///
+/// ```text
+/// g''  = 2κ + Σ A q² [2 ∫ cos u sin θ dθ − q a ∫ sin u sin²θ dθ],      u = q a sin θ + φ
+/// g''' = −Σ A q³ [3 ∫ sin u sin²θ dθ + q a ∫ cos u sin³θ dθ],          ∫g = κa³/3 + Σ A q a² ∫ sin u cos²θ dθ
+/// ```
+pub fn at(curvature: f64, waves: &[Wave], a: f64) -> ([f64; 2], [f64; 3]) {
+    let mut whole = [curvature * a * a, curvature * a.powi(3) / 3.0];
+    let mut slopes = [2.0 * curvature * a, 2.0 * curvature, 0.0];
+    for wave in waves {
+        let q = wave.wavenumber;
+        let theta = &*Angles::of(PER_RADIAN * q * a + MORE);
+        let [sine_phase, cosine_phase] = wave.phase;
+        let [mut s0, mut s2, mut c1, mut c3] = [0.0; 4];
+        for (t, weight) in theta.sines.iter().zip(&theta.weights) {
+            let (sine, cosine) = (q * a * t).sin_cos();
+            let (su, cu) =
+                (sine * cosine_phase + cosine * sine_phase, cosine * cosine_phase - sine * sine_phase);
+            s0 += weight * su;
+            s2 += weight * su * t * t;
+            c1 += weight * cu * t;
+            c3 += weight * cu * t * t * t;
+        }
+        let (height, phase) = (wave.amplitude * q, q * a);
+        whole[0] += height * a * s0;
+        whole[1] += height * a * a * (s0 - s2);
+        slopes[0] += height * (s0 + phase * c1);
+        slopes[1] += height * q * (2.0 * c1 - phase * s2);
+        slopes[2] -= height * q * q * (3.0 * s2 + phase * c3);
+    }
+    (whole, slopes)
+}
+
 /// Gauss's nodes in θ on (0, π/2): the half of a rule on (0, π), about whose middle everything is symmetric.
 struct Angles {
     /// sin θ.

@@ -53,7 +53,9 @@ impl Axis {
             if logarithmic { Spacing::Logarithmic } else { Spacing::Linear }
         } else {
             if key != COMPLIANCE || logarithmic || lo < 0.0 {
-                return Err(refused("only a compliance goes on to infinity, on an axis that is not logarithmic"));
+                return Err(refused(
+                    "only a compliance goes on to infinity, on an axis that is not logarithmic",
+                ));
             }
             Spacing::Share(unit)
         };

@@ -9,8 +9,10 @@ use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
 use std::sync::Arc;
 
-/// Halvings that find a change along an axis: to the share 1e-12 of it.
-const HALVINGS: usize = 40;
+/// Halvings that find a change along an axis: to rounding, and near enough for Newton's method.
+pub const EXACTLY: usize = 40;
+/// The same for what Newton's method finds exactly.
+pub const NEARLY: usize = 12;
 
 /// The path of one member.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,12 +94,13 @@ impl Family {
     }
 
     /// The changes of the number of snaps along `axis`, the other number held at its share of `at`; looked for between
-    /// neighbours of `samples`, shares that ascend. `go_on` is asked before each, and what was found before it said no is given.
+    /// neighbours of `samples`, shares that ascend, and halved so many times. `go_on` is asked before each, and what was found before it said no is given.
     pub fn changes(
         &self,
         axis: usize,
         at: At<'_>,
         samples: &[f64],
+        halvings: usize,
         go_on: &dyn Fn() -> bool,
     ) -> Vec<Change> {
         let place = |share: f64| {
@@ -116,7 +119,7 @@ impl Family {
                 continue;
             };
             if let Some((from, old)) = before {
-                self.between(&place, [(from, old), (*share, here.clone())], &mut found);
+                self.between(&place, [(from, old), (*share, here.clone())], halvings, &mut found);
             }
             before = Some((*share, here));
         }
@@ -127,13 +130,14 @@ impl Family {
     fn between(
         &self,
         place: &dyn Fn(f64) -> Vec<f64>,
-        [mut lo, mut hi]: [(f64, Passage); 2],
+        [mut lo, hi]: [(f64, Passage); 2],
+        halvings: usize,
         found: &mut Vec<Change>,
     ) {
         while lo.1.snaps != hi.1.snaps {
             // The first of them.
             let (mut a, mut b) = (lo.clone(), hi.clone());
-            for _ in 0..HALVINGS {
+            for _ in 0..halvings {
                 let middle = 0.5 * (a.0 + b.0);
                 let Some(here) = self.passage(&place(middle)) else { break };
                 if here.snaps == lo.1.snaps {
@@ -148,7 +152,7 @@ impl Family {
             if b.0 >= hi.0 {
                 return;
             }
-            (lo, hi) = (b, hi);
+            lo = b;
         }
     }
 

@@ -9,7 +9,7 @@
 //! The tip of a line, where two of them are born, is where F'' = 0 too: a swallowtail.
 
 use super::family::{Family, FamilyError, Local};
-use super::law::adhesion_of;
+use super::law::{Edge, adhesion_of};
 use crate::problem::Control;
 
 /// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
@@ -19,6 +19,8 @@ const MOST: f64 = 40_000.0;
 /// Neighbours on a line are nearer to each other than this, in shares of the axes, after so many halvings at most.
 const CLOSE: f64 = 0.02;
 const DEPTH: usize = 20;
+/// Parts of a step in which a line is looked for that neither end is on.
+const BETWEEN: u32 = 8;
 /// Halvings of the last step at the border of the map, and at a swallowtail.
 const HALVINGS: usize = 48;
 
@@ -48,7 +50,8 @@ impl Family {
     /// # Errors
     /// A table cannot be had.
     pub fn explicit_cusps(&self) -> Result<Option<Vec<Line>>, FamilyError> {
-        let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len()) else {
+        let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len())
+        else {
             return Ok(None);
         };
         let other = 1 - adhesion;
@@ -92,8 +95,7 @@ impl Family {
                     let x = relative_compliance(s, &local, soft)?;
                     let control = Control::Stiffness(2.0 * s / x);
                     // F of this device, from g alone.
-                    let third = third_of(&local, grips.control, s);
-                    let edge = super::law::Edge::of(control, s, third);
+                    let edge = edge_under(&local, grips.control, control, s);
                     let compliance = x / (2.0 * s) / stiffness;
                     let share = self.axes[other].share(compliance);
                     (edge.value > 0.0).then(|| Born {
@@ -124,7 +126,9 @@ impl Family {
         let born = |s: f64| {
             let (a, b) = (lo.local(s)?.edge, hi.local(s)?.edge);
             let t = -a.slope / (b.slope - a.slope);
-            (t >= 0.0).then(|| (a.value + t * (b.value - a.value) - lo.root, self.axes[0].share(from + t * (to - from))))
+            (t >= 0.0).then(|| {
+                (a.value + t * (b.value - a.value) - lo.root, self.axes[0].share(from + t * (to - from)))
+            })
         };
         let mut found = Vec::new();
         for pair in self.sampled_radii().windows(2) {
@@ -148,7 +152,8 @@ impl Family {
                 }
             }
             // Not at a pole, and on the axis.
-            let on_axis = |(off, share): &(f64, f64)| off.abs() <= f.abs().max(g.abs()) && (0.0..=1.0).contains(share);
+            let on_axis =
+                |(off, share): &(f64, f64)| off.abs() <= f.abs().max(g.abs()) && (0.0..=1.0).contains(share);
             found.extend(born(a).filter(on_axis).map(|(_, share)| [a, share]));
         }
         found.sort_by(|a, b| a[1].total_cmp(&b[1]));
@@ -156,9 +161,8 @@ impl Family {
     }
 
     /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
-    fn sampled(&self, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
-        let mut lines: Vec<Line> = Vec::new();
-        let mut line: Line = Default::default();
+    pub(super) fn sampled(&self, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
+        let mut lines: Vec<Line> = vec![Line::default()];
         let mut before: Option<(f64, Option<Born>)> = None;
         let good = |s: f64| born(s).filter(Born::is_inside);
         for s in self.sampled_radii() {
@@ -169,24 +173,23 @@ impl Family {
                     (Some(old), Some(here)) => Some((old, here)),
                     (None, Some(here)) => good(last(&good, from, s)).map(|edge| (edge, here)),
                     (Some(old), None) => good(last(&good, s, from)).map(|edge| (old, edge)),
-                    (None, None) => None,
+                    // A whole line may lie between: where F is steep.
+                    (None, None) => (1..BETWEEN)
+                        .map(|k| from + (s - from) * f64::from(k) / f64::from(BETWEEN))
+                        .find(|middle| good(*middle).is_some())
+                        .and_then(|middle| {
+                            Some((good(last(&good, from, middle))?, good(last(&good, s, middle))?))
+                        }),
                 };
                 if let Some((a, b)) = ends {
-                    if line.0.is_empty() {
-                        line.0.push(a);
-                    }
-                    if !refine(&good, a, b, DEPTH, &mut line) {
-                        // A pole: it goes on elsewhere.
-                        lines.push(std::mem::replace(&mut line, (vec![b], Vec::new())));
-                    }
+                    refine(&good, a, b, DEPTH, &mut lines);
                 }
                 if here.is_none() {
-                    lines.push(std::mem::take(&mut line));
+                    lines.push(Line::default());
                 }
             }
             before = Some((s, here));
         }
-        lines.push(line);
         lines.retain(|(points, _)| points.len() > 1);
         lines
     }
@@ -226,6 +229,11 @@ fn relative_compliance(s: f64, grips: &Local, soft: bool) -> Option<f64> {
     Some(if soft { larger } else { 1.0 / (3.0 * larger) })
 }
 
+/// F under the device `to`, from that under `from`.
+pub(super) fn edge_under(local: &Local, from: Control, to: Control, s: f64) -> Edge {
+    Edge::of(to, s, third_of(local, from, s))
+}
+
 /// g', g'' and g''' from F and its derivatives under a device.
 fn third_of(local: &Local, control: Control, s: f64) -> [f64; 3] {
     let weight = super::weight::Weight::of(control, s);
@@ -243,16 +251,32 @@ fn last<T>(good: &dyn Fn(f64) -> Option<T>, mut outside: f64, mut inside: f64) -
     inside
 }
 
-/// Adds the points after `a` up to `b`, closer to each other than [`CLOSE`], and the swallowtails between them; false where the
-/// line jumps.
-fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, line: &mut Line) -> bool {
+/// Adds the line from `a` to `b` to the last one, its points closer to each other than [`CLOSE`], with the swallowtails between
+/// them. Where it leaves the map on the way, or jumps, another line begins.
+fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, lines: &mut Vec<Line>) {
     let apart = (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1]);
-    if apart > CLOSE && depth > 0 {
-        let Some(middle) = good(0.5 * (a.contact_radius + b.contact_radius)) else { return false };
-        return refine(good, a, middle, depth - 1, line) && refine(good, middle, b, depth - 1, line);
-    }
     if apart > CLOSE {
-        return false;
+        let [from, to] = [a.contact_radius, b.contact_radius];
+        let middle = 0.5 * (from + to);
+        if depth == 0 {
+            return lines.push((vec![b], Vec::new()));
+        }
+        if let Some(middle) = good(middle) {
+            refine(good, a, middle, depth - 1, lines);
+            return refine(good, middle, b, depth - 1, lines);
+        }
+        if let Some(edge) = good(last(good, middle, from)) {
+            refine(good, a, edge, depth - 1, lines);
+        }
+        lines.push(Line::default());
+        if let Some(edge) = good(last(good, middle, to)) {
+            refine(good, edge, b, depth - 1, lines);
+        }
+        return;
+    }
+    let Some(line) = lines.last_mut() else { return };
+    if line.0.is_empty() {
+        line.0.push(a);
     }
     if (a.bend > 0.0) != (b.bend > 0.0)
         && let Some(tip) = tip(good, a, b)
@@ -261,7 +285,6 @@ fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, li
         line.1.push(tip);
     }
     line.0.push(b);
-    true
 }
 
 /// The swallowtail between two points, where F'' passes zero; `None` where it passes a pole.

@@ -7,12 +7,11 @@
 use super::axis::{Axis, COMPLIANCE};
 use super::law::{Edge, Law, root_of};
 use crate::disc::table::Kept;
-use crate::disc::{Panels, Table, TableError};
-use crate::gap::{Gap, Shape};
+use crate::disc::{Exact, Panels, Table, TableError, waves};
+use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset, Value};
 use crate::problem::{Control, Reduced, Start};
 use crate::quasistatic::start::{StartError, contact_radius};
-use crate::disc::Exact;
 use std::sync::{Arc, Mutex};
 
 /// The values of the numbers left open, as shares of their axes.
@@ -233,8 +232,8 @@ impl Family {
         };
         let mut roles = Vec::new();
         for corner in &corners {
-            let [a, b, m] = [lo, hi, middle]
-                .map(|value| self.with(&[&corner[..], &[(axis, value)]].concat()));
+            let [a, b, m] =
+                [lo, hi, middle].map(|value| self.with(&[&corner[..], &[(axis, value)]].concat()));
             let (a, b, m) = (a?, b?, m?);
             let factor = |preset: &Preset, value: f64| self.reduced(preset).work_of_adhesion / value;
             let same = |preset: &Preset| {
@@ -312,11 +311,16 @@ impl Family {
             (None, None)
         } else {
             let preset = self.with(&asks)?;
-            (Some(Source::One(self.table(&preset)?.up_to(self.radii[1].max(self.reach(&preset)))?)), Some(preset))
+            let source = match self.reduced(&preset).gap.form() {
+                Form::Waves { curvature, waves } => Source::Waves { curvature, waves },
+                _ => Source::One(self.table(&preset)?.up_to(self.radii[1].max(self.reach(&preset)))?),
+            };
+            (Some(source), Some(preset))
         };
         let reduced = self.reduced(made.as_ref().unwrap_or(&self.preset));
         let mut work_of_adhesion = reduced.work_of_adhesion;
-        let mut control = made.as_ref().unwrap_or(&self.preset).path.control.in_units(reduced.units.stiffness);
+        let mut control =
+            made.as_ref().unwrap_or(&self.preset).path.control.in_units(reduced.units.stiffness);
         for (k, role) in self.roles.iter().enumerate() {
             match role {
                 Role::Adhesion(factor) => work_of_adhesion = factor * value(k),
@@ -359,6 +363,11 @@ fn device(compliance: f64) -> Control {
 #[derive(Debug, Clone)]
 enum Source {
     One(Arc<Panels>),
+    /// A paraboloid with waves, of which one radius needs no table.
+    Waves {
+        curvature: f64,
+        waves: Vec<Wave>,
+    },
     /// At both ends of the number that enters linearly, and the share between them.
     Mixed([Arc<Panels>; 2], f64),
 }
@@ -387,6 +396,10 @@ impl Member<'_> {
         };
         let (slopes, [transform, area]) = match &self.source {
             Source::One(panels) => of(panels)?,
+            Source::Waves { curvature, waves } => {
+                let (whole, slopes) = waves::at(*curvature, waves, s);
+                (slopes, whole)
+            }
             Source::Mixed([lo, hi], share) => {
                 let mix = |a: f64, b: f64| a + share * (b - a);
                 let ((a, [ag, aa]), (b, [bg, ba])) = (of(lo)?, of(hi)?);
@@ -411,12 +424,11 @@ impl Member<'_> {
     /// # Errors
     /// The gap cannot be tabulated.
     pub fn law(&self, at: At<'_>) -> Result<Law, FamilyError> {
-        let panels = match &self.source {
-            Source::One(panels) => Arc::clone(panels),
-            Source::Mixed(..) => {
-                let preset = self.family.preset_at(at)?;
-                self.family.table(&preset)?.up_to(self.family.radii[1])?
-            }
+        let family = self.family;
+        let panels = match (&self.source, &self.made) {
+            (Source::One(panels), _) => Arc::clone(panels),
+            (_, Some(preset)) => family.table(preset)?.up_to(family.radii[1])?,
+            (_, None) => family.table(&family.preset_at(at)?)?.up_to(family.radii[1])?,
         };
         Ok(Law { panels, control: self.control })
     }
@@ -430,7 +442,7 @@ impl Member<'_> {
         let preset = match (&self.made, &self.source) {
             (Some(preset), _) => preset.clone(),
             (None, Source::One(_)) => family.preset.clone(),
-            (None, Source::Mixed(..)) => family.preset_at(at)?,
+            (None, _) => family.preset_at(at)?,
         };
         let start = family.start_of(&preset, self.work_of_adhesion)?;
         let end = preset.end_contact_radius(start * family.length) / family.length;

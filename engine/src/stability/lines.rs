@@ -14,7 +14,7 @@ const ON_LINE: f64 = 0.05;
 pub struct Traced {
     /// The points in order.
     pub points: Vec<Vec<f64>>,
-    /// The swallowtails, of lines of cusps.
+    /// The swallowtails of a line of cusps, the cusps of one of limit points.
     pub tips: Vec<Vec<f64>>,
 }
 
@@ -47,7 +47,8 @@ impl Equations<'_> {
     /// The line through the solution `y`, both ways from it.
     pub fn line(&self, y: &[f64], go_on: &dyn Fn() -> bool) -> Option<Traced> {
         let n = y.len();
-        let forward: Vec<f64> = (0..n).map(|k| if k + 1 == n { 1.0 } else { 0.37 / (k + 1) as f64 }).collect();
+        let forward: Vec<f64> =
+            (0..n).map(|k| if k + 1 == n { 1.0 } else { 0.37 / (k + 1) as f64 }).collect();
         let start = self.point(y, &forward)?;
         let mut tracer = Tracer::new(self, self.settings());
         let mut half = |start: Point| {
@@ -81,7 +82,10 @@ impl Equations<'_> {
         if closed {
             points.extend(points.first().cloned());
         }
-        let tips = if self.sort == Sort::Cusp { self.tips(&points) } else { Vec::new() };
+        let tips = match self.sort {
+            Sort::Cusp | Sort::Fold => self.tips(&points),
+            Sort::Landing | Sort::Start => Vec::new(),
+        };
         let points = points.iter().map(|point| point.y().as_slice().to_vec()).collect();
         Some(Traced { points, tips })
     }
@@ -108,7 +112,7 @@ impl Equations<'_> {
         self.point(&y, &chord)
     }
 
-    /// The swallowtails of a line of cusps: both numbers turn there.
+    /// The swallowtails of a line of cusps, where both numbers turn; the cusps of a line of limit points, where the one does.
     fn tips(&self, points: &[Point]) -> Vec<Vec<f64>> {
         let mut tracer = Tracer::new(self, self.settings());
         let mut row = Vector::zeros(points.first().map_or(0, |point| point.y().len()));
@@ -116,7 +120,11 @@ impl Equations<'_> {
         row[last] = 1.0;
         let bend = |point: &Point| {
             let locals = self.locals(point.y().as_slice());
-            locals.and_then(|locals| locals.first().map(|local| local.edge.bend))
+            locals.and_then(|locals| {
+                locals
+                    .first()
+                    .map(|local| if self.sort == Sort::Fold { local.edge.slope } else { local.edge.bend })
+            })
         };
         let turned = points.windows(2).enumerate().filter(|(_, pair)| {
             let [a, b] = [bend(&pair[0]), bend(&pair[1])];

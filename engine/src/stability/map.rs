@@ -1,6 +1,6 @@
 //! The map of two numbers: lines of cusps, landings and starts, and the number of snaps in every cell.
 
-use super::count::{Cause, even};
+use super::count::{Cause, NEARLY, even};
 use super::equations::{Equations, Sort};
 use super::family::{At, Family, FamilyError};
 use super::law::adhesion_of;
@@ -24,7 +24,7 @@ const ASIDE: f64 = 2e-3;
 pub struct MapPoint {
     /// s, reduced.
     pub contact_radius: f64,
-    /// The shares of both axes.
+    /// The shares of both axes; zero for one that is not there.
     pub at: [f64; 2],
     /// The weighted control there.
     pub control_value: f64,
@@ -141,15 +141,21 @@ impl Family {
     /// The number of the crest nearest to the radius `s`, reduced, from the axis.
     pub fn crest(&self, s: f64) -> Option<u32> {
         let wave = self.preset.gap.wavelength()? / self.length;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded, and from 0 to some thousand")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "rounded, and from 0 to some thousand"
+        )]
         Some((s / wave).round().clamp(0.0, 1e9) as u32)
     }
 
-    fn point_at(&self, at: &[f64; 2], s: f64) -> Option<MapPoint> {
+    /// The limit point at these shares and the radius `s`, reduced.
+    pub fn point_at(&self, at: At<'_>, s: f64) -> Option<MapPoint> {
         let local = self.member(at).ok()?.local(s)?;
         let (approach, force) = (local.approach(), local.force());
         let control_value = weighted(local.control, approach, force);
-        Some(MapPoint { contact_radius: s, at: *at, control_value, approach, force })
+        let at = [0, 1].map(|k| at.get(k).copied().unwrap_or(0.0));
+        Some(MapPoint { contact_radius: s, at, control_value, approach, force })
     }
 
     /// Points on lines of cusps.
@@ -190,8 +196,10 @@ impl Family {
         let near = 0.3 * of.unit;
         let mut between = |a: [usize; 2], b: [usize; 2]| {
             for [s, off] in &rows[a[1]][a[0]] {
-                let nearest = rows[b[1]][b[0]].iter().min_by(|x, y| (x[0] - s).abs().total_cmp(&(y[0] - s).abs()));
-                let Some([t, other]) = nearest.filter(|[t, other]| (t - s).abs() < near && off * other < 0.0) else {
+                let nearest =
+                    rows[b[1]][b[0]].iter().min_by(|x, y| (x[0] - s).abs().total_cmp(&(y[0] - s).abs()));
+                let Some([t, other]) = nearest.filter(|[t, other]| (t - s).abs() < near && off * other < 0.0)
+                else {
                     continue;
                 };
                 let share = off / (off - other);
@@ -224,7 +232,7 @@ impl Family {
         for share in even(LANDING_COLUMNS) {
             let mut at = [share; 2];
             at[along] = 0.0;
-            for change in self.changes(along, &at, &even(LANDING_SAMPLES), go_on) {
+            for change in self.changes(along, &at, &even(LANDING_SAMPLES), NEARLY, go_on) {
                 if let Cause::Landing([outer, inner]) = change.cause {
                     at[along] = change.share;
                     let y = [outer / of.unit, inner / of.unit, at[0], at[1]];

@@ -8,6 +8,11 @@
 //! | [`family`] | a preset with one or two numbers left open |
 //! | [`count`] | the snaps of a path, and where their number changes |
 //! | [`explicit`] | lines of cusps that follow from s |
+//! | [`equations`] | cusps, landings, starts and folds as systems for the tracer |
+//! | [`lines`] | lines followed by the tracer |
+//! | [`map`] | the lines of two numbers, and the snaps in every cell |
+//! | [`folds`] | the limit points over one number |
+//! | [`onset`] | the smallest amplitude at which a preset snaps |
 //!
 //! The law is of the exact equation of one disc; presets in ring elements are judged by it all the same.
 
@@ -16,14 +21,18 @@ pub mod count;
 pub mod equations;
 pub mod explicit;
 pub mod family;
+pub mod folds;
 pub mod law;
 pub mod lines;
 pub mod map;
+pub mod onset;
 pub mod weight;
 
 pub use axis::{Axis, AxisError, COMPLIANCE, Spacing};
 pub use count::{Cause, Change, Passage, even};
 pub use equations::{Equations, Sort};
 pub use family::{Family, FamilyError};
+pub use folds::{FoldLine, Folds};
 pub use law::{Cusp, Law};
 pub use map::{Counts, Map, MapLine, MapPoint};
+pub use onset::Onset;

@@ -1,0 +1,189 @@
+//! Fold curves: where each limit point happens, over one number.
+//!
+//! ```text
+//! γ = γ_k(s)      A: t = (√(πγ/2) − F₀)/F₁      k: x = (1 − q)/(3q − 1),  q = √(πγ/2)/(√s g')
+//! ```
+//!
+//! Each radius says the value of the number at which it is a limit point, and there δ and P. Any other number is traced.
+
+use super::count::{Cause, EXACTLY, even};
+use super::equations::{Equations, Sort};
+use super::explicit::Born;
+use super::family::{Family, FamilyError};
+use super::law::adhesion_of;
+use super::lines::Traced;
+use super::map::MapPoint;
+use super::weight::Weight;
+use crate::problem::Control;
+
+/// Values of the number at which limit points are looked for where no curve follows from s.
+const COLUMNS: u32 = 24;
+/// Values between which landings are looked for.
+const SAMPLES: u32 = 100;
+
+/// One limit point over the number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoldLine {
+    /// The crest at which it is, from the axis; none without a wave.
+    pub crest: Option<u32>,
+    /// Whether the control is smallest there: the edge runs inward from it, and stable states lie outward. Otherwise it runs
+    /// outward, and they lie inward.
+    pub is_minimum: bool,
+    /// Its points in order.
+    pub points: Vec<MapPoint>,
+}
+
+/// All of them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Folds {
+    /// The curves, cut at the cusps.
+    pub lines: Vec<FoldLine>,
+    /// The cusps.
+    pub cusps: Vec<MapPoint>,
+    /// Where a jump just reaches, or just passes over, a crest: the limit points from which it begins.
+    pub landings: Vec<MapPoint>,
+}
+
+impl Family {
+    /// The fold curves over the only axis. `go_on` is asked now and then; what is found until it says no is given.
+    ///
+    /// # Errors
+    /// A gap cannot be tabulated, or a value is out of its range.
+    pub fn folds(&self, go_on: &dyn Fn() -> bool) -> Result<Folds, FamilyError> {
+        let mut folds = Folds::default();
+        if let Some(lines) = self.explicit_folds()? {
+            for (points, cusps) in lines {
+                let point = |born: &Born| self.point_at(&born.at[..1], born.contact_radius);
+                folds.cusps.extend(cusps.iter().filter_map(point));
+                // The sign of F' tells minima from maxima; a cusp belongs to both sides.
+                for part in cut(&points, |born| born.bend) {
+                    folds.lines.extend(
+                        self.fold_line(part.iter().filter_map(point).collect(), sign(part, |b| b.bend)),
+                    );
+                }
+            }
+        } else {
+            let of = Equations::new(self, Sort::Fold);
+            let mut known: Vec<Traced> = Vec::new();
+            for y in self.fold_starts(&of, go_on) {
+                if !go_on() {
+                    break;
+                }
+                if known.iter().any(|line| line.has(&y)) {
+                    continue;
+                }
+                let Some(line) = of.line(&y, go_on) else { continue };
+                let slope = |y: &Vec<f64>| {
+                    of.locals(y)
+                        .and_then(|locals| locals.first().map(|local| local.edge.slope))
+                        .unwrap_or(0.0)
+                };
+                let point = |y: &Vec<f64>| self.point_at(&y[1..], y[0] * of.unit);
+                for part in cut(&line.points, slope) {
+                    folds
+                        .lines
+                        .extend(self.fold_line(part.iter().filter_map(point).collect(), sign(part, slope)));
+                }
+                folds.cusps.extend(line.tips.iter().filter_map(point));
+                known.push(line);
+            }
+        }
+        for change in self.changes(0, &[0.0], &even(SAMPLES), EXACTLY, go_on) {
+            if let Cause::Landing([outer, _]) = change.cause {
+                folds.landings.extend(self.point_at(&[change.share], outer));
+            }
+        }
+        Ok(folds)
+    }
+
+    fn fold_line(&self, points: Vec<MapPoint>, is_minimum: bool) -> Option<FoldLine> {
+        let middle = points.get(points.len() / 2).filter(|_| points.len() > 1)?;
+        Some(FoldLine { crest: self.crest(middle.contact_radius), is_minimum, points })
+    }
+
+    /// The curves that follow from s; their tips are the cusps.
+    fn explicit_folds(&self) -> Result<Option<Vec<super::explicit::Line>>, FamilyError> {
+        let axis = &self.axes[0];
+        let [end, start] = self.radii;
+        let born = |s: f64, share: f64, slope: f64| Born {
+            contact_radius: s,
+            at: [share, (s - end) / (start - end)],
+            bend: slope,
+        };
+        if let Some(factor) = self.adhesion_factor() {
+            let member = self.member(&[0.5])?;
+            return Ok(Some(self.sampled(&|s| {
+                let edge = member.local(s)?.edge;
+                (edge.value > 0.0).then(|| born(s, axis.share(adhesion_of(edge.value) / factor), edge.slope))
+            })));
+        }
+        if self.linear() == Some(0) {
+            let (lo, hi) = (self.member(&[0.0])?, self.member(&[1.0])?);
+            let [from, to] = axis.range;
+            return Ok(Some(self.sampled(&|s| {
+                let (a, b) = (lo.local(s)?, hi.local(s)?);
+                let t = (a.root - a.edge.value) / (b.edge.value - a.edge.value);
+                let slope = a.edge.slope + t * (b.edge.slope - a.edge.slope);
+                (t >= 0.0).then(|| born(s, axis.share(from + t * (to - from)), slope))
+            })));
+        }
+        if self.compliance() == Some(0) {
+            let grips = self.member(&[0.0])?;
+            let stiffness = self.preset.problem().reduced_by(self.length).units.stiffness;
+            return Ok(Some(self.sampled(&|s| {
+                let local = grips.local(s)?;
+                let first = local.edge.value / Weight::of(grips.control, s).value;
+                let q = local.root / (s.sqrt() * first);
+                let x = (1.0 - q) / (3.0 * q - 1.0);
+                if !(x > 0.0 && first > 0.0) {
+                    return None;
+                }
+                let soft =
+                    super::explicit::edge_under(&local, grips.control, Control::Stiffness(2.0 * s / x), s);
+                Some(born(s, axis.share(x / (2.0 * s) / stiffness), soft.slope))
+            })));
+        }
+        Ok(None)
+    }
+
+    /// Limit points at evenly spaced values of the number.
+    fn fold_starts(&self, of: &Equations<'_>, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+        let radii = self.sampled_radii();
+        let mut starts = Vec::new();
+        for share in even(COLUMNS) {
+            let Ok(member) = self.member(&[share]) else { continue };
+            if !go_on() {
+                break;
+            }
+            let off: Vec<Option<f64>> =
+                radii.iter().map(|s| member.local(*s).map(|local| local.edge.value - local.root)).collect();
+            for (s, off) in radii.windows(2).zip(off.windows(2)) {
+                let (Some(a), Some(b)) = (off[0], off[1]) else { continue };
+                if (a > 0.0) != (b > 0.0) {
+                    let root = s[0] + (s[1] - s[0]) * a / (a - b);
+                    starts.extend(of.polished(&[root / of.unit, share], 1));
+                }
+            }
+        }
+        starts
+    }
+}
+
+/// The parts of a line between changes of the sign of F'; the point at a change belongs to both.
+fn cut<T>(points: &[T], slope: impl Fn(&T) -> f64) -> Vec<&[T]> {
+    let mut parts = Vec::new();
+    let mut from = 0;
+    for k in 1..points.len() {
+        if (slope(&points[k]) > 0.0) != (slope(&points[k - 1]) > 0.0) {
+            parts.push(&points[from..=k]);
+            from = k;
+        }
+    }
+    parts.push(&points[from..]);
+    parts
+}
+
+/// Whether F grows at the limit points of a part, by most of its points.
+fn sign<T>(part: &[T], slope: impl Fn(&T) -> f64) -> bool {
+    2 * part.iter().filter(|point| slope(point) > 0.0).count() > part.len()
+}

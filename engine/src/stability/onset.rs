@@ -1,0 +1,59 @@
+//! The smallest amplitude of a wave at which a preset snaps at all, with its own adhesion, device and start.
+
+use super::axis::Axis;
+use super::count::{Cause, EXACTLY};
+use super::family::{Family, FamilyError};
+use crate::preset::Preset;
+
+/// The group that is turned, and how far.
+const GROUP: &str = "groups.amplitude_over_wavelength";
+const RANGE: [f64; 2] = [0.0, 0.5];
+
+/// Besides cusps the snaps are counted at so many amplitudes, of equal factors over this many decades.
+const SAMPLES: i32 = 40;
+const DECADES: f64 = 4.0;
+
+/// Just before and just after a cusp, as a share of its amplitude.
+const BESIDE: f64 = 1e-7;
+
+/// Where snaps begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Onset {
+    /// A/λ.
+    pub amplitude_over_wavelength: f64,
+    /// Why there.
+    pub cause: Cause,
+}
+
+impl Onset {
+    /// The onset of `preset`; `None` for a gap without one wave, and where nothing snaps up to A/λ = 0.5.
+    ///
+    /// # Errors
+    /// The gap cannot be tabulated, or the path has no start.
+    pub fn of(preset: &Preset, go_on: &dyn Fn() -> bool) -> Result<Option<Self>, FamilyError> {
+        if preset.get(GROUP).is_none() {
+            return Ok(None);
+        }
+        let Ok(axis) = Axis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };
+        let family = Family::new(preset, vec![axis])?;
+        let mut samples: Vec<f64> = (0..=SAMPLES)
+            .map(|k| 10f64.powf(-DECADES * (1.0 - f64::from(k) / f64::from(SAMPLES))))
+            .chain([0.0])
+            .collect();
+        for [_, share] in family.births()? {
+            samples.extend([share * (1.0 - BESIDE), share * (1.0 + BESIDE)]);
+        }
+        samples.retain(|share| (0.0..=1.0).contains(share));
+        samples.sort_by(f64::total_cmp);
+        // As far as the first sample with a snap: the change lies before it.
+        let snaps = |share: &f64| family.passage(&[*share]).is_some_and(|passage| passage.snaps > 0);
+        let Some(first) = samples.iter().position(|share| !go_on() || snaps(share)) else { return Ok(None) };
+        let from = first.saturating_sub(1);
+        let changes = family.changes(0, &[0.0], &samples[from..=first], EXACTLY, go_on);
+        let change = changes.into_iter().find(|change| change.snaps[0] == 0 && change.snaps[1] > 0);
+        Ok(change.map(|change| Self {
+            amplitude_over_wavelength: family.axes[0].value(change.share),
+            cause: change.cause,
+        }))
+    }
+}
