@@ -7,7 +7,7 @@ use pulloff::explorer::walk::{Action, Outcome, Request, walk};
 use pulloff::explorer::{CurveData, NodeKind};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Control, Start};
+use pulloff_engine::problem::{Begin, Control, Start};
 use pulloff_engine::quasistatic::Turn;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
@@ -22,7 +22,13 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
         material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Exact,
-        path: PathSpec { start: Start::ContactRadius(START), control, end_contact_radius: None, turn: None },
+        path: PathSpec {
+            start: Start::ContactRadius(START),
+            control,
+            end_contact_radius: None,
+            begin: Begin::Disc,
+            turn: None,
+        },
     }
 }
 

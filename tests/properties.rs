@@ -8,7 +8,7 @@
 use pulloff_engine::case::Case;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Control, Start};
+use pulloff_engine::problem::{Begin, Control, Start};
 use pulloff_engine::report::unload::{EventReport, StateReport};
 use pulloff_engine::report::{TraceReport, UnloadReport, json};
 use pulloff_engine::ritz::Grading;
@@ -65,6 +65,7 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
             control: control.in_units(1.0 / (modulus * radius)),
             start,
             end_contact_radius: None,
+            begin: Begin::Disc,
             turn: None,
         },
     }
@@ -314,7 +315,13 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
         material: Material { effective_modulus: 1.0, work_of_adhesion: gamma, range_of_action: None },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
-        path: PathSpec { control, start: Start::ContactRadius(start), end_contact_radius: None, turn: None },
+        path: PathSpec {
+            control,
+            start: Start::ContactRadius(start),
+            end_contact_radius: None,
+            begin: Begin::Disc,
+            turn: None,
+        },
     }
 }
 

@@ -14,6 +14,7 @@ use super::walk::{Action, Outcome};
 use crate::store::Source;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::changes;
+use pulloff_engine::problem::Begin;
 use std::sync::Arc;
 
 /// Most lines kept, and bytes in them: half of what a script may have.
@@ -114,7 +115,8 @@ impl Journal {
     }
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
-        let replay = Replay { preset: preset.clone(), inward: true, length: FIRST_LENGTH };
+        let inward = preset.path.begin == Begin::Disc;
+        let replay = Replay { preset: preset.clone(), inward, length: FIRST_LENGTH };
         let (start, replay) = (Some(Box::new(Beginning { source, preset })), Some(Box::new(replay)));
         *self = Self { start, replay, ..Self::default() };
     }
@@ -162,12 +164,17 @@ impl Journal {
                 self.sync(preset, way, false);
                 self.write(&Id::Jump.into());
             }
+            Action::Begin => {
+                self.sync(preset, None, false);
+                self.write(&Id::Restart.into());
+                self.turned(false);
+            }
             Action::MoveTo(s) => {
                 let case = &walking.curve.case;
                 self.sync(preset, None, false);
                 if s.total_cmp(&case.start).is_eq() {
                     self.write(&Id::Restart.into());
-                    self.turned_inward();
+                    self.turned(true);
                 } else {
                     self.write(&Command::MoveTo(product(s, case.units().length)));
                 }
@@ -175,7 +182,7 @@ impl Journal {
             Action::MoveToEvent { event, .. } => {
                 self.sync(preset, None, false);
                 self.write(&Command::SelectEvent(event + 1));
-                self.turned_inward();
+                self.turned(true);
             }
         }
     }
@@ -192,9 +199,10 @@ impl Journal {
         }
     }
 
-    fn turned_inward(&mut self) {
+    /// A command of before leaves the walk turned so.
+    pub(super) fn turned(&mut self, inward: bool) {
         if let Some(replay) = &mut self.replay {
-            replay.inward = true;
+            replay.inward = inward;
         }
     }
 

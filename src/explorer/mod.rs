@@ -31,6 +31,7 @@
 //! | [`walk`] | steps, runs and jumps along the curve |
 //! | [`export`], [`job`], [`files`], [`walk_table`] | opening, saving and exporting |
 //! | [`data`] | the profiles of a folder, to choose from |
+//! | [`follow`] | edges of rings, followed through a change of the problem |
 //! | `saves` | saves that follow each other faster than they are answered |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions on disk |
@@ -52,6 +53,7 @@ pub mod driver;
 pub mod effect;
 pub mod export;
 pub mod files;
+pub mod follow;
 pub mod history;
 pub mod job;
 pub mod journal;

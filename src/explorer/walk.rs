@@ -4,7 +4,8 @@
 
 use super::command::Id;
 use super::curve::CurveData;
-use super::node::NodeKind;
+use super::follow::Before;
+use super::node::{Node, NodeKind};
 use super::setting::Setting;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
@@ -44,7 +45,18 @@ pub enum Action {
     Solve {
         /// The state before the change, in the user's units.
         state: State,
+        /// Its edges, where there are rings.
+        rings: Option<Box<Before>>,
     },
+    /// The first touch of bodies that were apart, and what it jumps to.
+    Begin,
+}
+
+impl Action {
+    /// Solves the state of a node again for other values.
+    pub fn solve(node: &Node) -> Self {
+        Self::Solve { state: node.state.in_units(node.setting.units()), rings: Before::of(node) }
+    }
 }
 
 /// One request.
@@ -116,7 +128,9 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
             None => return Outcome::Stopped("the curve has changed meanwhile".to_owned()),
         },
-        Action::Solve { state } => {
+        Action::Begin => walk.first_touch(&mut arrive),
+        Action::Solve { state, rings: Some(before) } => before.follow(&request.curve, state, &mut arrive),
+        Action::Solve { state, rings: None } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
             walk.solve(value, state.contact_radius / units.length, &mut arrive)
@@ -146,7 +160,12 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         }
         WalkEnd::Failed(WalkFailure::NotSolved) => {
             let held = control_name(request.control);
-            Outcome::Stopped(format!("no equilibrium at this {held} near the old contact radius"))
+            Outcome::Stopped(match request.action {
+                Action::Solve { rings: Some(_), .. } => {
+                    format!("no equilibrium of these contacts at this {held} near the old edges")
+                }
+                _ => format!("no equilibrium at this {held} near the old contact radius"),
+            })
         }
         WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
     }
@@ -164,6 +183,7 @@ fn made(request: &Request, reached: Reached) -> Made {
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
         Arrival::Limit(ahead) => (NodeKind::Limit, ahead),
+        Arrival::Touch(_) if request.action == Action::Begin => (NodeKind::Start, None),
         Arrival::Touch(radius) => (NodeKind::Touch(radius), None),
         Arrival::Jump(event) => (NodeKind::Jump(event), None),
         Arrival::Moved => (NodeKind::Moved, None),
@@ -177,7 +197,7 @@ fn made(request: &Request, reached: Reached) -> Made {
         admissibility,
         digits,
         from_exact: exact,
-        begins: matches!(request.action, Action::MoveTo(_) | Action::MoveToEvent { .. }),
+        begins: matches!(request.action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Begin),
         kind,
         ahead,
         point,

@@ -11,7 +11,7 @@ use super::schema::{RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE, TUR
 use super::shape;
 use super::values::Values;
 use crate::gap::Gap;
-use crate::problem::Start;
+use crate::problem::{Begin, Start};
 use crate::quasistatic::cycle::Turn;
 use crate::units::Quantity;
 
@@ -67,6 +67,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             control: given.control("path.control"),
             start,
             end_contact_radius: values.contains_key(end).then(|| given.number(end)),
+            begin: if given.text("path.begin") == Begin::Touch.name() { Begin::Touch } else { Begin::Disc },
             turn,
         },
         files,

@@ -9,7 +9,7 @@ use crate::gap::{
     shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::Measured, shapes::PowerLaw,
     shapes::RandomWaves, shapes::Smoothing,
 };
-use crate::problem::{Control, Start};
+use crate::problem::{Begin, Control, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use proptest::prelude::*;
@@ -27,6 +27,7 @@ pub fn wavy() -> Preset {
             control: Control::Displacement,
             start: Start::ContactRadius(0.5),
             end_contact_radius: Some(0.002),
+            begin: Begin::Disc,
             turn: None,
         },
         files: FILES,
@@ -75,6 +76,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                     control,
                     start,
                     end_contact_radius: end.map(|f| f * over * radius),
+                    begin: Begin::Disc,
                     turn: None,
                 },
                 files: FILES,

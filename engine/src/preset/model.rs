@@ -16,7 +16,7 @@ use super::measured::{self, Files};
 use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
 use crate::gap::shapes::Measured;
-use crate::problem::{Control, Problem, Reduced, Start};
+use crate::problem::{Begin, Control, Problem, Reduced, Start};
 use crate::quasistatic::cycle::Turn;
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
@@ -80,6 +80,8 @@ pub struct PathSpec {
     /// The contact radius at which the path ends; `None` leaves it to follow the start
     /// (see [`Preset::end_contact_radius`]).
     pub end_contact_radius: Option<f64>,
+    /// Where a walk by hand begins.
+    pub begin: Begin,
     /// Where a loop turns round; `None` leaves it to the contact radius at the start of the unloading.
     pub turn: Option<Turn>,
 }
@@ -116,7 +118,13 @@ impl Preset {
             material,
             gap,
             basis: BasisSpec::Exact,
-            path: PathSpec { start, control: Control::Displacement, end_contact_radius: None, turn: None },
+            path: PathSpec {
+                start,
+                control: Control::Displacement,
+                end_contact_radius: None,
+                begin: Begin::Disc,
+                turn: None,
+            },
             files: Files::NONE,
         }
     }

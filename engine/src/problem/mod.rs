@@ -15,4 +15,4 @@ pub mod start;
 pub use control::Control;
 pub use groups::Groups;
 pub use reduced::{Problem, Reduced, Units};
-pub use start::Start;
+pub use start::{Begin, Start};

@@ -20,3 +20,24 @@ impl Start {
         }
     }
 }
+
+/// Where a walk along the equilibria begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Begin {
+    /// With the disc at which the path starts, to be pulled off.
+    #[default]
+    Disc,
+    /// With bodies apart: at the first touch and what it jumps to, to be pressed on.
+    Touch,
+}
+
+impl Begin {
+    /// Its words, in the order of the variants.
+    pub const NAMES: [&'static str; 2] = ["disc", "touch"];
+
+    /// Its word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[usize::from(self == Self::Touch)]
+    }
+}

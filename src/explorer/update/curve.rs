@@ -63,8 +63,7 @@ pub(super) fn curve_came(
             let lines = model.shown_events().len() + model.shown_inadmissible().len();
             model.event = model.event.min(lines.saturating_sub(1));
             if first {
-                begin_walk(model, &curve);
-                return None;
+                return begin_walk(model, &curve);
             }
             let is_tried = std::mem::take(&mut model.is_tried);
             if model.walking.is_some() {
@@ -81,8 +80,8 @@ pub(super) fn curve_came(
 /// The walker's state solved for the values of the curve, where it is not on it.
 pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
     let node = model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
-    let state = node.state.in_units(node.setting.units());
-    Some(walk(model, Action::Solve { state }))
+    let again = Action::solve(node);
+    Some(walk(model, again))
 }
 
 /// The admissibility of the curve on the screen is known.

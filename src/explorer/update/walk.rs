@@ -8,6 +8,7 @@ use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::requests::{stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
+use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::State;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
@@ -29,7 +30,10 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
         return Vec::new();
     }
     let control = curve.case.control;
-    let moves = matches!(action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Solve { .. });
+    let moves = matches!(
+        action,
+        Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Solve { .. } | Action::Begin
+    );
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {
@@ -103,6 +107,17 @@ pub(super) fn walked(
             }
         }
         Outcome::Ended(reason) => model.tell(Level::Info, reason),
+        Outcome::Stopped(reason) if model.history.current().is_none() => {
+            model.inward = true;
+            model.journal.turned(true);
+            if let Some(curve) = model.curve.clone() {
+                begin_with_disc(model, &curve);
+            }
+            model.tell(
+                Level::Failure,
+                format!("there is no first touch: {reason}; the walk begins with the disc"),
+            );
+        }
         Outcome::Stopped(reason) => {
             if is_unsolved {
                 mark_stale(model, id, &reason);
@@ -119,9 +134,9 @@ pub(super) fn walked(
         .filter(|node| {
             !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
         })
-        .map(|node| node.state.in_units(node.setting.units()));
-    if let (Some(state), false) = (outdated, model.is_computing()) {
-        return Some(walk(model, Action::Solve { state }));
+        .map(Action::solve);
+    if let (Some(again), false) = (outdated, model.is_computing()) {
+        return Some(walk(model, again));
     }
     None
 }
@@ -164,12 +179,16 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
-/// Back to the start state; without a curve, that is asked for again.
+/// Back to where the walk begins; without a curve, that is asked for again.
 pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
     if !model.is_computing() && !model.shows_its_curve() {
         // Given up or failed before: asked for again.
         return vec![want_curve(model)];
+    }
+    if model.preset.path.begin == Begin::Touch {
+        model.inward = false;
+        return walk(model, Action::Begin);
     }
     model
         .curve
@@ -190,14 +209,29 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
+/// The first state of the walk: the start of the curve, or the landing after the first touch. `None`: the commands that wait may go on.
+pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) -> Option<Vec<Effect>> {
+    let preset = &curve.setting.preset;
+    let apart = preset.path.begin == Begin::Touch;
+    let (source, preset) = (model.source.clone(), preset.clone());
+    let effects = apart.then(|| {
+        model.inward = false;
+        walk(model, Action::Begin)
+    });
+    model.journal.begin(source, preset);
+    if !apart {
+        begin_with_disc(model, curve);
+    }
+    effects
+}
+
 /// The first state of the walk: the start of the curve.
-pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) {
+fn begin_with_disc(model: &mut Model, curve: &Arc<CurveData>) {
     let drawn = &curve.base.curve;
     let Some(point) = drawn.equilibrium.explicit(drawn.outermost()) else { return };
     let (Some(stiffness), Some(admissibility)) = (curve.base.stiffness, curve.base.start) else { return };
     let state = curve.base.curve.equilibrium.state(&point);
     let control = curve.case.control;
-    model.journal.begin(model.source.clone(), curve.setting.preset.clone());
     model.history.push(Node {
         parent: None,
         kind: NodeKind::Start,

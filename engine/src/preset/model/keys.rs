@@ -55,6 +55,7 @@ impl Preset {
                 Control::Stiffness(k) => k.into(),
                 Control::Displacement | Control::Force => return None,
             },
+            "path.begin" => path.begin.name().into(),
             "path.end_contact_radius" => path.end_contact_radius?.into(),
             key if path.turn.and_then(turn_key) == Some(key) => path.turn?.value().into(),
             key if key == start_key(path.start) => path.start.value().into(),

@@ -23,6 +23,7 @@ fn another(key: &str) -> Value {
         "basis.rings" | "basis.functions" => 77.into(),
         "basis.grading" => "edge".into(),
         "path.control" => Control::Force.into(),
+        "path.begin" => "touch".into(),
         "path.end_contact_radius" => 0.003.into(),
         "path.turn_approach" => 0.1.into(),
         "path.turn_force" => 0.05.into(),
@@ -46,7 +47,7 @@ fn the_table_is_total() {
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
     }
-    let PathSpec { control: _, start: _, end_contact_radius: _, turn: _ } = path;
+    let PathSpec { control: _, start: _, end_contact_radius: _, begin: _, turn: _ } = path;
     match gap {
         Shape::Sphere { radius_of_curvature: _ }
         | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ }
@@ -102,6 +103,7 @@ fn the_table_is_total() {
         "path.start_approach",
         "path.start_force",
         "path.end_contact_radius",
+        "path.begin",
         "path.turn_approach",
         "path.turn_force",
         "path.turn_contact_radius",

@@ -4,6 +4,7 @@ use super::{
     Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
     SYSTEMS, TURN_KEYS,
 };
+use crate::problem::Begin;
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
 
@@ -228,6 +229,13 @@ pub static PARAMETERS: &[Parameter] = &[
     .or(Fallback::Described("none: another start is used")),
     length("path.end_contact_radius", "s end", "contact radius at which the path ends", Kind::Positive)
         .or(Fallback::Described("0.004 x the contact radius at the start")),
+    row(
+        "path.begin",
+        "begin",
+        "where a walk begins: with the disc of the start, or apart, at the first touch",
+        Kind::Choice(&Begin::NAMES),
+    )
+    .or(Fallback::Text(Begin::NAMES[0])),
     length(
         TURN_KEYS[0],
         "delta turn",
