@@ -237,7 +237,7 @@ fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<I
     })?;
     let state = equilibrium.state(&point);
     let curve = Arc::clone(curve);
-    Ok(Inside::compute(&Ask { id: 0, curve, state, exact, barrier: Some(Run::Inward) }))
+    Ok(Inside::compute(&Ask { id: 0, curve, state, rings: None, exact, barrier: Some(Run::Inward) }))
 }
 
 /// A contact radius as typed, in SI or reduced units.

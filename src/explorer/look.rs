@@ -118,6 +118,7 @@ pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
         id: 0,
         curve: Arc::clone(curve),
         state: node.state,
+        rings: node.has_rings().then(|| node.contacts()),
         exact: model.overlays.exact,
         barrier: (!node.is_limit(curve.case.control)).then_some(run),
     });

@@ -383,7 +383,7 @@ impl Model {
     pub fn limit_number(&self) -> Option<usize> {
         let node = self.walker()?;
         let curve = self.curve.as_ref()?;
-        if !node.is_limit(curve.case.control) {
+        if !node.is_limit(curve.case.control) || node.has_rings() {
             return None;
         }
         let s = node.state.contact_radius;

@@ -1,6 +1,7 @@
 //! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
 
 use super::curve::CurveData;
+use pulloff_engine::annuli::Contacts;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::problem::{Control, Units};
 use pulloff_engine::quasistatic::admissible::Judge;
@@ -24,6 +25,8 @@ pub struct Ask {
     /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
     pub state: State,
+    /// Its contacts, reduced, where there is more than a disc.
+    pub rings: Option<Contacts>,
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
     /// The way in which the barrier is wanted; none holds the edge at a limit point.
@@ -35,6 +38,7 @@ impl Ask {
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
             && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
+            && self.rings == other.rings
     }
 
     fn control(&self) -> Control {
@@ -65,14 +69,18 @@ impl Inside {
     pub fn compute(ask: &Ask) -> Self {
         let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
-        let landscape = landscape(ask);
+        let landscape = if ask.rings.is_some() { None } else { landscape(ask) };
+        let rings = ask.rings.as_ref();
+        let rings =
+            rings.and_then(|contacts| Profile::of_contacts(&case.reduced, &case.table, contacts, approach));
         let judge = Judge::new(&case.reduced, &case.table);
         Self {
             id: ask.id,
             units: *case.units(),
             wave: case.reduced.gap.wavelength(),
-            profile: Profile::of(&case.reduced, case.basis.as_ref(), &judge, s, approach),
-            exact: if ask.exact { exact_pressure(ask) } else { Vec::new() },
+            profile: rings
+                .unwrap_or_else(|| Profile::of(&case.reduced, case.basis.as_ref(), &judge, s, approach)),
+            exact: if ask.exact && ask.rings.is_none() { exact_pressure(ask) } else { Vec::new() },
             barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),
             landscape,
         }

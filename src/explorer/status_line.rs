@@ -53,10 +53,15 @@ fn fault(node: &Node) -> Option<String> {
         significant(r, 4)
     });
     Some(match crest {
-        Some(Some(number)) => format!("crest {number} at r {radius} would touch"),
-        Some(None) => format!("the crest at r {radius} would touch"),
+        Some(Some(number)) => format!("crest {number} at r {radius} would touch; {}", real_path()),
+        Some(None) => format!("the crest at r {radius} would touch; {}", real_path()),
         None => format!("the disc would have to pull at r {radius}"),
     })
+}
+
+/// What happens instead of a state that one disc cannot be in.
+fn real_path() -> String {
+    format!("the real path has rings: {} shows its loop, as pulloff cycle does", Id::Events.named())
 }
 
 fn next(model: &Model) -> String {
@@ -104,6 +109,19 @@ fn next(model: &Model) -> String {
             }
         };
     }
+    if let NodeKind::Touch(radius) = node.kind {
+        let radius = with_unit(
+            &node.setting.preset.units,
+            Quantity::Length,
+            radius * node.setting.units().length,
+            false,
+            |r| significant(r, 4),
+        );
+        let [jump, step] = [Id::Jump, Id::Step].map(Id::named);
+        return format!(
+            "The next crest touches at r {radius}: {jump} lets it run to a ring or a larger disc, {step} goes on without it, inadmissible"
+        );
+    }
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
     if node.is_limit(control) {
@@ -137,6 +155,7 @@ fn next(model: &Model) -> String {
 fn limit_hint(model: &Model, node: &Node) -> String {
     let name = match (model.limit_number(), &model.curve) {
         (Some(at), Some(curve)) => format!("Limit point {}/{}", at + 1, curve.limits.len()),
+        _ if node.has_rings() => "Limit point with rings".to_owned(),
         _ => "Limit point outside the curve".to_owned(),
     };
     let [jump, step] = [Id::Jump, Id::Step].map(Id::named);

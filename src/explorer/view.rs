@@ -66,6 +66,8 @@ pub enum View {
     Pressure,
     /// The deformed gap outside the disc of the walker's state.
     Gap,
+    /// The contact of the walker's state from above.
+    Contact,
     /// The potential of bodies and device over s, the control held at the walker's value.
     Energy,
     /// The quasi-static path with what its jumps dissipate, Fig. 10.
@@ -78,12 +80,13 @@ pub enum View {
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::ForceApproach,
         Self::RadiusForce,
         Self::RadiusApproach,
         Self::Pressure,
         Self::Gap,
+        Self::Contact,
         Self::Energy,
         Self::Unloading,
         Self::Cycle,
@@ -98,6 +101,7 @@ impl View {
             Self::RadiusApproach => "radius-approach",
             Self::Pressure => "pressure",
             Self::Gap => "gap",
+            Self::Contact => "contact",
             Self::Energy => "energy",
             Self::Unloading => "unloading",
             Self::Cycle => "cycle",
@@ -117,7 +121,7 @@ impl View {
 
     /// Whether it shows the inside of one state, which a worker has to compute.
     pub fn is_state(self) -> bool {
-        matches!(self, Self::Pressure | Self::Gap | Self::Energy)
+        matches!(self, Self::Pressure | Self::Gap | Self::Contact | Self::Energy)
     }
 
     /// The view `by` places further on, round and round.
@@ -130,12 +134,14 @@ impl View {
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            ContactMap, Cycle, Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce, Unloading,
+            Contact, ContactMap, Cycle, Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce,
+            Unloading,
         };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
             ContactMap => [Cycle, ForceApproach, RadiusForce],
+            Contact => [ForceApproach, Gap, Pressure],
             RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],

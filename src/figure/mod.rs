@@ -14,10 +14,12 @@
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
 //! | [`contact_map`] | the contacts over the way of the control |
 //! | [`state`] | pressure, gap and potential of the walker's state |
+//! | `contact` | its contact from above |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
 pub mod bounds;
+mod contact;
 pub mod contact_map;
 pub mod curves;
 pub mod loops;
@@ -45,7 +47,7 @@ impl Subject<'_> {
             View::Unloading => unloading::figure(self),
             View::Cycle => loops::figure(self),
             View::ContactMap => contact_map::figure(self),
-            View::Pressure | View::Gap | View::Energy => state::figure(self, view),
+            View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
         }
     }
 }

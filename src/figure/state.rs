@@ -1,6 +1,8 @@
-//! The inside of the walker's state: the contact pressure, the gap outside the disc, the potential over the radius.
+//! The inside of the walker's state: the contact pressure, the gap around the contacts, the contact from above, the potential over the
+//! radius.
 
 use super::bounds::Bounds;
+use super::contact;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
@@ -23,9 +25,12 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let (x, y) = match view {
         View::Pressure => (scale.radius_axis("r"), scale.pressure_axis()),
         View::Gap => (scale.radius_axis("r"), scale.length("gap")),
+        View::Contact => (scale.radius_axis("x"), scale.radius_axis("y")),
         _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.case.control)),
     };
-    let mut figure = Figure::empty(view, format!("{} over {}", y.title(), x.symbol), x, y);
+    let title =
+        if view == View::Contact { "contact".to_owned() } else { format!("{} over {}", y.title(), x.symbol) };
+    let mut figure = Figure::empty(view, title, x, y);
     let Some(inside) = subject.inside else {
         figure.missing = Some(match subject.walk.last() {
             Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),
@@ -40,6 +45,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     match view {
         View::Pressure => drawing.pressure(subject.curve.base.theory.exact_name, &mut figure),
         View::Gap => drawing.gap(&mut figure),
+        View::Contact => drawing.contact(&mut figure),
         _ => drawing.energy(&mut figure),
     }
     figure
@@ -76,22 +82,50 @@ impl Drawing<'_> {
         self.radius(self.inside.profile.contact_radius)
     }
 
+    /// The contacts on their axis.
+    fn contacts(&self) -> Vec<[f64; 2]> {
+        self.inside.profile.contacts.iter().map(|edges| edges.map(|r| self.radius(r))).collect()
+    }
+
+    fn contact(&self, figure: &mut Figure) {
+        let profile = &self.inside.profile;
+        let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
+        let crests = self.crests(0.0, end).map(|r| self.radius(r));
+        contact::lay(figure, &self.contacts(), crests, self.radius(end));
+    }
+
+    /// The edges as marks; the axis is none.
+    fn edges(&self, figure: &mut Figure) {
+        let edges = self.contacts().into_iter().flatten().filter(|r| *r > 0.0);
+        figure.marks.extend(edges.map(|r| Mark { sign: Sign::Edge, at: (r, 0.0) }));
+    }
+
     fn pressure(&self, exact_name: &str, figure: &mut Figure) {
         let edge = self.edge();
         let place = |r: f64, p: f64| (self.radius(r), self.stress(p));
         let computed: Vec<(f64, f64)> =
             self.inside.profile.inside.iter().map(|at| place(at.radius, at.pressure)).collect();
         let exact: Vec<(f64, f64)> = self.inside.exact.iter().map(|(r, p)| place(*r, *p)).collect();
-        let seen = computed.iter().chain(&exact).filter(|at| at.0 <= FITTED * edge).copied();
+        let contacts = self.contacts();
+        let is_seen = |at: &&(f64, f64)| {
+            contacts.iter().any(|[inner, outer]| {
+                let margin = (1.0 - FITTED) * (outer - inner);
+                (*inner == 0.0 || at.0 >= inner + margin) && at.0 <= outer - margin && at.0 >= *inner
+            })
+        };
+        let seen = computed.iter().chain(&exact).filter(is_seen).copied();
         figure.bounds = Bounds::of(seen.chain([(0.0, 0.0), (edge, 0.0)]));
         figure.lines.push(Line::new(Role::Zero, "", vec![(0.0, 0.0), (edge, 0.0)]));
         if !exact.is_empty() {
             figure.lines.push(Line::new(Role::Exact, exact_name, exact));
         }
-        figure.lines.push(Line::new(Role::Body, "pressure", computed));
+        for [inner, outer] in &contacts {
+            let of = computed.iter().filter(|at| at.0 >= *inner && at.0 <= *outer).copied().collect();
+            figure.lines.push(Line::new(Role::Body, "pressure", of));
+        }
         let crests = self.crests(0.0, self.inside.profile.contact_radius);
         figure.marks.extend(crests.map(|r| Mark { sign: Sign::Crest, at: (self.radius(r), 0.0) }));
-        figure.marks.push(Mark { sign: Sign::Edge, at: (edge, 0.0) });
+        self.edges(figure);
     }
 
     fn gap(&self, figure: &mut Figure) {
@@ -109,26 +143,48 @@ impl Drawing<'_> {
         let undeformed = line(&|at| at.undeformed - profile.approach);
         let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
         let last = self.radius(end);
-        let from = (edge - INSIDE * (last - edge)).max(0.0);
+        let contacts = self.contacts();
+        let first = contacts.first().map_or(edge, |contact| contact[1]);
+        let from = (first - INSIDE * (last - edge)).max(0.0);
         figure.bounds = Bounds::of(deformed.iter().chain(&undeformed).copied().chain([(from, 0.0)]));
+        // The gaps between contacts, and what lies outside them.
+        let holes = profile.contacts.windows(2).map(|pair| [pair[0][1], pair[1][0]]);
+        let axis = profile.contacts.first().filter(|first| first[0] > 0.0).map(|first| [0.0, first[0]]);
+        let gaps = axis.into_iter().chain(holes).chain([[profile.contact_radius, end]]);
+        let gaps: Vec<[f64; 2]> = gaps.map(|ends| ends.map(|r| self.radius(r))).collect();
+        let part = |line: &[(f64, f64)], [lo, hi]: [f64; 2]| -> Vec<(f64, f64)> {
+            line.iter().filter(|at| at.0 >= lo && at.0 <= hi).copied().collect()
+        };
         let crests: Vec<Mark> = self
-            .crests(profile.contact_radius, end)
+            .crests(0.0, end)
             .filter_map(|r| {
                 let at = self.radius(r);
-                Some(Mark { sign: Sign::Crest, at: (at, between(&deformed, at)?) })
+                let gap = gaps.iter().find(|[lo, hi]| at > *lo && at < *hi)?;
+                Some(Mark { sign: Sign::Crest, at: (at, between(&part(&deformed, *gap), at)?) })
             })
             .collect();
         figure.lines.push(Line::new(Role::Zero, "", vec![(edge, 0.0), (last, 0.0)]));
-        figure.lines.push(Line::new(Role::Undeformed, "undeformed", undeformed));
-        figure.lines.push(Line::new(Role::Contact, "contact", vec![(0.0, 0.0), (edge, 0.0)]));
-        figure.lines.push(Line::new(Role::Body, "gap", deformed));
+        let lines = |role, name: &str, line: &[(f64, f64)]| -> Vec<Line> {
+            gaps.iter().map(|gap| Line::new(role, name, part(line, *gap))).collect()
+        };
+        figure.lines.extend(lines(Role::Undeformed, "undeformed", &undeformed));
+        let touching = contacts.iter().map(|[inner, outer]| vec![(*inner, 0.0), (*outer, 0.0)]);
+        figure.lines.extend(touching.map(|points| Line::new(Role::Contact, "contact", points)));
+        figure.lines.extend(lines(Role::Body, "gap", &deformed));
         figure.marks.extend(crests);
-        figure.marks.push(Mark { sign: Sign::Edge, at: (edge, 0.0) });
+        self.edges(figure);
     }
 
     fn energy(&self, figure: &mut Figure) {
         let Some(landscape) = &self.inside.landscape else {
-            figure.missing = Some("the state lies outside the curve".to_owned());
+            let rings = self.inside.profile.contacts.len() > 1
+                || self.inside.profile.contacts.iter().any(|at| at[0] > 0.0);
+            let why = if rings {
+                "with rings there is no single radius"
+            } else {
+                "the state lies outside the curve"
+            };
+            figure.missing = Some(why.to_owned());
             return;
         };
         // Counted from the present state.

@@ -79,6 +79,7 @@ pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
         }
         steps.clear();
     };
+    let inner = inner_edges(subject, scale, view);
     let (mut jumps, mut landings) = (Vec::new(), Vec::new());
     for node in &subject.walk {
         if !subject.is_on_curve(node) {
@@ -106,10 +107,43 @@ pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
         }
     }
     finish(&mut steps);
+    figure.lines.extend(inner);
     figure.lines.extend(jumps);
     figure.marks.extend(landings);
     if let Some(node) = subject.walk.last() {
         let sign = if subject.is_on_curve(node) { Sign::Walker } else { Sign::Stray };
         figure.marks.push(Mark { sign, at: place(node, &node.state) });
     }
+}
+
+/// The edges of the contacts walked but for the outermost, where radii are shown.
+fn inner_edges(subject: &Subject<'_>, scale: Scale<'_>, view: View) -> Vec<Line> {
+    if view == View::ForceApproach {
+        return Vec::new();
+    }
+    let has_rings = |node: &Node| subject.is_on_curve(node) && node.has_rings() && !node.is_apart();
+    let mut lines = Vec::new();
+    for part in subject.walk.chunk_by(|a, b| {
+        has_rings(a)
+            && has_rings(b)
+            && a.point.y().len() == b.point.y().len()
+            && !matches!(b.kind, NodeKind::Jump(_))
+    }) {
+        let Some(first) = part.first().filter(|node| has_rings(node)) else { continue };
+        let edges = first.contacts().edge_count();
+        let place = |node: &&Node, edge: usize| {
+            let state = node.state.in_units(node.setting.units());
+            let radius = node.contacts().edges().get(edge).map_or(f64::NAN, |edge| edge.radius);
+            scale.place(view, [state.approach, state.force, radius * node.setting.units().length])
+        };
+        lines.extend((0..edges.saturating_sub(1)).map(|edge| {
+            // A state alone is drawn as a line of no length.
+            let mut points: Vec<(f64, f64)> = part.iter().map(|node| place(node, edge)).collect();
+            if let [only] = points[..] {
+                points.push(only);
+            }
+            Line::new(Role::Walk, "walked", points)
+        }));
+    }
+    lines
 }

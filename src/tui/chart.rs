@@ -174,6 +174,17 @@ impl Chart {
         Some(Rect { x: inner.x + gutter, width: inner.width - gutter, height: inner.height - 1, ..inner })
     }
 
+    /// Widens the axes so that a circle is round in a frame of this area: a cell is twice as high as wide.
+    pub fn make_even(&mut self, area: Rect) {
+        let Some(plot) = self.plot(area) else { return };
+        let [x, y] = [self.bounds.x, self.bounds.y].map(|[lo, hi]| hi - lo);
+        let (across, upwards) = (f64::from(plot.width), 2.0 * f64::from(plot.height));
+        let unit = (x / across).max(y / upwards);
+        let spare = 0.5 * (unit * across - x);
+        self.bounds.x = [self.bounds.x[0] - spare, self.bounds.x[1] + spare];
+        self.bounds.y[1] = self.bounds.y[0] + unit * upwards;
+    }
+
     /// Areas and curves, whole lines over dots and dashes.
     fn draw_lines(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
         let hatching = theme.hatch_marker();

@@ -9,9 +9,13 @@
 //! r = s√(1 + ζ²) with even steps in ζ near the edge and steps by the wave further out.
 
 use super::admissible::{Crest, Judge};
-use crate::disc::Basis;
-use crate::gap::Gap;
+use crate::annuli::around::BESIDE;
+use crate::annuli::{Around, Contacts, Ground, Wanted};
+use crate::disc::{Basis, Table};
+use crate::gap::{Gap, wave_index};
 use crate::problem::Reduced;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Points of the gap per wave.
 const POINTS_PER_WAVE: f64 = 20.0;
@@ -44,13 +48,15 @@ pub struct Outside {
 /// A state across the radius, in reduced units, from the axis outward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// s.
+    /// The outermost edge: of one disc s.
     pub contact_radius: f64,
+    /// Where the bodies touch, as [inner, outer]; a disc is [0, s].
+    pub contacts: Vec<[f64; 2]>,
     /// δ.
     pub approach: f64,
     /// The pressure, finite and dense towards the edge. Rings give their values at mid-ring: theirs is a step function.
     pub inside: Vec<Inside>,
-    /// The gap from the edge outward, as far as it is known.
+    /// The gap outside the contacts, from the axis outward, as far as it is known: 0 at their edges.
     pub outside: Vec<Outside>,
     /// The crest outside at which the bodies come nearest; `None` where the gap only grows.
     pub nearest: Option<Crest>,
@@ -73,7 +79,66 @@ impl Profile {
         let outside =
             outside.map(|((&radius, undeformed), gap)| Outside { radius, gap, undeformed }).collect();
         let nearest = judge.nearest_crest(s, delta);
-        Self { contact_radius: s, approach: delta, inside, outside, nearest }
+        Self { contact_radius: s, contacts: vec![[0.0, s]], approach: delta, inside, outside, nearest }
+    }
+
+    /// The profile of a disc and rings, or of rings alone, at the approach `delta`; `None` where there is no such state.
+    pub fn of_contacts(
+        problem: &Reduced,
+        table: &Arc<Table>,
+        contacts: &Contacts,
+        delta: f64,
+    ) -> Option<Self> {
+        let outermost = contacts.outermost();
+        let outer = radii(outermost, problem.gap.feature_length());
+        let reach = outer.last().copied().unwrap_or(outermost);
+        let ground = Ground::new(Arc::clone(table), reach, &mut || true).ok()?;
+        let state = ground.state(contacts, Wanted::Values).ok()?;
+        let around = Around::new(&ground, &state, delta);
+        let count =
+            |lo: f64, hi: f64| (POINTS_PER_WAVE * (hi - lo) / ground.wave).clamp(POINTS[0], POINTS[1]).ceil();
+        // Shares of an interval, dense towards both ends, without them.
+        let shares = |count: f64| {
+            std::iter::successors(Some(0.5), |j| Some(j + 1.0))
+                .take_while(move |j| *j < count)
+                .map(move |j| (FRAC_PI_2 * j / count).sin().powi(2))
+        };
+        let mut inside = Vec::new();
+        for [lo, hi] in contacts.intervals() {
+            inside.extend(shares(count(lo, hi)).map(|share| {
+                let radius = lo + (hi - lo) * share;
+                Inside { radius, pressure: around.pressure(radius) }
+            }));
+        }
+        let at = |radius: f64, gap: f64| Outside { radius, gap, undeformed: problem.gap.jet(radius).value };
+        let beside = BESIDE * ground.wave;
+        let mut outside = Vec::new();
+        for [lo, hi] in contacts.gaps() {
+            outside.push(if lo > 0.0 { at(lo, 0.0) } else { at(0.0, around.gap(0.0)) });
+            let inner = shares(count(lo, hi)).map(|share| lo + (hi - lo) * share);
+            // Beside an edge the sums are poor: there the gap is drawn from the edge.
+            let clear = inner.filter(|r| hi - r > beside && (lo == 0.0 || r - lo > beside));
+            outside.extend(clear.map(|r| at(r, around.gap(r))));
+            outside.push(at(hi, 0.0));
+        }
+        outside.push(at(outermost, 0.0));
+        let known = outer.into_iter().filter(|r| *r > outermost + beside && *r <= ground.reach());
+        outside.extend(known.map(|r| at(r, around.gap(r))));
+        let wave = problem.gap.wavelength();
+        let crests = around.crests(ground.can_touch_up_to(delta));
+        let nearest = crests.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|crest| Crest {
+            radius: crest.radius,
+            gap: crest.gap,
+            wave: wave_index(crest.radius, wave),
+        });
+        Some(Self {
+            contact_radius: outermost,
+            contacts: contacts.intervals(),
+            approach: delta,
+            inside,
+            outside,
+            nearest,
+        })
     }
 }
 
@@ -136,6 +201,41 @@ mod tests {
             assert_eq!(profile.nearest, None);
             assert!(profile.outside[0].gap.abs() < 1e-14 && profile.outside.last().unwrap().gap > 0.0);
         }
+    }
+
+    #[test]
+    fn of_rings_it_bears_their_force_and_touches_at_their_edges() {
+        let problem = problem(0.0025, 1e-4);
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let ground = Ground::new(Arc::clone(&table), 0.5, &mut || true).unwrap();
+        // A state of the loop with a disc and one ring.
+        let contacts = Contacts { disc: 0.064, rings: vec![[0.0879, 0.1061]] };
+        let delta = 0.0066;
+        let state = ground.state(&contacts, Wanted::Values).unwrap();
+        let profile = Profile::of_contacts(&problem, &table, &contacts, delta).unwrap();
+        assert_eq!(profile.contacts, contacts.intervals());
+        let force: f64 = profile
+            .contacts
+            .iter()
+            .map(|[lo, hi]| {
+                let of: Vec<&Inside> =
+                    profile.inside.iter().filter(|at| at.radius > *lo && at.radius < *hi).collect();
+                // Trapezia, to what the singular ends leave.
+                of.windows(2)
+                    .map(|p| {
+                        let [a, b] = [p[0], p[1]].map(|at| 2.0 * PI * at.radius * at.pressure);
+                        0.5 * (a + b) * (p[1].radius - p[0].radius)
+                    })
+                    .sum::<f64>()
+            })
+            .sum();
+        let expected = state.force_at(delta);
+        assert!((force - expected).abs() < 0.05 * expected.abs(), "{force} {expected}");
+        for at in &profile.outside {
+            let on_edge = profile.contacts.iter().flatten().any(|edge| edge.to_bits() == at.radius.to_bits());
+            assert!(at.gap.is_finite() && (!on_edge || at.gap == 0.0), "{at:?}");
+        }
+        assert!(profile.outside.windows(2).all(|pair| pair[0].radius <= pair[1].radius));
     }
 
     #[test]

@@ -67,9 +67,9 @@ macro_rules! commands {
 commands! {
     "Walk along the curve" {
         Step "step" Walker ("number of steps") "step": "one step along the curve; type a number first for that many";
-        NextLimit "next-limit" Walker "next limit": "run to the next limit point of the control";
+        NextLimit "next-limit" Walker "next limit": "run to the next limit point of the control, or to where a crest touches";
         PreviousLimit "previous-limit" Walker "previous": "turn round and run to the previous limit point";
-        Jump "jump" Jump "jump": "let the edge run at constant control to the next stable state";
+        Jump "jump" Jump "jump": "let edges run at constant control to the next stable state; from a touch, with the new contact";
         Run "run" Walker ("number of states") "run": "run and pause";
         MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
         Reverse "reverse" Walker "reverse": "walk the other way";
@@ -105,7 +105,7 @@ commands! {
         Fit "fit" Zoom "fit": "the whole chart again";
         CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
         Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
-        Events "events" Nothing "events": "events on the curve, or walked";
+        Events "events" Nothing "events": "events on the curve, of the loop with rings, or walked";
         Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";
         Overlays "overlays" Curve ("theory") "theory": "theory over the curve: smooth sphere, exact solution, envelope";
         Pin "pin" Curve "pin": "keep this curve to compare the next ones with";

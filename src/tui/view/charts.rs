@@ -21,6 +21,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
         |subject| {
             let figure = subject.figure(view);
             let mut chart = chart(&figure, &app.model.window(view), app.theme);
+            if view == View::Contact {
+                chart.make_even(area);
+            }
             if first {
                 let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
                 let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());

@@ -102,6 +102,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
         Line::from(stable),
     ];
     lines.extend(inadmissible(theme, node));
+    lines.extend(contacts(theme, node));
     // A share of the range of every quantity, said where there is room.
     let step = short(model.length, 3);
     let said = format!("{step} of range");
@@ -115,10 +116,35 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     last.extend(pair(theme, " digits ", &fixed(node.digits, 1)));
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
-    lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
+    if !node.has_rings() {
+        lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
+    }
     lines.extend(stiffness(theme, node));
     lines.extend(known_to(theme, node));
     lines
+}
+
+/// The contacts of a state with rings, from the axis outward, in λ where there is one wave.
+fn contacts(theme: Theme, node: &Node) -> Vec<Line<'static>> {
+    if !node.has_rings() {
+        return Vec::new();
+    }
+    let wave = node.setting.reduced.gap.wavelength();
+    let length = node.setting.units().length;
+    let radius = |r: f64| match wave {
+        Some(wave) => significant(r / wave, 4),
+        None => shown(theme, node, Quantity::Length, r * length, 4),
+    };
+    let all = node.contacts().intervals().into_iter().map(|[inner, outer]| {
+        let (name, text) = if inner > 0.0 {
+            (" ring ", format!("{} to {}", radius(inner), radius(outer)))
+        } else {
+            (" disc ", radius(outer))
+        };
+        let unit = if wave.is_some() { theme.text(" λ") } else { String::new() };
+        Line::from(pair(theme, name, &format!("{text}{unit}")).to_vec())
+    });
+    all.collect()
 }
 
 /// Said of a state that cannot be: r of the crest that would touch, or where the disc would have to pull.

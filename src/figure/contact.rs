@@ -1,0 +1,33 @@
+//! The contact of a state from above: half of it, filled where the bodies touch, with their crests as thin rings.
+
+use super::bounds::Bounds;
+use super::parts::{Area, Figure, Line, Meaning, Role};
+use std::f64::consts::PI;
+
+/// Corners of half a circle.
+const CORNERS: u32 = 180;
+
+/// What is seen outside the outermost edge, as a share of its radius.
+const AROUND: f64 = 0.25;
+
+/// Lays the contacts, as [inner, outer] on the axis of radii, and the crests on a figure.
+pub fn lay(figure: &mut Figure, contacts: &[[f64; 2]], crests: impl Iterator<Item = f64>, seen: f64) {
+    let outermost = contacts.last().map_or(0.0, |contact| contact[1]);
+    let reach = seen.min((1.0 + AROUND) * outermost).max(outermost);
+    figure.bounds = Bounds { x: [-reach, reach], y: [0.0, reach] };
+    for [inner, outer] in contacts {
+        let outline = half(*outer).into_iter().chain(half(*inner).into_iter().rev()).collect();
+        figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
+    }
+    let rings = crests.take_while(|r| *r <= reach);
+    figure.lines.extend(rings.map(|r| Line::new(Role::Undeformed, "crest", half(r))));
+    // The axis is no edge.
+    let edges = contacts.iter().flatten().filter(|r| **r > 0.0);
+    figure.lines.extend(edges.map(|r| Line::new(Role::Edges, "edge", half(*r))));
+}
+
+/// Half a circle about the axis, from the right over the top to the left.
+fn half(radius: f64) -> Vec<(f64, f64)> {
+    let angle = |k: u32| PI * f64::from(k) / f64::from(CORNERS);
+    (0..=CORNERS).map(|k| (radius * angle(k).cos(), radius * angle(k).sin())).collect()
+}
