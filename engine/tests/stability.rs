@@ -272,8 +272,8 @@ fn fold_curves_pass_the_limit_points_of_the_curve() {
             }
         }
         assert_eq!(hits, limits.len(), "{key}");
-        // No pair is born there by turning the device alone.
-        assert_eq!(folds.cusps.is_empty(), key == "compliance", "{key}");
+        // Pairs are born by turning the adhesion or the amplitude.
+        assert!(![ADHESION, AMPLITUDE].contains(&key) || !folds.cusps.is_empty(), "{key}");
     }
 }
 

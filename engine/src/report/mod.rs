@@ -8,6 +8,7 @@
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`unload`] | the unloading as a document |
 //! | [`cycle`] | the loop of loading and unloading as a document |
+//! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
 //! | [`cycle_table`] | a loop as text for a terminal |
@@ -19,6 +20,7 @@
 pub mod columns;
 pub mod cycle;
 pub mod cycle_table;
+pub mod map;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
@@ -29,6 +31,7 @@ pub mod verify;
 
 pub use crate::units::number;
 pub use cycle::CycleReport;
+pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;

@@ -1,0 +1,288 @@
+//! Maps of two numbers, and limit points over one, as a document.
+
+use super::problem::ProblemReport;
+use super::rows::{self, RowsError};
+use super::SCHEMA;
+use crate::case::Case;
+use crate::preset::{BasisSpec, Preset};
+use crate::problem::Control;
+use crate::stability::{Axis, Counts, Family, FamilyError, Folds, Map, MapPoint, Onset, Sort};
+use serde::Serialize;
+
+/// What stands on the ordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ordinate {
+    /// Another number of the preset.
+    Key(Axis),
+    /// The controlled quantity at a limit point: δ, P, or Δ.
+    Control,
+    /// δ.
+    Approach,
+    /// P.
+    Force,
+}
+
+impl Ordinate {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Key(axis) => &axis.key,
+            Self::Control => "control",
+            Self::Approach => "approach",
+            Self::Force => "force",
+        }
+    }
+}
+
+/// A point of a line, in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RowReport {
+    /// The number of its line, from 1; a cusp, swallowtail or landing on a line has the number of that line where it is known.
+    pub line: Option<usize>,
+    /// `fold`, `cusp`, `swallowtail`, `landing` or `start`.
+    pub kind: &'static str,
+    /// The crest at which the limit point is, counted from the axis; null without a wave.
+    pub crest: Option<u32>,
+    /// s.
+    pub contact_radius: f64,
+    /// The number on the x axis; null where it is infinite, the compliance of a dead load.
+    pub x: Option<f64>,
+    /// What stands on the y axis.
+    pub y: Option<f64>,
+    /// δ, P or Δ at the limit point.
+    pub control_value: f64,
+    /// Of a fold, on which side of it the states are stable, `outward` or `inward`; null for the others.
+    pub stable: Option<&'static str>,
+    /// Of a line of a map, whether the number of snaps differs on its two sides; null for the others.
+    pub changes: Option<bool>,
+}
+
+/// The columns of the points as CSV; they never change, new ones come behind them.
+pub const COLUMNS: &[&str] =
+    &["line", "kind", "crest", "contact_radius", "x", "y", "control_value", "stable", "changes"];
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AxisReport {
+    /// The key, the group, `compliance`, or `control`, `approach`, `force`.
+    pub key: String,
+    /// Where it begins and ends; null where it follows from the curves, or has no end.
+    pub from: Option<f64>,
+    /// Its end.
+    pub to: Option<f64>,
+    /// Whether its steps are equal factors.
+    pub logarithmic: bool,
+}
+
+impl AxisReport {
+    fn of(axis: &Axis) -> Self {
+        let end = |x: f64| Some(x).filter(|x| x.is_finite());
+        Self {
+            key: axis.key.clone(),
+            from: end(axis.range[0]),
+            to: end(axis.range[1]),
+            logarithmic: axis.spacing == crate::stability::Spacing::Logarithmic,
+        }
+    }
+}
+
+/// The number of snaps over a grid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CountsReport {
+    /// The numbers of the columns; null for infinity.
+    pub x: Vec<Option<f64>>,
+    /// Those of the rows.
+    pub y: Vec<Option<f64>>,
+    /// The snaps without the pull-off, one list for each row; null where there is no path.
+    pub snaps: Vec<Vec<Option<usize>>>,
+}
+
+/// Where snaps begin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OnsetReport {
+    /// The smallest A/λ at which the preset snaps, with its own adhesion, device and start.
+    pub amplitude_over_wavelength: f64,
+    /// What is controlled.
+    pub control: Control,
+}
+
+/// A map or fold curves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// The preset whose numbers are held.
+    pub problem: ProblemReport,
+    /// What is controlled.
+    pub control: Control,
+    /// The axes.
+    pub x: AxisReport,
+    /// The ordinate.
+    pub y: AxisReport,
+    /// What is to be said of the lines.
+    pub notes: Vec<String>,
+    /// Where snaps begin; null for a gap without a wave, and where none do.
+    pub onset: Option<OnsetReport>,
+    /// The points of the lines, line by line.
+    pub rows: Vec<RowReport>,
+    /// The snaps over the map; null for fold curves.
+    pub counts: Option<CountsReport>,
+}
+
+/// What is said of a preset in rings.
+const EXACT: &str = "the lines are those of the exact equation of one disc, whatever the basis of the preset";
+
+/// Why there is no map.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MapError {
+    /// A family cannot be made.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// The preset cannot be computed.
+    #[error(transparent)]
+    Case(#[from] crate::case::CaseError),
+    /// It was no longer wanted.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl MapReport {
+    /// The map of `preset` over `x` and `y`; with `cells` columns and rows of counts where both are numbers.
+    ///
+    /// # Errors
+    /// [`MapError`].
+    pub fn compute(
+        preset: &Preset,
+        x: Axis,
+        y: &Ordinate,
+        cells: [u32; 2],
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Self, MapError> {
+        let case = Case::prepare(preset, &mut |_| go_on())?;
+        let mut report = Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, &case),
+            control: preset.path.control,
+            x: AxisReport::of(&x),
+            y: AxisReport { key: y.name().to_owned(), from: None, to: None, logarithmic: false },
+            notes: Vec::new(),
+            onset: None,
+            rows: Vec::new(),
+            counts: None,
+        };
+        if preset.basis != BasisSpec::Exact {
+            report.notes.push(EXACT.to_owned());
+        }
+        let found = Onset::of(preset, go_on)?;
+        report.onset = found.map(|onset| OnsetReport {
+            amplitude_over_wavelength: onset.amplitude_over_wavelength,
+            control: preset.path.control,
+        });
+        if let Ordinate::Key(axis) = y {
+            report.y = AxisReport::of(axis);
+            let family = Family::new(preset, vec![x, axis.clone()])?;
+            let mut map = family.map(go_on)?;
+            family.mark_changes(&mut map, go_on);
+            let counts = family.counts(cells, go_on).ok_or(MapError::Cancelled)?;
+            report.rows_of_map(&family, &map);
+            report.counts = Some(CountsReport::of(&family, counts));
+            report.notes.extend(map.notes);
+        } else {
+            let family = Family::new(preset, vec![x])?;
+            let folds = family.folds(go_on)?;
+            report.rows_of_folds(&family, &folds, y);
+        }
+        if go_on() { Ok(report) } else { Err(MapError::Cancelled) }
+    }
+
+    /// The points as CSV.
+    ///
+    /// # Errors
+    /// Only if the rows do not fit the columns, which their types exclude.
+    pub fn csv(&self) -> Result<String, RowsError> {
+        rows::csv(COLUMNS, &self.rows)
+    }
+
+    fn rows_of_map(&mut self, family: &Family, map: &Map) {
+        for (number, line) in map.lines.iter().enumerate() {
+            let kind = match line.sort {
+                Sort::Cusp => "cusp",
+                Sort::Landing => "landing",
+                Sort::Start => "start",
+                Sort::Fold => "fold",
+            };
+            let row = |point: &MapPoint, kind, changes| RowReport {
+                line: Some(number + 1),
+                kind,
+                crest: line.crest,
+                changes,
+                ..RowReport::of(family, point)
+            };
+            let points = line.points.iter().enumerate();
+            self.rows.extend(points.map(|(k, point)| row(point, kind, line.changes.get(k).copied())));
+            self.rows.extend(line.tips.iter().map(|point| row(point, "swallowtail", None)));
+        }
+    }
+
+    fn rows_of_folds(&mut self, family: &Family, folds: &Folds, y: &Ordinate) {
+        let row = |point: &MapPoint| {
+            let mut row = RowReport::of(family, point);
+            let units = family.preset.problem().reduced_by(family.length).units;
+            row.y = Some(match y {
+                Ordinate::Approach => point.approach * units.length,
+                Ordinate::Force => point.force * units.force,
+                Ordinate::Control | Ordinate::Key(_) => row.control_value,
+            });
+            row
+        };
+        for (number, line) in folds.lines.iter().enumerate() {
+            let stable = Some(if line.is_minimum { "outward" } else { "inward" });
+            self.rows.extend(line.points.iter().map(|point| RowReport {
+                line: Some(number + 1),
+                crest: line.crest,
+                stable,
+                ..row(point)
+            }));
+        }
+        let crest = |point: &MapPoint| family.crest(point.contact_radius);
+        for (kind, points) in [("cusp", &folds.cusps), ("landing", &folds.landings)] {
+            self.rows.extend(points.iter().map(|point| RowReport { kind, crest: crest(point), ..row(point) }));
+        }
+    }
+}
+
+impl RowReport {
+    fn of(family: &Family, point: &MapPoint) -> Self {
+        let units = family.preset.problem().reduced_by(family.length).units;
+        let value = |k: usize| {
+            family.axes.get(k).map(|axis| axis.value(point.at[k])).filter(|value| value.is_finite())
+        };
+        let shares = &point.at[..family.axes.len()];
+        let control = family.member(shares).map_or(Control::Displacement, |member| member.control);
+        let unit = if control == Control::Force { units.force } else { units.length };
+        Self {
+            line: None,
+            kind: "fold",
+            crest: None,
+            contact_radius: point.contact_radius * units.length,
+            x: value(0),
+            y: value(1),
+            control_value: control.value(point.approach, point.force) * unit,
+            stable: None,
+            changes: None,
+        }
+    }
+}
+
+impl CountsReport {
+    fn of(family: &Family, counts: Counts) -> Self {
+        let values = |k: usize| {
+            let value = |share: &f64| Some(family.axes[k].value(*share)).filter(|value| value.is_finite());
+            counts.shares[k].iter().map(value).collect()
+        };
+        Self { x: values(0), y: values(1), snaps: counts.cells }
+    }
+}
