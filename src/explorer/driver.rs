@@ -10,6 +10,7 @@ use super::effect::{Check, Effect, Reply, Wish};
 use super::files;
 use super::job::Job;
 use super::loops::LoopWish;
+use super::maps::MapWish;
 use super::model::Model;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
@@ -58,6 +59,7 @@ impl Inline {
             Effect::Loop(wish) => {
                 wish.is_shown.then(|| wish.run(&|| true)).flatten().map(|found| Reply::Loop(Arc::new(found)))
             }
+            Effect::Map(wish) => wish.run(&|| true).map(|found| Reply::Map(Arc::new(found))),
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -110,6 +112,7 @@ pub struct Workers {
     curve: Arc<Slot<Task>>,
     profile: Arc<Slot<Box<Ask>>>,
     loops: Arc<Slot<Box<LoopWish>>>,
+    maps: Arc<Slot<Box<MapWish>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
@@ -167,7 +170,7 @@ impl Workers {
         store: Store,
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
-        let (curve, profile, loops) = (Slot::empty(), Slot::empty(), Slot::empty());
+        let (curve, profile, loops, maps) = (Slot::empty(), Slot::empty(), Slot::empty(), Slot::empty());
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
@@ -179,6 +182,8 @@ impl Workers {
         thread::Builder::new().name("profile".to_owned()).spawn(move || profiles(&slot, &send))?;
         let (slot, send) = (Arc::clone(&loops), reply.clone());
         thread::Builder::new().name("loop".to_owned()).spawn(move || loop_lane(&slot, &send))?;
+        let (slot, send) = (Arc::clone(&maps), reply.clone());
+        thread::Builder::new().name("map".to_owned()).spawn(move || map_lane(&slot, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -196,7 +201,7 @@ impl Workers {
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, loops, walks, files, pins, pins_given_up, stopped, given_up })
+        Ok(Self { curve, profile, loops, maps, walks, files, pins, pins_given_up, stopped, given_up })
     }
 
     /// Hands every effect to its lane, in order.
@@ -215,6 +220,7 @@ impl Workers {
             Effect::StopCurve(id) => drop(self.given_up.fetch_max(id, Ordering::AcqRel)),
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Loop(wish) => self.loops.put(wish),
+            Effect::Map(wish) => self.maps.put(wish),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Pin(number, preset) => {
@@ -280,6 +286,16 @@ fn loop_lane(slot: &Slot<Box<LoopWish>>, reply: &dyn Fn(Reply)) {
         let go_on = || !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
         if let Some(found) = wish.run(&go_on) {
             reply(Reply::Loop(Arc::new(found)));
+        }
+    }
+}
+
+fn map_lane(slot: &Slot<Box<MapWish>>, reply: &dyn Fn(Reply)) {
+    loop {
+        let wish = slot.take();
+        let go_on = || !slot.waiting.load(Ordering::Acquire);
+        if let Some(found) = wish.run(&go_on) {
+            reply(Reply::Map(Arc::new(found)));
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
 use super::loops::{LoopData, LoopWish};
+use super::maps::{MapData, MapWish};
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::walk::{Made, Outcome, Request};
@@ -21,6 +22,8 @@ pub enum Effect {
     Check(Check),
     /// Compute a loop of loading and unloading; an older one still waiting is forgotten.
     Loop(Box<LoopWish>),
+    /// Compute a map of two numbers; an older one still waiting is forgotten.
+    Map(Box<MapWish>),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
@@ -66,6 +69,7 @@ pub enum Reply {
         curve: Arc<CurveData>,
     },
     Loop(Arc<LoopData>),
+    Map(Arc<MapData>),
     Profile(Arc<Inside>),
     Walked {
         id: u64,

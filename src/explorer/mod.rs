@@ -59,6 +59,7 @@ pub mod job;
 pub mod journal;
 pub mod look;
 pub mod loops;
+pub mod maps;
 pub mod model;
 pub mod node;
 pub mod nudge;

@@ -6,6 +6,7 @@ use super::data::Folder;
 use super::history::{History, Mark};
 use super::journal::Journal;
 use super::loops::{self, LoopData, LoopWish};
+use super::maps::{MapData, MapWish};
 use super::node::{Node, NodeKind};
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
@@ -130,6 +131,10 @@ pub struct Model {
     pub cycle: Option<Arc<LoopData>>,
     /// The newest loop asked for.
     pub cycle_wanted: Option<Box<LoopWish>>,
+    /// The map of two numbers; it can be that of values before.
+    pub map: Option<Arc<MapData>>,
+    /// The newest map asked for.
+    pub map_wanted: Option<Box<MapWish>>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -204,6 +209,8 @@ impl Model {
             checking: None,
             cycle: None,
             cycle_wanted: None,
+            map: None,
+            map_wanted: None,
             stiffness: None,
             device: None,
             history: History::default(),

@@ -3,6 +3,7 @@
 use super::effect::{Check, Effect, Wish};
 use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
+use super::maps::MapWish;
 use super::model::{Awaits, Checking, Model};
 use super::node::NodeKind;
 use super::view::{EventSource, View};
@@ -59,6 +60,19 @@ pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
     let wish = LoopWish { id: model.number(), preset: model.preset.clone(), curve, is_shown };
     model.cycle_wanted = Some(Box::new(wish.clone()));
     Some(Effect::Loop(Box::new(wish)))
+}
+
+/// Asks for the map of the values as they are, while it is looked at.
+pub(super) fn want_map(model: &mut Model) -> Option<Effect> {
+    let is_shown = model.shown_views().contains(&View::Map) && !model.is_computing();
+    let is_there = model.map.as_ref().is_some_and(|map| map.is_of(&model.preset));
+    let is_asked = model.map_wanted.as_ref().is_some_and(|wanted| wanted.preset == model.preset);
+    if !is_shown || is_there || is_asked {
+        return None;
+    }
+    let wish = MapWish { id: model.number(), preset: model.preset.clone() };
+    model.map_wanted = Some(Box::new(wish.clone()));
+    Some(Effect::Map(Box::new(wish)))
 }
 
 /// Takes the parameters of the walker's state where the curve on the screen has others.

@@ -23,7 +23,7 @@ use super::effect::{Effect, Reply};
 use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
-use super::requests::{browse, file, stop, want_check, want_curve, want_loop};
+use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map};
 use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
 use super::{background_jobs, look};
@@ -61,6 +61,7 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
+    effects.extend(want_map(model));
     effects
 }
 
@@ -175,6 +176,12 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Reply::Map(found) => {
+            if model.map_wanted.as_ref().is_some_and(|wanted| found.id <= wanted.id) {
+                model.map = Some(found);
+            }
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -193,6 +200,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     effects.extend(look::want_profile(model));
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
+    effects.extend(want_map(model));
     effects
 }
 

@@ -76,11 +76,15 @@ pub enum View {
     Cycle,
     /// The contacts over the way of the control.
     ContactMap,
+    /// The law of stability: the adhesion at which each state is a limit point, over the contact radius.
+    Stability,
+    /// Lines in two numbers at which snaps begin or end.
+    Map,
 }
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::ForceApproach,
         Self::RadiusForce,
         Self::RadiusApproach,
@@ -91,6 +95,8 @@ impl View {
         Self::Unloading,
         Self::Cycle,
         Self::ContactMap,
+        Self::Stability,
+        Self::Map,
     ];
 
     /// Its name.
@@ -106,6 +112,8 @@ impl View {
             Self::Unloading => "unloading",
             Self::Cycle => "cycle",
             Self::ContactMap => "contact-map",
+            Self::Stability => "stability",
+            Self::Map => "map",
         }
     }
 
@@ -134,14 +142,16 @@ impl View {
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            Contact, ContactMap, Cycle, Energy, ForceApproach, Gap, Pressure, RadiusApproach, RadiusForce,
-            Unloading,
+            Contact, ContactMap, Cycle, Energy, ForceApproach, Gap, Map, Pressure, RadiusApproach,
+            RadiusForce, Stability, Unloading,
         };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
             ContactMap => [Cycle, ForceApproach, RadiusForce],
             Contact => [ForceApproach, Gap, Pressure],
+            Stability => [RadiusApproach, ForceApproach, Unloading],
+            Map => [Stability, ForceApproach, Unloading],
             RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
@@ -285,7 +295,7 @@ mod tests {
             view = view.further(1);
         }
         assert_eq!(view, View::ForceApproach);
-        assert_eq!(view.further(View::ALL.len() - 1), View::ContactMap);
+        assert_eq!(view.further(View::ALL.len() - 1), View::Map);
     }
 
     #[test]

@@ -13,6 +13,8 @@
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
 //! | [`contact_map`] | the contacts over the way of the control |
+//! | [`stability`] | the law of stability over the contact radius |
+//! | [`map`] | lines of a map of two numbers, limit points over one |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
@@ -23,10 +25,12 @@ mod contact;
 pub mod contact_map;
 pub mod curves;
 pub mod loops;
+pub mod map;
 pub mod parts;
 pub mod reading;
 pub mod scale;
 pub mod shape;
+pub mod stability;
 pub mod state;
 mod subject;
 pub mod unloading;
@@ -47,6 +51,8 @@ impl Subject<'_> {
             View::Unloading => unloading::figure(self),
             View::Cycle => loops::figure(self),
             View::ContactMap => contact_map::figure(self),
+            View::Stability => stability::figure(self),
+            View::Map => stability::map(self),
             View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
         }
     }

@@ -33,6 +33,20 @@ pub enum Role {
     Device,
     Walk,
     Jump,
+    /// A line of a map across which the number of snaps stays.
+    Unchanged,
+    /// Where a limit point passes the start of the path.
+    Starts,
+    /// Where a jump just reaches, or just passes over, a crest.
+    Landings,
+    /// Where pairs of limit points are born.
+    Cusps,
+    /// The same law under a dead load.
+    Twin,
+    /// The work of adhesion of the preset.
+    Level,
+    /// The law of stability, of the adhesion at which a state is a limit point.
+    Law,
 }
 
 /// A line through points in axis values, its parts in order.
@@ -68,6 +82,12 @@ pub enum Sign {
     /// The walker, in a state of other values than the curve's.
     Stray,
     Walker,
+    /// A pair of limit points is born.
+    Cusp,
+    /// A pair of cusps is born.
+    Swallowtail,
+    /// Where the preset stands on a map.
+    Preset,
     /// A computed value, on a line through all of them.
     Value,
 }

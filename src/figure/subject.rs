@@ -7,7 +7,7 @@ use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
 use pulloff_engine::preset::Preset;
-use pulloff_engine::report::CycleReport;
+use pulloff_engine::report::{CycleReport, MapReport};
 
 /// What figures are built from.
 #[derive(Debug, Clone)]
@@ -22,6 +22,8 @@ pub struct Subject<'a> {
     pub device: Option<[(f64, f64); 2]>,
     /// The loop of loading and unloading, where there is one.
     pub cycle: Option<&'a CycleReport>,
+    /// The map of two numbers, or why there is none, where it is known.
+    pub map: Option<Result<&'a MapReport, &'a str>>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -40,6 +42,7 @@ impl<'a> Subject<'a> {
             inside: model.shown_profile(),
             device: device::line(model),
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
+            map: model.map.as_ref().map(|map| map.report()),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -56,6 +59,7 @@ impl<'a> Subject<'a> {
             inside: None,
             device: None,
             cycle: None,
+            map: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,

@@ -72,6 +72,12 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
         Role::Walk => stroke(BLACK, 0.8, ""),
         Role::Jump => stroke(VERMILLION, 0.8, ""),
+        Role::Unchanged => stroke(GREY, 0.8, "1 2.5"),
+        Role::Starts => stroke(GREY, 0.8, "8 2"),
+        Role::Landings => stroke(VERMILLION, 1.2, "4 1.5"),
+        Role::Cusps | Role::Law => stroke(BLUE, 1.3, ""),
+        Role::Twin => stroke(GREY, 1.0, "5 2"),
+        Role::Level => stroke(BLACK, 0.9, "7 2 1.5 2"),
     }
 }
 
@@ -92,6 +98,9 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Maximum => stamp(MarkerShape::Diamond, VERMILLION, 2.4, "maximum"),
         Sign::Barrier => stamp(MarkerShape::Star, VERMILLION, 3.0, "barrier"),
         Sign::Stray | Sign::Walker => stamp(MarkerShape::Hexagon, BLACK, 2.6, "state"),
+        Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
+        Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
+        Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
         // The axes say what it is.
         Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }

@@ -118,7 +118,9 @@ pub struct Branches {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum BranchError {
     /// Nothing is left.
-    #[error("only {0} rows are left after the range and the segment that are asked for; {END_ROWS} are the fewest")]
+    #[error(
+        "only {0} rows are left after the range and the segment that are asked for; {END_ROWS} are the fewest"
+    )]
     Few(usize),
     /// Rows without an order.
     #[error(
@@ -183,13 +185,19 @@ impl Points {
             return Err(BranchError::NoSegment(asked.segment.map_or("branch", Segment::name)));
         }
         list.sort_by_key(|(branch, _)| branch.segment == Segment::Retraction);
-        let used: Vec<&Point> = list.iter().flat_map(|(branch, _)| branch.attached.iter().chain(&branch.free)).collect();
+        let used: Vec<&Point> =
+            list.iter().flat_map(|(branch, _)| branch.attached.iter().chain(&branch.free)).collect();
         if used.len() < END_ROWS {
             return Err(BranchError::Few(used.len()));
         }
-        let ranges = [range(used.iter().map(|p| p.x)), range(used.iter().map(|p| p.force)), range(used.iter().map(|p| p.radius))];
+        let ranges = [
+            range(used.iter().map(|p| p.x)),
+            range(used.iter().map(|p| p.force)),
+            range(used.iter().map(|p| p.radius)),
+        ];
         let noise = noise(&list, asked, self.steps, ranges);
-        let free: Vec<f64> = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
+        let free: Vec<f64> =
+            list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
         let baseline = median(free);
         let list = list.into_iter().map(|(branch, _)| branch).collect();
         Ok(Branches { abscissa: self.abscissa, list, noise, baseline, turned, ranges, notes, left_out })
@@ -218,10 +226,15 @@ impl Points {
         let most = points.iter().map(|point| point.x).fold(f64::NEG_INFINITY, f64::max);
         let at = points.iter().position(|point| point.x >= most).unwrap_or(0);
         let (before, after) = points.split_at(at);
-        let word = |segment: Segment| format!("no column names the branches: by the order of x it is {}", match segment {
-            Segment::Approach => "an approach",
-            _ => "a retraction",
-        });
+        let word = |segment: Segment| {
+            format!(
+                "no column names the branches: by the order of x it is {}",
+                match segment {
+                    Segment::Approach => "an approach",
+                    _ => "a retraction",
+                }
+            )
+        };
         Ok(if before.len() < FEWEST {
             notes.push(word(Segment::Retraction));
             vec![(Segment::Retraction, points)]
@@ -243,7 +256,11 @@ fn in_order(points: &[Point], indifferent: bool) -> Result<(), BranchError> {
     let whole = range(points.iter().map(|point| point.x));
     let steps: Vec<f64> = points.windows(2).map(|pair| (pair[1].x - pair[0].x).abs() / whole).collect();
     let share = if steps.len() < 20 { 0.0 } else { median(steps).unwrap_or(0.0) };
-    if share > UNORDERED && !indifferent { Err(BranchError::Unordered { share: 100.0 * share }) } else { Ok(()) }
+    if share > UNORDERED && !indifferent {
+        Err(BranchError::Unordered { share: 100.0 * share })
+    } else {
+        Ok(())
+    }
 }
 
 /// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
@@ -408,7 +425,8 @@ fn noise(list: &[(Branch, Vec<Point>)], asked: &Asked, steps: [f64; 3], ranges: 
     for (branch, in_order) in list {
         let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
         rows.sort_unstable();
-        let free: Vec<&Point> = in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
+        let free: Vec<&Point> =
+            in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
         forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
         ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
     }
@@ -440,6 +458,8 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
 
 /// The range of what is a number.
 fn range(values: impl Iterator<Item = f64>) -> f64 {
-    let [lo, hi] = values.filter(|x| x.is_finite()).fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+    let [lo, hi] = values
+        .filter(|x| x.is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
     (hi - lo).max(0.0)
 }

@@ -14,7 +14,7 @@ pub mod points;
 pub mod read;
 pub mod role;
 
-pub use branches::{Asked, Branch, Branches, BranchError, Noise, Span};
+pub use branches::{Asked, Branch, BranchError, Branches, Noise, Span};
 pub use points::{Abscissa, Points, PointsError};
 pub use read::{Column, Measured, ReadError, parse};
 pub use role::{Role, Segment, Spec, SpecError};

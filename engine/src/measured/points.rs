@@ -66,7 +66,9 @@ pub enum PointsError {
     #[error("the file states a spring of {0:?} N/m, and the problem is in reduced units: set units = \"SI\"")]
     ReducedSpring(f64),
     /// Two stiffnesses.
-    #[error("the file states a spring of {file}, and path.control.stiffness is {preset}: one of them is wrong")]
+    #[error(
+        "the file states a spring of {file}, and path.control.stiffness is {preset}: one of them is wrong"
+    )]
     Stiffness {
         /// The file's, safe to show.
         file: String,
@@ -96,7 +98,11 @@ const SAME: f64 = 1e-3;
 ///
 /// # Errors
 /// [`PointsError`] where both do and differ, or the problem has no units.
-pub fn stiffness(file: Option<f64>, control: Control, units: &UnitSystem) -> Result<Option<f64>, PointsError> {
+pub fn stiffness(
+    file: Option<f64>,
+    control: Control,
+    units: &UnitSystem,
+) -> Result<Option<f64>, PointsError> {
     match (file, control) {
         (Some(k), _) if *units == UnitSystem::Reduced => Err(PointsError::ReducedSpring(k)),
         (Some(k), Control::Stiffness(preset)) if (k / preset - 1.0).abs() > SAME => {

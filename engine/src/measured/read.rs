@@ -12,8 +12,7 @@
 
 use super::role::{Place, Role, Segment, Spec, SpecError, dimensions, unit_of};
 use crate::cells::{
-    self, Faults, Head, LARGEST_NUMBER, LONGEST_LINE, Separator, heads, is_header,
-    is_unprintable, remark,
+    self, Faults, Head, LARGEST_NUMBER, LONGEST_LINE, Separator, heads, is_header, is_unprintable, remark,
 };
 use crate::text::{quote, sanitize};
 use crate::units::Unit;
@@ -106,7 +105,9 @@ pub enum Fault {
         text: String,
     },
     /// A branch that is not known.
-    #[error("column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True")]
+    #[error(
+        "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
+    )]
     Segment {
         /// The column, from 1.
         number: usize,
@@ -326,7 +327,11 @@ fn whole((name, unit): Head) -> Head {
     match unit {
         Some(text) if Unit::parse(&text, 0).is_err() => {
             let longer = format!("{name} {text}");
-            if Role::of(&longer).is_some() || Role::of(&name).is_none() { (longer, None) } else { (name, Some(text)) }
+            if Role::of(&longer).is_some() || Role::of(&name).is_none() {
+                (longer, None)
+            } else {
+                (name, Some(text))
+            }
         }
         unit => (name, unit),
     }
@@ -391,8 +396,14 @@ fn wanted(
             column.unit = of_header(column.at, column.role)?;
         }
     } else if spec.0.is_empty() && cells == 2 {
-        notes.push("there is no header: the first column is taken for the approach, the second for the force".to_owned());
-        wanted = vec![Wanted { role: Role::Approach, at: 0, unit: None }, Wanted { role: Role::Force, at: 1, unit: None }];
+        notes.push(
+            "there is no header: the first column is taken for the approach, the second for the force"
+                .to_owned(),
+        );
+        wanted = vec![
+            Wanted { role: Role::Approach, at: 0, unit: None },
+            Wanted { role: Role::Force, at: 1, unit: None },
+        ];
     } else if spec.0.is_empty() {
         return Err(ReadError::Unknown { line, cells, names: String::new() });
     }
@@ -443,8 +454,7 @@ fn row(
             return Err(Fault::Missing { number, what });
         }
         if want.role == Role::Segment {
-            let segment =
-                Segment::of(text).ok_or_else(|| Fault::Segment { number, text: quote(text) })?;
+            let segment = Segment::of(text).ok_or_else(|| Fault::Segment { number, text: quote(text) })?;
             measured.segments.get_or_insert_default().push(segment);
             continue;
         }
@@ -469,4 +479,3 @@ fn last_digit(text: &str) -> f64 {
     let exponent: i32 = exponent.parse().unwrap_or(0);
     10.0_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)).clamp(-300, 300))
 }
-

@@ -49,7 +49,16 @@ impl Segment {
         if is(&["false", "0", "0.0", "approach", "extend", "advance", "loading", "load", "trace", "in"]) {
             Some(Self::Approach)
         } else if is(&[
-            "true", "1", "1.0", "retract", "retraction", "withdraw", "unloading", "unload", "retrace", "out",
+            "true",
+            "1",
+            "1.0",
+            "retract",
+            "retraction",
+            "withdraw",
+            "unloading",
+            "unload",
+            "retrace",
+            "out",
         ]) {
             Some(Self::Retraction)
         } else if is(&["2", "2.0", "pause", "hold", "dwell", "intermediate"]) {
@@ -62,10 +71,24 @@ impl Segment {
 
 /// The roles with the names by which a header says them, in lower case, spaces for underscores.
 const NAMES: [(Role, &[&str]); 6] = [
-    (Role::Approach, &["approach", "indentation", "delta", "δ", "displacement", "depth", "tip position", "penetration"]),
+    (
+        Role::Approach,
+        &["approach", "indentation", "delta", "δ", "displacement", "depth", "tip position", "penetration"],
+    ),
     (
         Role::Position,
-        &["position", "height", "piezo", "z", "stage", "height measured", "height piezo", "z piezo", "piezo height", "extension"],
+        &[
+            "position",
+            "height",
+            "piezo",
+            "z",
+            "stage",
+            "height measured",
+            "height piezo",
+            "z piezo",
+            "piezo height",
+            "extension",
+        ],
     ),
     (Role::Deflection, &["deflection", "defl", "bending"]),
     (Role::Force, &["force", "load", "p", "f", "normal force"]),

@@ -150,7 +150,11 @@ fn an_unordered_file_is_refused_and_one_with_segments_read_backwards_is_the_same
     assert_eq!(right.noise, back.noise);
     let mut random = SplitMix64::new(9);
     for i in (1..rows.len()).rev() {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index below the length")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "an index below the length"
+        )]
         rows.swap(i, (random.unit() * (i + 1) as f64) as usize);
     }
     assert!(matches!(branches(&csv(&rows)), Err(BranchError::Unordered { .. })));
@@ -180,7 +184,9 @@ fn what_a_person_says_of_columns_is_read_or_refused() {
         let message = Spec::parse(said).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
-    for (said, expected) in [("x=9,force=1", "no column 9: a row has 3"), ("x=q,force=1", "no column \"q\"; there is \"a\"")] {
+    for (said, expected) in
+        [("x=9,force=1", "no column 9: a row has 3"), ("x=q,force=1", "no column \"q\"; there is \"a\"")]
+    {
         let message = parse(text.as_bytes(), &Spec::parse(said).unwrap()).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
@@ -207,10 +213,17 @@ fn two_hundred_broken_files_are_a_sentence_each() {
             let lines: Vec<&str> = good.lines().collect();
             let rest = lines[line + 2].split_once(',').unwrap().1;
             let bad = format!("{cell},{rest}");
-            let text = lines[..line + 2].iter().copied().chain([bad.as_str()]).chain(lines[line + 3..].iter().copied());
+            let text = lines[..line + 2]
+                .iter()
+                .copied()
+                .chain([bad.as_str()])
+                .chain(lines[line + 3..].iter().copied());
             let text: Vec<&str> = text.collect();
             let message = parse(text.join("\n").as_bytes(), &Spec::default()).unwrap_err().to_string();
-            assert!(message.starts_with(&format!("line {}: ", line + 3)) && message.contains(expected), "{message}");
+            assert!(
+                message.starts_with(&format!("line {}: ", line + 3)) && message.contains(expected),
+                "{message}"
+            );
             assert!(!message.contains('\n'));
             told += 1;
         }

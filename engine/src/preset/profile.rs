@@ -280,7 +280,8 @@ fn units(
 ) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
     // A header may be parted otherwise than the rows below it.
     let read = |(line, text): (usize, &str)| {
-        let two = |separator| <[Head; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok();
+        let two =
+            |separator| <[Head; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok();
         let heads = two(separator).or_else(|| two(Separator::of(text)));
         heads.map(|heads| (line, heads))
     };

@@ -90,6 +90,14 @@ impl fmt::Display for Value {
     }
 }
 
+impl Value {
+    /// Its number, where it is a real one.
+    #[must_use]
+    pub fn as_number(&self) -> Option<f64> {
+        if let Self::Number(x) = self { Some(*x) } else { None }
+    }
+}
+
 impl From<f64> for Value {
     fn from(x: f64) -> Self {
         Self::Number(x)

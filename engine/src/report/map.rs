@@ -1,12 +1,12 @@
 //! Maps of two numbers, and limit points over one, as a document.
 
+use super::SCHEMA;
 use super::problem::ProblemReport;
 use super::rows::{self, RowsError};
-use super::SCHEMA;
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
-use crate::stability::{Axis, Counts, Family, FamilyError, Folds, Map, MapPoint, Onset, Sort};
+use crate::stability::{Axis, Counts, Family, FamilyError, Folds, Map, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
 
 /// What stands on the ordinate.
@@ -72,6 +72,8 @@ pub struct AxisReport {
     pub to: Option<f64>,
     /// Whether its steps are equal factors.
     pub logarithmic: bool,
+    /// What stands in the middle of a compliance that goes on to infinity; null elsewhere.
+    pub middle: Option<f64>,
 }
 
 impl AxisReport {
@@ -81,7 +83,8 @@ impl AxisReport {
             key: axis.key.clone(),
             from: end(axis.range[0]),
             to: end(axis.range[1]),
-            logarithmic: axis.spacing == crate::stability::Spacing::Logarithmic,
+            logarithmic: axis.spacing == Spacing::Logarithmic,
+            middle: if let Spacing::Share(unit) = axis.spacing { Some(unit) } else { None },
         }
     }
 }
@@ -167,7 +170,13 @@ impl MapReport {
             problem: ProblemReport::new(preset, &case),
             control: preset.path.control,
             x: AxisReport::of(&x),
-            y: AxisReport { key: y.name().to_owned(), from: None, to: None, logarithmic: false },
+            y: AxisReport {
+                key: y.name().to_owned(),
+                from: None,
+                to: None,
+                logarithmic: false,
+                middle: None,
+            },
             notes: Vec::new(),
             onset: None,
             rows: Vec::new(),
@@ -249,7 +258,11 @@ impl MapReport {
         }
         let crest = |point: &MapPoint| family.crest(point.contact_radius);
         for (kind, points) in [("cusp", &folds.cusps), ("landing", &folds.landings)] {
-            self.rows.extend(points.iter().map(|point| RowReport { kind, crest: crest(point), ..row(point) }));
+            self.rows.extend(points.iter().map(|point| RowReport {
+                kind,
+                crest: crest(point),
+                ..row(point)
+            }));
         }
     }
 }

@@ -9,7 +9,7 @@ use super::law::{Edge, Law, root_of};
 use crate::disc::table::Kept;
 use crate::disc::{Exact, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
-use crate::preset::{Invalid, Preset, Value};
+use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
 use crate::quasistatic::start::{StartError, contact_radius};
 use std::sync::{Arc, Mutex};
@@ -122,7 +122,7 @@ impl Family {
             }
             let number = |preset: &Preset| {
                 preset.row(&axis.key).is_some_and(|row| row.kind.is_number())
-                    && preset.get(&axis.key).is_none_or(|value| matches!(value, Value::Number(_)))
+                    && preset.get(&axis.key).is_none_or(|value| value.as_number().is_some())
             };
             if axis.key != COMPLIANCE && !number(preset) {
                 // An unknown key is said as such, with the nearest name.

@@ -9,7 +9,6 @@ use crate::explorer::requests::{stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::problem::Begin;
-use pulloff_engine::quasistatic::State;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
 

@@ -116,9 +116,11 @@ fn mark(mark: &Placed, styles: &Styles) -> Mark {
         | Sign::Minimum
         | Sign::Maximum
         | Sign::Barrier
+        | Sign::Cusp
+        | Sign::Swallowtail
         | Sign::Value => styles.mark,
         Sign::Stray => styles.stray,
-        Sign::Walker => styles.walker,
+        Sign::Walker | Sign::Preset => styles.walker,
     };
     Mark { at: mark.at, letter: letter(mark.sign), style }
 }

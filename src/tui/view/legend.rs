@@ -51,6 +51,7 @@ fn rank(role: Role, theme: Theme) -> u8 {
         | Role::Barrier
         | Role::Device => 1,
         Role::Smooth | Role::Branch => 3,
+        Role::Law | Role::Level | Role::Cusps | Role::Landings => 1,
         Role::Walk | Role::Jump => 5,
         _ => 4,
     }
@@ -65,6 +66,9 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Limit => (1, "limit"),
         Sign::PullOff => (2, "pull-off"),
         Sign::Landing => (2, "landing"),
+        Sign::Cusp => (1, "cusp"),
+        Sign::Swallowtail => (2, "swallowtail"),
+        Sign::Preset => (1, "preset"),
         Sign::Touch => (2, "touch"),
         Sign::Turn => (2, "turn"),
         Sign::Crest => (3, "crest"),

@@ -30,6 +30,11 @@ pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
         Role::Barrier => (Stroke::DashDotted, styles.aid),
         Role::Device => (Stroke::ShortDashed, styles.aid),
         Role::Jump => (Stroke::Marked("j"), styles.jump),
+        Role::Unchanged | Role::Twin => (Stroke::Dotted, styles.smooth),
+        Role::Starts => (Stroke::Sparse, styles.smooth),
+        Role::Landings => (Stroke::Dashed, styles.unstable),
+        Role::Cusps | Role::Law => (Stroke::Solid, styles.stable),
+        Role::Level => (Stroke::LongDashed, styles.aid),
     }
 }
 
@@ -49,6 +54,9 @@ pub fn letter(sign: Sign) -> &'static str {
         Sign::Maximum => "M",
         Sign::Barrier => "B",
         Sign::Stray | Sign::Walker => "@",
+        Sign::Cusp => "C",
+        Sign::Swallowtail => "S",
+        Sign::Preset => "+",
         Sign::Value => "o",
     }
 }

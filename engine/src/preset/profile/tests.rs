@@ -1,9 +1,9 @@
 //! Good files, bad files and files damaged at random.
 
-use crate::text::is_unsafe;
 use super::*;
 use crate::gap::Gap;
 use crate::gap::{shapes::Profile, shapes::Smoothing};
+use crate::text::is_unsafe;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
