@@ -44,6 +44,9 @@ pub enum Failure {
     /// The results of a sweep make no map.
     #[error(transparent)]
     Map(#[from] crate::plot::map::MapError),
+    /// A map could not be computed.
+    #[error(transparent)]
+    Lines(#[from] pulloff_engine::report::map::MapError),
     /// A figure of the paper could not be computed.
     #[error(transparent)]
     Paper(#[from] crate::plot::paper::PaperError),
@@ -158,6 +161,7 @@ impl Failure {
             Self::File(error) => error.can_be_mended(),
             Self::Write(error) => error.can_be_mended(),
             Self::Map(error) => error.can_be_mended(),
+            Self::Lines(error) => error.can_be_mended(),
             Self::Format(error) => error.can_be_mended(),
             Self::Draw(error) => error.can_be_mended(),
             Self::Script { reason, .. } => reason.can_be_mended(),

@@ -19,6 +19,7 @@ mod explore;
 mod failure;
 mod figures;
 mod man;
+mod map;
 mod output;
 mod plot;
 mod presets;
@@ -68,6 +69,8 @@ enum Command {
     Unload(unload::Arguments),
     /// Load from the first touch to a turn and back until the bodies are apart, with rings of contact
     Cycle(cycle::Arguments),
+    /// Find where snaps begin: lines in two numbers of a preset, or its limit points over one
+    Map(map::Arguments),
     /// Draw a view as a figure for print
     Plot(plot::Arguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
@@ -112,6 +115,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Cycle(arguments)) => cycle::run(arguments),
+        Some(Command::Map(arguments)) => map::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),
         Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

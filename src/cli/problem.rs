@@ -9,10 +9,11 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// The names of the subcommands, which no preset can have.
-pub(super) const SUBCOMMANDS: [&str; 13] = [
+pub(super) const SUBCOMMANDS: [&str; 14] = [
     "trace",
     "unload",
     "cycle",
+    "map",
     "plot",
     "figures",
     "sweep",

@@ -43,7 +43,7 @@ impl MapWish {
             .map(|[x, y]| MapReport::compute(&self.preset, x, &Ordinate::Key(y), CELLS, go_on));
         let report = match found {
             Some(Err(MapError::Cancelled)) => return None,
-            Some(found) => found.map_err(|error| Reason::mendable(error.to_string())),
+            Some(found) => found.map_err(|error| Reason::of("", &error)),
             None => Err(Reason::mendable("a gap without adhesion has no limit points to follow")),
         };
         Some(MapData { id: self.id, preset: self.preset.clone(), report })

@@ -6,7 +6,7 @@
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use crate::explorer::View;
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::{AxisReport, RowReport};
@@ -156,4 +156,28 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     figure.bounds = bounds;
     figure.notes.clone_from(&report.notes);
     figure
+}
+
+/// What a preset becomes at a point of the figure, as assignments of its keys.
+pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Key, String)> {
+    let assignment = |axis: &AxisReport, place: f64| {
+        let value = Places::of(axis, preset, report.control, true).value(place);
+        // Of the number alone no more is meant than a few digits.
+        let text = value.map(|value| format!("{:e}", rounded(value)));
+        if axis.key != COMPLIANCE {
+            return Some((Key::Owned(axis.key.clone()), text?));
+        }
+        let control = match value {
+            None => Control::Force,
+            Some(c) if c <= 0.0 => Control::Displacement,
+            Some(c) => Control::Stiffness(rounded(1.0 / c)),
+        };
+        Some((Key::Borrowed("path.control"), control.to_string()))
+    };
+    assignment(&report.x, x).into_iter().chain(assignment(&report.y, y)).collect()
+}
+
+/// A number to four digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -1,7 +1,9 @@
 //! A quantity of a sweep over its two axes: filled contours, and the line from which the edge snaps.
 
 use super::Width;
-use super::svg::{cropped, entry, finish, frame, hatched, hatches, outline, plain};
+use super::ink;
+use super::svg::{cropped, entry, finish, frame, hatched, hatches, line, outline, plain};
+use crate::figure::Line;
 use crate::mend::Mend;
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
@@ -33,6 +35,8 @@ pub struct Map {
     pub cells: Vec<Vec<f64>>,
     /// The snaps in the same places, where the sweep counted them.
     pub snaps: Option<Vec<Vec<f64>>>,
+    /// Lines drawn over it, in the values of its axes.
+    pub lines: Vec<Line>,
 }
 
 /// Why results are not drawn.
@@ -102,7 +106,7 @@ impl Map {
             return Err(MapError::empty(quantity));
         }
         let title = |name: &str| results.title(name);
-        Ok(Self { titles: [title(x), title(y)], quantity: title(quantity), values, cells, snaps })
+        Ok(Self { titles: [title(x), title(y)], quantity: title(quantity), values, cells, snaps, lines: Vec::new() })
     }
 
     /// The map as an SVG document of this width.
@@ -130,6 +134,7 @@ impl Map {
                 .with_line_width(1.2);
             plots.push(line.into());
         }
+        plots.extend(self.lines.iter().flat_map(line));
         let field = ComputedLayout::from_layout(&layout);
         let mut scene = render_multiple(plots, layout);
         if !holes.is_empty() {
@@ -151,7 +156,15 @@ impl Map {
             |snaps: &Vec<f64>| snaps.iter().any(|n| *n < ONE_SNAP) && snaps.iter().any(|n| *n > ONE_SNAP);
         let line = snaps.filter(begins).map(|_| entry("snaps begin", "black", LegendShape::Line, ""));
         let has_holes = self.cells.iter().flatten().any(|cell| !cell.is_finite());
-        line.into_iter().chain(has_holes.then(|| hatched("no value"))).collect()
+        let mut entries: Vec<LegendEntry> =
+            line.into_iter().chain(has_holes.then(|| hatched("no value"))).collect();
+        for line in self.lines.iter().filter(|line| !line.name.is_empty()) {
+            let stroke = ink::stroke(line.role);
+            if entries.iter().all(|entry| entry.label != line.name) {
+                entries.push(entry(&line.name, stroke.color, LegendShape::Line, stroke.dashes));
+            }
+        }
+        entries
     }
 
     /// The cells, with the value of one nearby where there is none: the contours run straight into the hatched places.
@@ -246,6 +259,7 @@ mod tests {
             values: [vec![0.0, 1.0, 2.0], vec![1.0, 10.0, 100.0]],
             cells: vec![vec![1.0, 2.0, 3.0], vec![2.0, f64::NAN, 4.0], vec![3.0, 4.0, 5.0]],
             snaps: Some(vec![vec![0.0, 0.0, 1.0], vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]]),
+            lines: Vec::new(),
         };
         let text = map.svg(Width::ONE_COLUMN);
         let document = roxmltree::Document::parse(&text).unwrap();

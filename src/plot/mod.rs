@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`chart`] | what is drawn: axes, lines, marks, areas; made from a figure of the explorer or by hand |
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
+//! | [`lines`] | lines in two numbers at which snaps begin, limit points over one |
 //! | [`map`] | a quantity of a sweep over its two axes |
 //! | [`paper`] | the figures of the paper, computed again |
 //! | [`range`] | the part of an axis that is asked for |
@@ -15,6 +16,7 @@
 
 pub mod chart;
 pub mod ink;
+pub mod lines;
 pub mod map;
 pub mod paper;
 pub mod range;

@@ -250,7 +250,7 @@ fn plots(chart: &Chart) -> Vec<Plot> {
     plots
 }
 
-fn line(line: &Line) -> Vec<Drawn> {
+pub(super) fn line(line: &Line) -> Vec<Drawn> {
     let Stroke { color, width, dashes } = ink::stroke(line.role);
     line.points
         .split(|(x, y)| !(x.is_finite() && y.is_finite()))

@@ -17,7 +17,7 @@ const LANDING_SAMPLES: u32 = 24;
 const CUSP_CELLS: u32 = 14;
 
 /// On both sides of a line the snaps are counted so far from it, in shares.
-const ASIDE: f64 = 2e-3;
+const ASIDE: f64 = 1e-4;
 
 /// A point of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]

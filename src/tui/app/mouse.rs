@@ -12,7 +12,7 @@
 use super::state::App;
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id, Panel, View};
-use crate::figure::{Subject, nearest};
+use crate::figure::{Subject, map, nearest};
 use crate::tui::layout::Regions;
 use crate::tui::overlay::Overlay;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
@@ -151,6 +151,10 @@ impl App {
     fn go_to(&mut self, view: View, share: (f64, f64), plot: Option<Rect>) -> Vec<Effect> {
         let Some(subject) = Subject::of(&self.model) else { return Vec::new() };
         let bounds = subject.figure(view).bounds.part(&self.model.window(view));
+        if let (View::Map, Some(Ok(report))) = (view, subject.map) {
+            let taken = map::taken(report, &self.model.preset, bounds.at(share));
+            return self.run(Command::Assign(taken));
+        }
         let Some(found) = nearest(&subject, view, &bounds, bounds.at(share)) else { return Vec::new() };
         let is_near = plot.is_none_or(|plot| {
             bounds.share(found.at).is_some_and(|(x, y)| {

@@ -1,0 +1,183 @@
+//! `pulloff map`: where snaps begin, as lines in two numbers, or the limit points over one.
+
+use super::console::{note, warn};
+use super::problem::Problem;
+use super::{Failure, output};
+use crate::plot::map::{Map, MapError};
+use crate::plot::{Width, lines, svg};
+use crate::print::Format as Print;
+use crate::store::{Overwrite, stream, write_atomically};
+use crate::sweep::Results;
+use clap::Args;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::report::map::Ordinate;
+use pulloff_engine::report::{MapReport, json};
+use pulloff_engine::stability::{Axis, COMPLIANCE};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The arguments of `pulloff map`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// The number on the x axis and its range: a key of the preset, a group, or compliance, which is 1/k from 0 (displacement)
+    /// to inf (a dead load); log:FROM..TO for an axis of equal factors
+    #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
+    x_key: String,
+    /// Another number on the y axis: lines of cusps and landings, and the number of snaps in every cell
+    #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true, required_unless_present = "y")]
+    y_key: Option<String>,
+    /// Instead of a number, the limit points over the x axis: their control, approach or force
+    #[arg(long, value_enum, conflicts_with = "y_key")]
+    y: Option<Curve>,
+    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
+    #[arg(long, value_name = "CONTROL")]
+    control: Option<String>,
+    /// Draw the lines over the map of a sweep over the same two keys
+    #[arg(long, value_name = "RESULTS.csv", requires = "y_key")]
+    over: Option<PathBuf>,
+    /// The column of these results that is drawn
+    #[arg(long, value_name = "COLUMN", default_value = "snaps", requires = "over")]
+    quantity: String,
+    /// The width of a figure on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
+    #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = super::plot::width)]
+    width: Width,
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    overwrite: bool,
+    /// Write to this file, by its ending as CSV, JSON, SVG, PNG or PDF, instead of CSV to standard output, which is -
+    #[arg(short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// What stands over a number.
+#[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Curve {
+    Control,
+    Approach,
+    Force,
+}
+
+/// Columns and rows in which snaps are counted.
+const CELLS: [u32; 2] = [48, 36];
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Format {
+    Csv,
+    Json,
+    Figure(Print),
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let format = arguments.format()?;
+    let loaded = arguments.problem.load()?;
+    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
+    let mut preset = loaded.preset;
+    if let Some(control) = &arguments.control {
+        preset
+            .assign("path.control", control)
+            .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+    }
+    let x = axis("--x-key", &arguments.x_key, &preset)?;
+    let y = match (&arguments.y_key, arguments.y) {
+        (Some(key), _) => Ordinate::Key(axis("--y-key", key, &preset)?),
+        (None, Some(Curve::Approach)) => Ordinate::Approach,
+        (None, Some(Curve::Force)) => Ordinate::Force,
+        (None, _) => Ordinate::Control,
+    };
+    let over = arguments.over(&x, &y)?;
+    let report = MapReport::compute(&preset, x, &y, CELLS, &|| true)?;
+    warn(&report.notes);
+    if let Some(onset) = &report.onset {
+        let smallest = onset.amplitude_over_wavelength;
+        note(Some(&format!("under {} control this preset snaps from A/lambda = {smallest:.6} on", onset.control)));
+    }
+    let bytes = match format {
+        Format::Csv => report.csv()?.into_bytes(),
+        Format::Json => json(&report)?.into_bytes(),
+        Format::Figure(print) => {
+            let chart = lines::chart(&report, &preset);
+            let picture = match over {
+                Some(map) => Map { lines: chart.lines, ..map }.svg(arguments.width),
+                None => svg::svg(&chart, arguments.width),
+            };
+            print.bytes(&picture)?
+        }
+    };
+    match arguments.output.as_deref().filter(|path| !stream::is_stream(path)) {
+        Some(path) => {
+            let overwrite = if arguments.overwrite { Overwrite::Always } else { Overwrite::Never };
+            write_atomically(path, &bytes, overwrite)?;
+        }
+        None => output::write_bytes(&bytes, arguments.output.as_deref())?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// By the ending of the file; a figure where results are drawn under it.
+    fn format(&self) -> Result<Format, Failure> {
+        let file = self.output.as_deref().filter(|path| !stream::is_stream(path));
+        let ending = file.and_then(|path| path.extension()).map(|ending| ending.to_string_lossy().to_lowercase());
+        let format = match (ending.as_deref(), file) {
+            (Some("csv"), _) => Format::Csv,
+            (Some("json"), _) => Format::Json,
+            (_, Some(path)) => Format::Figure(Print::of(path)?),
+            (_, None) if self.over.is_some() => Format::Figure(Print::Svg),
+            (_, None) => Format::Csv,
+        };
+        if self.over.is_some() && matches!(format, Format::Csv | Format::Json) {
+            let what = "--over: results of a sweep are drawn under the lines of a figure: -o FILE.svg, .png or .pdf";
+            return Err(Failure::Usage(what.to_owned()));
+        }
+        Ok(format)
+    }
+
+    /// The map of a sweep, whose axes must be those of the lines.
+    fn over(&self, x: &Axis, y: &Ordinate) -> Result<Option<Map>, Failure> {
+        let Some(path) = &self.over else { return Ok(None) };
+        let results = Results::open(path).map_err(MapError::from)?;
+        if results.axes != [x.key.as_str(), y.name()] {
+            return Err(Failure::Usage(format!(
+                "--over {}: is a sweep over {}, not over {} and {}",
+                output::shown(path),
+                results.axes.join(" and "),
+                x.key,
+                y.name()
+            )));
+        }
+        Ok(Some(Map::of(&results, &results.axes, &self.quantity)?))
+    }
+}
+
+/// An axis as typed: KEY=FROM..TO, each end as an assignment of the key.
+fn axis(flag: &str, text: &str, preset: &Preset) -> Result<Axis, Failure> {
+    let wrong = |what: &dyn std::fmt::Display| Failure::Usage(format!("{flag} {text}: {what}"));
+    let expected = "expected KEY=FROM..TO or KEY=log:FROM..TO, such as groups.adhesion=log:0.001..1";
+    let (key, range) = text.split_once('=').ok_or_else(|| wrong(&expected))?;
+    let (key, range) = (key.trim(), range.trim());
+    let (logarithmic, range) = match range.strip_prefix("log:") {
+        Some(rest) => (true, rest),
+        None => (false, range),
+    };
+    let (from, to) = range.split_once("..").ok_or_else(|| wrong(&expected))?;
+    let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
+    let number = |text: &str| -> Result<f64, Failure> {
+        if key == COMPLIANCE {
+            // In SI in metres per newton.
+            return text.trim().parse().map_err(|_| wrong(&"a compliance goes from a number to a number or inf"));
+        }
+        let row = preset.row(key).ok_or_else(|| match preset.clone().set(key, 1.0.into()) {
+            Err(invalid) => wrong(&invalid),
+            Ok(()) => wrong(&expected),
+        })?;
+        if !row.kind.is_number() {
+            return Err(wrong(&"an axis is a number of the preset, a group, or compliance"));
+        }
+        preset.number(&row, text.trim()).map_err(|invalid| wrong(&invalid))
+    };
+    let range = [number(from)?, number(to)?];
+    Axis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| wrong(&error))
+}
