@@ -59,6 +59,7 @@ impl CycleError {
             Self::RadiusBeyondGap { radius, known } => {
                 Self::RadiusBeyondGap { radius: radius * length, known: known * length }
             }
+            Self::TooMany { error, approach } => Self::TooMany { error, approach: approach * length },
             Self::NeverTouches { searched } => Self::NeverTouches { searched: searched * length },
             Self::NoLanding { control_value, steps } => {
                 Self::NoLanding { control_value: control_value * value, steps }
@@ -101,6 +102,9 @@ impl CycleError {
                 length(radius),
                 length(known)
             ),
+            Self::TooMany { ref error, approach } => {
+                format!("{error}, at the approach {}: turn before", length(approach))
+            }
             Self::NeverTouches { searched } => {
                 format!("the gap has no least value up to r = {}: the bodies never touch", length(searched))
             }

@@ -40,6 +40,14 @@ pub enum CycleError {
         /// How far the gap is known, a length.
         known: f64,
     },
+    /// More contacts, or points on them, than a state may have.
+    #[error("{error}, at the approach {approach}: turn before")]
+    TooMany {
+        /// Of what.
+        error: AnnuliError,
+        /// The approach reached.
+        approach: f64,
+    },
     /// The gap is nowhere least.
     #[error("the gap has no least value up to r = {searched}: the bodies never touch")]
     NeverTouches {
@@ -85,7 +93,7 @@ pub enum CycleError {
 /// What is to be known about a loop beyond its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
-    /// Some state had fewer digits than twelve.
+    /// Some state had fewer digits than nine: breaks of the gap lie inside a ring, or it takes more points than there may be.
     Digits {
         /// The fewest decimal digits of the edges of any state.
         digits: f64,
@@ -104,13 +112,6 @@ pub enum Warning {
         /// Their difference over the loss.
         share: f64,
     },
-    /// Many places where a derivative of the gap jumps lie inside a ring.
-    Breaks {
-        /// How many at most.
-        breaks: usize,
-        /// The decimal digits of the edges.
-        digits: f64,
-    },
 }
 
 impl std::fmt::Display for Warning {
@@ -126,12 +127,6 @@ impl std::fmt::Display for Warning {
                 write!(
                     f,
                     "the loss of event {event} by area differs by {share:.1e} of it from that by energy"
-                )
-            }
-            Self::Breaks { breaks, digits } => {
-                write!(
-                    f,
-                    "{breaks} breaks of the gap lie inside a ring: its edges are known to {digits:.1} digits"
                 )
             }
         }

@@ -4,7 +4,7 @@ use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
 use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 use super::setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
-use crate::annuli::{AnnuliError, Contacts, Crest, Ground};
+use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::Control;
@@ -166,12 +166,15 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
     Some(Crest { radius, gap: value(radius) })
 }
 
-/// The error with what was reached, where an edge ran beyond what is known of the gap.
+/// The error with what was reached, where an edge ran beyond what is known of the gap, or a state has too many contacts.
 pub(super) fn beyond(error: CycleError, approach: f64, force: f64) -> CycleError {
     match error {
         CycleError::State(AnnuliError::BeyondGap { known, .. }) => {
             CycleError::BeyondGap { radius: known, approach, force }
         }
+        CycleError::State(
+            error @ (AnnuliError::Contacts(ContactsError::TooMany { .. }) | AnnuliError::TooManyPoints { .. }),
+        ) => CycleError::TooMany { error, approach },
         other => other,
     }
 }
@@ -248,7 +251,9 @@ impl Path<'_, '_> {
                     self.jump(EventKind::Advance, &next, start, None)?
                 }
                 End::Touch(crest) => {
-                    let start = balance.seeded(&next.state.contacts, crest.radius, next.control_value)?;
+                    let start = balance
+                        .seeded(&next.state.contacts, crest.radius, next.control_value)
+                        .map_err(|error| beyond(error, next.approach, next.force))?;
                     self.jump(EventKind::Touch, &next, start, Some(crest.radius))?
                 }
             }

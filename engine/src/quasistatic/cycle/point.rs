@@ -108,6 +108,11 @@ impl<'a, 'b> Step<'a, 'b> {
         &self.from.tangent * (length / along.max(1e-6))
     }
 
+    /// The tangent at a point of the step, scaled to 1 along that of the start.
+    pub fn rate_of(&self, point: &Point) -> DVector<f64> {
+        &point.tangent / point.tangent.dot(&self.row)
+    }
+
     /// The length of a step to a point.
     pub fn length_to(&self, point: &Point) -> f64 {
         self.row.dot(&self.offset(point))

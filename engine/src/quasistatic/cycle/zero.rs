@@ -130,7 +130,10 @@ impl Path<'_, '_> {
             }
             _ => {}
         }
-        let start = self.balance.seeded(contacts, crest, delta)?;
+        let start = self
+            .balance
+            .seeded(contacts, crest, delta)
+            .map_err(|error| super::path::beyond(error, delta, 0.0))?;
         let mut passed = Vec::new();
         let held = self
             .balance
