@@ -139,7 +139,15 @@ impl Journal {
     /// The walk is over; `is_stale` if it leaves the state marked as not solved.
     pub(super) fn ended(&mut self, outcome: &Outcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
-        let preset = &walking.curve.setting.preset;
+        let mut preset = walking.curve.setting.preset.clone();
+        // Where a walk begins is no matter of the curve: only a restart asks for it.
+        preset.path.begin = match (&walking.action, &self.replay) {
+            (Action::Begin, _) => Begin::Touch,
+            (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
+            (_, Some(replay)) => replay.preset.path.begin,
+            (_, None) => preset.path.begin,
+        };
+        let preset = &preset;
         let way = Some((walking.inward, walking.length));
         let is_solve = matches!(walking.action, Action::Solve { .. });
         // A value that could not be solved and was taken back meanwhile leaves nothing to replay.
@@ -195,6 +203,7 @@ impl Journal {
             let mut preset = node.setting.preset.clone();
             preset.title.clone_from(&replay.preset.title);
             preset.path.control = replay.preset.path.control;
+            preset.path.begin = replay.preset.path.begin;
             replay.preset = preset;
         }
     }

@@ -186,6 +186,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "s/λ over δ",
         "p/E* over r/λ",
         "gap over r/λ",
+        "contact, s/λ",
         "U over s/λ",
         "unloading",
         "cycle: P/Pc over δ",
