@@ -3,6 +3,7 @@
 use pulloff_engine::stability::count::EXACTLY;
 use pulloff_engine::stability::law::{adhesion_of, root_of};
 use pulloff_engine::stability::{Axis, Cause, Family, Onset, even};
+use pulloff_engine::theory::onset;
 use pulloff_engine::{Control, Material, Preset, Shape, Start};
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -346,4 +347,23 @@ fn on_both_sides_of_a_cusp_the_limit_points_differ_by_two() {
         }
     }
     assert!(cusps > 200, "{cusps}");
+}
+
+#[test]
+fn far_from_the_axis_the_first_pairs_are_born_where_the_envelope_says() {
+    let axes = vec![axis(AMPLITUDE, [0.0, 0.002], false), axis(ADHESION, [1e-3, 30.0], true)];
+    let family = Family::new(&waves(Control::Displacement, 0.5, 0.05, 0.025), axes).unwrap();
+    let lines = family.explicit_cusps().unwrap().unwrap();
+    let tips: Vec<_> = lines.iter().flat_map(|(_, tips)| tips).collect();
+    for (s, [amplitude, adhesion]) in [(0.17, [3e-3, 1.1e-2]), (0.47, [5.5e-4, 1.5e-3])] {
+        let tip = tips
+            .iter()
+            .min_by(|a, b| (a.contact_radius - s).abs().total_cmp(&(b.contact_radius - s).abs()))
+            .unwrap();
+        let s = tip.contact_radius;
+        let [a, y] = [0, 1].map(|k| family.axes[k].value(tip.at[k]));
+        let envelope = onset::amplitude_over_wavelength(0.05, 1.0, s);
+        assert!((envelope / a - 1.0).abs() < amplitude, "{s} {a} {envelope}");
+        assert!((onset::adhesion(1.0, s) / y - 1.0).abs() < adhesion, "{s} {y}");
+    }
 }

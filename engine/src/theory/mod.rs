@@ -15,6 +15,7 @@
 //! | [`guduru`] | the wavy sphere: the transform in closed form |
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
 //! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
+//! | [`onset`] | the smallest waves on which a crest can snap at all |
 //! | [`exact`] | the best of these for a problem |
 //! | [`unloading`] | the quasi-static path of an exact disc: limit points, landings, losses |
 //! | [`quadrature`] | integrals to rounding: Gauss-Legendre panels that halve where they must |
@@ -29,6 +30,7 @@ pub mod harmonics;
 pub mod hertz;
 pub mod jkr;
 pub mod kesari_lew;
+pub mod onset;
 pub mod power_law;
 pub mod quadrature;
 pub mod root;

@@ -14,6 +14,7 @@
 //! | [`newton`] | the rounds of Newton-Raphson from a threefold contact radius |
 //! | [`figures`] | the smallest force and approach of Fig. 8 and 9 |
 //! | [`unloading`] | every limit point, landing and loss of Fig. 9 under three controls |
+//! | [`stability`] | the law of stability and its cusps on Fig. 9 |
 //! | [`loops`] | a rigid annulus, and the whole loop with and without rings |
 //! | [`balance`] | the work of the device against what is stored and lost |
 //!
@@ -28,6 +29,7 @@ pub mod newton;
 pub mod row;
 pub mod settings;
 pub mod smooth;
+pub mod stability;
 pub mod unloading;
 
 pub use row::{Group, Row};
@@ -56,6 +58,7 @@ pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
             own.push(ours);
         }
     }
+    groups.push(stability::group(&cases::fig_9())?);
     let loops = loops::groups()?;
     let is_own = |group: &Group| group.rows.iter().any(|row| row.other.is_some());
     let (own_loops, loops): (Vec<Group>, Vec<Group>) = loops.into_iter().partition(is_own);
