@@ -14,6 +14,7 @@ use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::quasistatic::cycle::{Areas, EVEN, Setting, Turn, cycle};
 use pulloff_engine::ritz::{Grading, Rings};
+use pulloff_engine::stability::{Axis, Family, Law};
 use std::sync::Arc;
 
 /// The ring numbers.
@@ -234,4 +235,23 @@ fn loop_of_weak_adhesion(bencher: Bencher) {
 #[divan::bench(max_time = 5)]
 fn loop_of_very_weak_adhesion(bencher: Bencher) {
     whole_loop(bencher, 1e-5, 0.14);
+}
+
+/// The adhesion at which each of 2000 states is a limit point, from a table that is there.
+#[divan::bench]
+fn critical_adhesion(bencher: Bencher) {
+    let case = fig_9_exact();
+    let law = Law { panels: case.table.up_to(0.5).unwrap(), control: Control::Displacement };
+    bencher.bench_local(|| (1..=2000).map(|k| law.critical(black_box(0.5 * f64::from(k) / 2000.0)).unwrap_or(0.0)).sum::<f64>());
+}
+
+/// All lines of a map of the waves of Fig. 9, where they follow from the radius, and of a pair for which they are traced.
+#[divan::bench(args = ["groups.amplitude_over_wavelength", "groups.wavelength_over_radius"], max_time = 10)]
+fn map_lines(bencher: Bencher, key: &str) {
+    let store = Store::at("presets", &[]);
+    let preset = store.load(&store.resolve("fig-9").unwrap(), &[] as &[&str]).unwrap().preset;
+    let range = if key.contains("radius") { [0.02, 0.1] } else { [0.0, 0.0125] };
+    let x = Axis::new(key, range, false, 1.0).unwrap();
+    let y = Axis::new("groups.adhesion", [1e-3, 1.0], true, 1.0).unwrap();
+    bencher.bench_local(|| Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map(&|| true).unwrap());
 }

@@ -14,6 +14,7 @@ use pulloff_engine::report::number::significant;
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
+use std::collections::VecDeque;
 
 /// Where the numbers of an axis stand on it.
 #[derive(Debug, Clone)]
@@ -127,6 +128,63 @@ pub fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark
     (lines, marks)
 }
 
+/// The number of snaps in each region of the map, where it is widest.
+///
+/// A region is cells next to each other with one count; its label stands on the cell that is farthest from all others.
+pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
+    /// Nearer to its border than so many cells a region has no room for a number.
+    const ROOM: usize = 2;
+    let Some(counts) = &report.counts else { return Vec::new() };
+    let cells = &counts.snaps;
+    let [width, height] = [counts.x.len(), counts.y.len()];
+    let next = |(i, j): (usize, usize)| {
+        let near = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+        near.into_iter().filter(move |(i, j)| *i < width && *j < height)
+    };
+    let places = || (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+    // How many steps it is from each cell to another count, or out of the map.
+    let mut depth = vec![vec![0_usize; width]; height];
+    let on_border = |(i, j): (usize, usize)| {
+        next((i, j)).count() < 4 || next((i, j)).any(|(a, b)| cells[b][a] != cells[j][i])
+    };
+    let mut edge: VecDeque<(usize, usize)> = places().filter(|place| on_border(*place)).collect();
+    for (i, j) in &edge {
+        depth[*j][*i] = 1;
+    }
+    while let Some((i, j)) = edge.pop_front() {
+        for (a, b) in next((i, j)) {
+            if depth[b][a] == 0 {
+                depth[b][a] = depth[j][i] + 1;
+                edge.push_back((a, b));
+            }
+        }
+    }
+    let mut seen = vec![vec![false; width]; height];
+    let mut marks = Vec::new();
+    for place in places() {
+        let Some(count) = cells[place.1][place.0].filter(|_| !seen[place.1][place.0]) else { continue };
+        let mut deepest = place;
+        let mut region = vec![place];
+        seen[place.1][place.0] = true;
+        while let Some((i, j)) = region.pop() {
+            if depth[j][i] > depth[deepest.1][deepest.0] {
+                deepest = (i, j);
+            }
+            for (a, b) in next((i, j)) {
+                if !seen[b][a] && cells[b][a] == Some(count) {
+                    seen[b][a] = true;
+                    region.push((a, b));
+                }
+            }
+        }
+        if depth[deepest.1][deepest.0] >= ROOM {
+            let at = (x.at(counts.x[deepest.0]), y.at(counts.y[deepest.1]));
+            marks.push(Mark { sign: Sign::Snaps(count), at });
+        }
+    }
+    marks
+}
+
 /// Bounds of the axes, or of what is drawn where an axis follows from it.
 pub fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
     let found = Bounds::of(lines.iter().flat_map(|line| line.points.iter().copied()));
@@ -138,6 +196,7 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let places = |axis| Places::of(axis, preset, report.control, true);
     let (x, y) = (places(&report.x), places(&report.y));
     let (lines, mut marks) = drawn(report, &x, &y);
+    marks.extend(counts(report, &x, &y));
     let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
     if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
         marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });

@@ -88,6 +88,8 @@ pub enum Sign {
     Swallowtail,
     /// Where the preset stands on a map.
     Preset,
+    /// The number of snaps in the region of a map around it; the last stands for more.
+    Snaps(usize),
     /// A computed value, on a line through all of them.
     Value,
 }

@@ -101,6 +101,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
         Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
         Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
+        // Written as a number.
+        Sign::Snaps(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
         // The axes say what it is.
         Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }

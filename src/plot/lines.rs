@@ -1,7 +1,7 @@
 //! Lines in two numbers at which snaps begin or end, and limit points over one, on paper.
 
 use super::chart::{Chart, ChartAxis, Run};
-use crate::figure::map::{Places, bounds, drawn};
+use crate::figure::map::{Places, bounds, counts, drawn};
 use crate::figure::{Mark, Sign};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
@@ -12,6 +12,7 @@ pub fn chart(report: &MapReport, preset: &Preset) -> Chart {
     let places = |axis: &AxisReport| Places::of(axis, preset, report.control, false);
     let (x, y) = (places(&report.x), places(&report.y));
     let (lines, mut marks) = drawn(report, &x, &y);
+    marks.extend(counts(report, &x, &y));
     let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
     if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
         marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });

@@ -3,7 +3,7 @@
 use super::Width;
 use super::chart::{Chart, ChartAxis, Run};
 use super::ink::{self, Stroke};
-use crate::figure::{Bounds, Line, Mark, Meaning, Role};
+use crate::figure::{Bounds, Line, Mark, Meaning, Role, Sign};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -150,6 +150,14 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
             .with_legend_position(LegendPosition::OutsideBottomColumns)
             .with_legend_box(false);
     }
+    for mark in &chart.marks {
+        if let Sign::Snaps(count) = mark.sign {
+            let (x, y) = mark.at;
+            layout = layout.with_annotation(
+                TextAnnotation::new(count.to_string(), x, y).with_font_size(SMALL_LETTERS),
+            );
+        }
+    }
     if let Some(reason) = &chart.missing {
         let [x, y] = [bounds.x, bounds.y].map(|[lo, hi]| 0.5 * lo + 0.5 * hi);
         layout =
@@ -242,7 +250,9 @@ fn plots(chart: &Chart) -> Vec<Plot> {
     let (exact, others): (Vec<&Line>, Vec<&Line>) =
         chart.lines.iter().partition(|line| line.role == Role::Exact);
     let mut plots: Vec<Drawn> = others.into_iter().chain(exact).flat_map(line).collect();
-    plots.extend(chart.marks.chunk_by(|a, b| a.sign == b.sign).filter_map(marks));
+    let stamped: Vec<Mark> =
+        chart.marks.iter().copied().filter(|mark| !matches!(mark.sign, Sign::Snaps(_))).collect();
+    plots.extend(stamped.chunk_by(|a, b| a.sign == b.sign).filter_map(marks));
     if plots.is_empty() {
         // Without anything to draw the library draws no axes either.
         plots.push(LinePlot::new().into());
@@ -318,7 +328,7 @@ fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Area, Sign};
+    use crate::figure::Area;
 
     fn chart(lines: Vec<Line>) -> Chart {
         Chart::new(ChartAxis::default(), ChartAxis::default(), lines)

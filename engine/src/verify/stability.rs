@@ -9,7 +9,7 @@ use crate::problem::Control;
 use crate::stability::Law;
 use crate::stability::law::adhesion_of;
 use crate::theory::unloading::{INWARD_REACH, limit_points};
-use crate::theory::{Disc, Exact};
+use crate::theory::Exact;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Rounding of the table and of the closed form.

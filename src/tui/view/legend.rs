@@ -69,6 +69,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Cusp => (1, "cusp"),
         Sign::Swallowtail => (2, "swallowtail"),
         Sign::Preset => (1, "preset"),
+        Sign::Snaps(_) => (3, "snaps"),
         Sign::Touch => (2, "touch"),
         Sign::Turn => (2, "turn"),
         Sign::Crest => (3, "crest"),

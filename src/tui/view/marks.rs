@@ -9,6 +9,9 @@ use ratatui::style::Style;
 /// The digits of the pinned curves, by number.
 const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
 
+/// Numbers of snaps; from ten on there is a sign for many.
+const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
+
 /// The stroke and the style of a line.
 pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
     match role {
@@ -57,6 +60,7 @@ pub fn letter(sign: Sign) -> &'static str {
         Sign::Cusp => "C",
         Sign::Swallowtail => "S",
         Sign::Preset => "+",
+        Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)],
         Sign::Value => "o",
     }
 }
