@@ -92,7 +92,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     warn(&report.notes);
     if let Some(onset) = &report.onset {
         let smallest = onset.amplitude_over_wavelength;
-        note(Some(&format!("under {} control this preset snaps from A/lambda = {smallest:.6} on", onset.control)));
+        note(Some(&format!(
+            "under {} control this preset snaps from A/lambda = {smallest:.6} on",
+            onset.control
+        )));
     }
     let bytes = match format {
         Format::Csv => report.csv()?.into_bytes(),
@@ -120,7 +123,8 @@ impl Arguments {
     /// By the ending of the file; a figure where results are drawn under it.
     fn format(&self) -> Result<Format, Failure> {
         let file = self.output.as_deref().filter(|path| !stream::is_stream(path));
-        let ending = file.and_then(|path| path.extension()).map(|ending| ending.to_string_lossy().to_lowercase());
+        let ending =
+            file.and_then(|path| path.extension()).map(|ending| ending.to_string_lossy().to_lowercase());
         let format = match (ending.as_deref(), file) {
             (Some("csv"), _) => Format::Csv,
             (Some("json"), _) => Format::Json,
@@ -129,7 +133,8 @@ impl Arguments {
             (_, None) => Format::Csv,
         };
         if self.over.is_some() && matches!(format, Format::Csv | Format::Json) {
-            let what = "--over: results of a sweep are drawn under the lines of a figure: -o FILE.svg, .png or .pdf";
+            let what =
+                "--over: results of a sweep are drawn under the lines of a figure: -o FILE.svg, .png or .pdf";
             return Err(Failure::Usage(what.to_owned()));
         }
         Ok(format)
@@ -167,7 +172,10 @@ fn axis(flag: &str, text: &str, preset: &Preset) -> Result<Axis, Failure> {
     let number = |text: &str| -> Result<f64, Failure> {
         if key == COMPLIANCE {
             // In SI in metres per newton.
-            return text.trim().parse().map_err(|_| wrong(&"a compliance goes from a number to a number or inf"));
+            return text
+                .trim()
+                .parse()
+                .map_err(|_| wrong(&"a compliance goes from a number to a number or inf"));
         }
         let row = preset.row(key).ok_or_else(|| match preset.clone().set(key, 1.0.into()) {
             Err(invalid) => wrong(&invalid),

@@ -3,8 +3,8 @@
 use super::console::warn;
 use super::problem::Problem;
 use super::{Failure, output};
-use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::maps::MapWish;
+use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View, Window};
 use crate::figure::Subject;
 use crate::plot::map::{Map, MapError};
@@ -134,12 +134,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let cycle =
         if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &|_| true)?) } else { None };
     warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
-    let found = (view == View::Map).then(|| MapWish { id: 0, preset: preset.clone() }.run(&|| true)).flatten();
+    let found =
+        (view == View::Map).then(|| MapWish { id: 0, preset: preset.clone() }.run(&|| true)).flatten();
     let map = found.as_ref().map(|map| map.report());
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
-    let subject =
-        Subject { inside: inside.as_ref(), cycle: cycle.as_ref(), map, axes, ..Subject::alone(&curve, overlays) };
+    let subject = Subject {
+        inside: inside.as_ref(),
+        cycle: cycle.as_ref(),
+        map,
+        axes,
+        ..Subject::alone(&curve, overlays)
+    };
     let chart = arguments.part(Chart::of(&subject.figure(view), &Window::WHOLE))?;
     let picture = svg::svg(&chart, arguments.width);
     output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;

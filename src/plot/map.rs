@@ -106,7 +106,14 @@ impl Map {
             return Err(MapError::empty(quantity));
         }
         let title = |name: &str| results.title(name);
-        Ok(Self { titles: [title(x), title(y)], quantity: title(quantity), values, cells, snaps, lines: Vec::new() })
+        Ok(Self {
+            titles: [title(x), title(y)],
+            quantity: title(quantity),
+            values,
+            cells,
+            snaps,
+            lines: Vec::new(),
+        })
     }
 
     /// The map as an SVG document of this width.

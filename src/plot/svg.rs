@@ -153,9 +153,8 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
     for mark in &chart.marks {
         if let Sign::Snaps(count) = mark.sign {
             let (x, y) = mark.at;
-            layout = layout.with_annotation(
-                TextAnnotation::new(count.to_string(), x, y).with_font_size(SMALL_LETTERS),
-            );
+            layout = layout
+                .with_annotation(TextAnnotation::new(count.to_string(), x, y).with_font_size(SMALL_LETTERS));
         }
     }
     if let Some(reason) = &chart.missing {

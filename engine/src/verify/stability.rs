@@ -8,8 +8,8 @@ use crate::disc::{Table, TableError};
 use crate::problem::Control;
 use crate::stability::Law;
 use crate::stability::law::adhesion_of;
-use crate::theory::unloading::{INWARD_REACH, limit_points};
 use crate::theory::Exact;
+use crate::theory::unloading::{INWARD_REACH, limit_points};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Rounding of the table and of the closed form.
@@ -47,7 +47,8 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
         })
         .collect();
     let grips = law(Control::Displacement);
-    let ninth = points(Control::Force).into_iter().map(|s| (grips.critical(s).unwrap_or(f64::NAN), 9.0 * gamma));
+    let ninth =
+        points(Control::Force).into_iter().map(|s| (grips.critical(s).unwrap_or(f64::NAN), 9.0 * gamma));
     rows.push(Row::worst("nine times the adhesion under displacement", ninth, gamma, 9.0 * BOUND));
     let (cusps, _) = grips.cusps([0.0, figure.start]);
     let wave = exact.wave().unwrap_or(figure.start);

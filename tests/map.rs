@@ -1,0 +1,131 @@
+//! `pulloff map`: its rows, its figures, its refusals; counts as a sweep has them.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const MAP: [&str; 4] = [
+    "--x-key",
+    "groups.amplitude_over_wavelength=0.0005..0.0125",
+    "--y-key",
+    "groups.adhesion=log:0.002..0.2",
+];
+
+fn pulloff(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
+    command.env_clear().env("HOME", folder).env("XDG_CONFIG_HOME", folder).current_dir(folder);
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(folder: &Path, arguments: &[&str]) -> String {
+    let output = pulloff(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_rows_are_points_of_lines_and_the_smallest_amplitude_is_said() {
+    let home = tempfile::tempdir().unwrap();
+    let output = pulloff(home.path(), &[&["map", "wavy-sphere"][..], &MAP].concat());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("snaps from A/lambda = 0.001215"), "{said}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut rows = csv::Reader::from_reader(text.as_bytes());
+    let header: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(
+        header,
+        ["line", "kind", "crest", "contact_radius", "x", "y", "control_value", "stable", "changes"]
+    );
+    let mut kinds = std::collections::BTreeSet::new();
+    for row in rows.records() {
+        let row = row.unwrap();
+        kinds.insert(row[1].to_owned());
+        let [x, y]: [f64; 2] = [4, 5].map(|k| row[k].parse().unwrap());
+        assert!((0.0005..=0.0125).contains(&x) && (0.002..=0.2).contains(&y), "{row:?}");
+    }
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["cusp", "landing", "swallowtail"]);
+}
+
+#[test]
+fn the_counts_are_those_of_a_sweep_and_it_is_drawn_over_one() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path();
+    let json: serde_json::Value = {
+        text(folder, &[&["map", "wavy-sphere"][..], &MAP, &["-o", "map.json"]].concat());
+        serde_json::from_str(&fs::read_to_string(folder.join("map.json")).unwrap()).unwrap()
+    };
+    let numbers = |key: &str| -> Vec<f64> {
+        json["counts"][key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let (x, y) = (numbers("x"), numbers("y"));
+    // Every sixth of both.
+    let some = |all: &[f64]| all.iter().step_by(6).map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
+    let spec = format!(
+        "preset = \"wavy-sphere\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"groups.amplitude_over_wavelength\"\nvalues = [{}]\n\
+         [[axis]]\nkey = \"groups.adhesion\"\nvalues = [{}]\n",
+        some(&x),
+        some(&y)
+    );
+    fs::write(folder.join("sweep.toml"), spec).unwrap();
+    text(folder, &["sweep", "sweep.toml", "-o", "sweep.csv"]);
+    let swept = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(swept.as_bytes());
+    let at = |rows: &csv::StringRecord, name: &str| rows.iter().position(|cell| cell == name).unwrap();
+    let header = rows.headers().unwrap().clone();
+    let columns =
+        ["groups.amplitude_over_wavelength", "groups.adhesion", "snaps"].map(|name| at(&header, name));
+    let mut compared = 0;
+    for row in rows.records() {
+        let row = row.unwrap();
+        let [a, b, snaps]: [f64; 3] = columns.map(|k| row[k].parse().unwrap());
+        let place =
+            |all: &[f64], x: f64| all.iter().position(|other| (other - x).abs() <= 1e-12 * x).unwrap();
+        let ours = json["counts"]["snaps"][place(&y, b)][place(&x, a)].as_f64().unwrap();
+        assert_eq!(ours.to_bits(), snaps.to_bits(), "{row:?}");
+        compared += 1;
+    }
+    assert!(compared > 50, "{compared}");
+    text(folder, &[&["map", "wavy-sphere"][..], &MAP, &["--over", "sweep.csv", "-o", "over.svg"]].concat());
+    let picture = fs::read_to_string(folder.join("over.svg")).unwrap();
+    assert!(picture.contains("line of cusps") && picture.contains("line of landings"));
+}
+
+#[test]
+fn limit_points_over_one_number() {
+    let home = tempfile::tempdir().unwrap();
+    let all = text(home.path(), &["map", "--x-key", "groups.adhesion=0.005..0.2", "--y", "control"]);
+    let count = |kind: &str| all.lines().filter(|line| line.split(',').nth(1) == Some(kind)).count();
+    assert!(count("fold") > 100 && count("landing") == 3 && count("cusp") == 1, "{}", all.len());
+    assert!(all.contains(",outward,") && all.contains(",inward,"));
+}
+
+#[test]
+fn refusals_name_what_is_wrong_and_keep_files() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("there.csv"), "mine").unwrap();
+    let over = |range: &str| {
+        vec!["map".to_owned(), "--x-key".to_owned(), range.to_owned(), "--y".into(), "force".into()]
+    };
+    let cases: Vec<(Vec<String>, &str)> = vec![
+        (over("gap.amplitud=0..1"), "gap.amplitude"),
+        (over("gap.amplitude"), "KEY=FROM..TO"),
+        (over("groups.adhesion=1..0.5"), "from a number to a larger one"),
+        (over("groups.adhesion=log:0..1"), "begins above zero"),
+        (over("basis.kind=1..2"), "an axis is a number"),
+        (
+            [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.csv".into()]].concat(),
+            "exists already",
+        ),
+        ([over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.txt".into()]].concat(), "there.txt"),
+    ];
+    for (arguments, words) in cases {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = pulloff(home.path(), &arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+    assert_eq!(fs::read_to_string(home.path().join("there.csv")).unwrap(), "mine");
+}
