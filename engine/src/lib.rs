@@ -52,6 +52,7 @@
 //! | room | what lives there |
 //! |---|---|
 //! | `text`, `units`, `expression` | quoting foreign text, dimensions and units, the one grammar of formulas and values |
+//! | `cells` | tables of text from instruments |
 //! | `gap` | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
 //! | `problem` | E*, γ, the gap, the loading device, the start; reduced units, dimensionless groups |
 //! | `continuation` | arc-length continuation and the location of limit points for any system |
@@ -62,6 +63,7 @@
 //! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
 //! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
 //! | `stability` | the law of stability, limit points in two parameters, counts of snaps |
+//! | `measured`, `fit` | measured curves, and the values of a preset that they give |
 //! | `report`, `verify` | the one serializable form of results; our numbers against theory |
 //! | `sweep` | one preset over many values of its keys, row by row |
 
@@ -77,6 +79,8 @@ pub mod continuation;
 pub mod disc;
 #[doc(hidden)]
 pub mod expression;
+#[doc(hidden)]
+pub mod fit;
 #[cfg(test)]
 mod fixtures;
 #[doc(hidden)]

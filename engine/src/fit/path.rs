@@ -6,11 +6,10 @@
 
 use crate::case;
 use crate::disc::{Basis, Exact, Solution};
-use crate::gap::Gap;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced, Units};
-use crate::quasistatic::{Curve, Detail, Losses, unload::unload_while};
+use crate::quasistatic::{Curve, Detail, Losses, Sample, unload::unload_while};
 use std::sync::Arc;
 
 /// x, P and s.
@@ -54,8 +53,8 @@ pub struct Vertex {
 pub struct Reach {
     /// The largest x, P and s of the points; minus infinity where there are none.
     pub most: Place,
-    /// A contact radius that it reaches in any case.
-    pub radius: f64,
+    /// Where it begins, whatever the points are: of two paths beside each other the pieces are then the same.
+    pub radius: Option<f64>,
     /// The length by which a gap without one of its own is reduced.
     pub length: f64,
 }
@@ -82,12 +81,17 @@ pub struct Path {
 
 /// Contact radii begin at this share of the outermost.
 const INNERMOST: f64 = 1e-3;
+/// The cosine of the turn of the curve between two corners of the polyline, and how often a step is halved for it.
+const STRAIGHT: f64 = 0.98;
+const DEEPEST: usize = 7;
 /// How far beyond the points the path goes.
 const MARGIN: f64 = 1.15;
 
 impl Path {
-    /// The path of `preset`, whose device is `control`; `None` where it has none that reaches so far.
-    pub fn new(preset: &Preset, control: Control, abscissa: Abscissa, reach: &Reach) -> Option<Self> {
+    /// The path of `preset`; `None` where it has none that reaches so far.
+    #[must_use]
+    pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach) -> Option<Self> {
+        let control = preset.path.control;
         let length = preset.gap.length().unwrap_or(reach.length);
         let reduced = preset.problem().reduced_by(length);
         let units = reduced.units;
@@ -100,7 +104,10 @@ impl Path {
             let (delta, force) = (delta * units.length, force * units.force);
             if abscissa == Abscissa::Radius { s * units.length } else { delta + compliance * force }
         };
-        let outermost = outermost(&reduced, &Exact::new(Arc::clone(&table), 0.0), reach, &x_of)?;
+        let outermost = match reach.radius {
+            Some(radius) => (radius / units.length).min(reduced.largest_contact()),
+            None => outermost(&reduced, &Exact::new(Arc::clone(&table), 1e-3), reach, &x_of)?,
+        };
         let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
         let innermost = INNERMOST * outermost;
         let mut curve =
@@ -158,6 +165,10 @@ impl Path {
     /// The corners of the polyline.
     fn draw(&mut self, curve: &Curve) {
         let mut vertices = Vec::new();
+        let ranges = [|at: &Sample| at.approach, |at: &Sample| at.force].map(|of| {
+            let ends = curve.samples.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+            ends[1] - ends[0]
+        });
         for (piece, what) in self.pieces.iter().enumerate() {
             let mut add = |at: Place, along: f64| vertices.push(Vertex { at, piece, along });
             match what {
@@ -166,24 +177,43 @@ impl Path {
                     add(*after, 0.0);
                 }
                 Piece::Arc([outer, inner]) => {
-                    let on = |s: f64| s < *outer && s > *inner;
-                    if let Some((at, _)) = self.at(*outer) {
-                        add(at, *outer);
+                    let on = |s: &f64| s < outer && s > inner;
+                    let radii = curve.samples.iter().map(|sample| sample.contact_radius * self.units.length);
+                    let radii: Vec<f64> = [*outer].into_iter().chain(radii.filter(on)).chain([*inner]).collect();
+                    for pair in radii.windows(2) {
+                        add(self.at(pair[0]).map_or([f64::NAN; 3], |(at, _)| at), pair[0]);
+                        self.bend([pair[0], pair[1]], ranges, DEEPEST, &mut add);
                     }
-                    for sample in &curve.samples {
-                        let s = sample.contact_radius * self.units.length;
-                        if on(s) {
-                            add(self.place(s, sample.approach, sample.force), s);
-                        }
-                    }
-                    if let Some((at, _)) = self.at(*inner) {
-                        add(at, *inner);
-                    }
+                    add(self.at(*inner).map_or([f64::NAN; 3], |(at, _)| at), *inner);
                 }
             }
         }
         self.least_force = vertices.iter().map(|vertex: &Vertex| vertex.at[1]).fold(f64::INFINITY, f64::min);
         self.vertices = vertices;
+    }
+
+    /// Adds corners between two radii where the curve turns: at a limit point it may turn back within a step.
+    fn bend(&self, [outer, inner]: [f64; 2], ranges: [f64; 2], depth: usize, add: &mut dyn FnMut(Place, f64)) {
+        let direction = |s: f64| {
+            let place = self.solution.place((s / self.units.length).min(self.solution.reach()))?;
+            let local = self.solution.at(place);
+            let [x, p] = [local.slopes[0] / ranges[0], local.slopes[1] / ranges[1]];
+            let length = x.hypot(p);
+            (length > 0.0).then_some([x / length, p / length])
+        };
+        if depth == 0 {
+            return;
+        }
+        if let (Some(a), Some(b)) = (direction(outer), direction(inner))
+            && a[0] * b[0] + a[1] * b[1] < STRAIGHT
+        {
+            let middle = 0.5 * (outer + inner);
+            self.bend([outer, middle], ranges, depth - 1, add);
+            if let Some((at, _)) = self.at(middle) {
+                add(at, middle);
+            }
+            self.bend([middle, inner], ranges, depth - 1, add);
+        }
     }
 
     /// x, P and s of a reduced state.
@@ -195,7 +225,8 @@ impl Path {
 
     /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
     pub fn at(&self, s: f64) -> Option<(Place, Place)> {
-        let reduced = s / self.units.length;
+        // The outermost radius may be rounded beyond what is known.
+        let reduced = (s / self.units.length).min(self.solution.reach());
         let place = self.solution.place(reduced)?;
         let local = self.solution.at(place);
         let by_radius = local.slopes.map(|slope| slope / local.stretch);
@@ -203,6 +234,13 @@ impl Path {
         let force = by_radius[1] * self.units.force / self.units.length;
         let x = if self.abscissa == Abscissa::Radius { 1.0 } else { delta + self.compliance * force };
         Some((self.place(s, local.approach, local.force), [x, force, 1.0]))
+    }
+
+    /// δ at the contact radius `s`.
+    #[must_use]
+    pub fn approach(&self, s: f64) -> Option<f64> {
+        let place = self.solution.place(s / self.units.length)?;
+        Some(self.solution.at(place).approach * self.units.length)
     }
 
     /// Where a foot is on this path.
@@ -250,7 +288,7 @@ fn outermost(
         // Small contacts have an approach and a force near zero too: only beyond the pull-off both rise.
         let rises = here[0] > before[0] && here[1] > before[1];
         let enough = here[0] >= reach.most[0] && here[1] >= reach.most[1];
-        if rises && enough && s * units.length >= reach.most[2].max(reach.radius) {
+        if rises && enough && s * units.length >= reach.most[2] {
             return Some((MARGIN * s).min(largest));
         }
         before = here;

@@ -167,7 +167,7 @@ impl Points {
             .collect();
         let mut notes = Vec::new();
         let of_radius = self.abscissa == Abscissa::Radius;
-        let turned = signs(&mut points, self.abscissa, &mut notes)?;
+        let turned = signs(&mut points, self.abscissa, self.segments.as_deref(), &mut notes)?;
         // Of radii, which are zero while apart, none are turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let parts = self.parts(points, ordered, &mut notes)?;
@@ -267,24 +267,31 @@ fn in_order(points: &[Point], indifferent: bool) -> Result<(), BranchError> {
 fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
     let mut order: Vec<usize> = (0..x.len()).collect();
     order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(y[a].total_cmp(&y[b])));
-    let count = (x.len() / END_SHARE).max(END_ROWS).min(x.len());
-    // Of ends of as much x, the more even.
     let spread = |ends: &[usize]| {
         let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
         y.sort_by(f64::total_cmp);
         let tenth = y.len() / 10;
         y[y.len() - 1 - tenth] - y[tenth]
     };
-    let (low, high) = (spread(&order[..count]), spread(&order[order.len() - count..]));
     let whole = range(y.iter().copied());
     let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
-    [flat(low, high), flat(high, low)]
+    // Over many rows noise is told from a slope, over few a short free part from the contact.
+    for share in [END_SHARE / 4, END_SHARE] {
+        let count = (x.len() / share).max(END_ROWS).min(x.len());
+        let (low, high) = (spread(&order[..count]), spread(&order[order.len() - count..]));
+        let found = [flat(low, high), flat(high, low)];
+        if found != [false; 2] {
+            return found;
+        }
+    }
+    [false; 2]
 }
 
 /// Turns the signs where the free end and the rise in contact say so; whether x and P were turned.
 fn signs(
     points: &mut [Point],
     abscissa: Abscissa,
+    segments: Option<&[Segment]>,
     notes: &mut Vec<String>,
 ) -> Result<[bool; 2], BranchError> {
     let x: Vec<f64> = points.iter().map(|point| point.x).collect();
@@ -311,14 +318,51 @@ fn signs(
         }
     }
     let x: Vec<f64> = points.iter().map(|point| point.x).collect();
-    if rises(&x, &force) == Some(false) {
+    let (compression, words) = match pulls(points, segments) {
+        Some(pulls) => (pulls, "the force is positive before the jump to the free part, where bodies pull"),
+        None => (rises(&x, &force) != Some(false), "the force falls as the bodies are pressed together"),
+    };
+    if !compression {
         turned[1] = true;
         for point in points {
             point.force = -point.force;
         }
-        notes.push("the force falls as the bodies are pressed together: its sign is turned".to_owned());
+        notes.push(format!("{words}: its sign is turned"));
     }
     Ok(turned)
+}
+
+/// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
+/// a free part, or where the jump is so small that the rise in contact says more.
+fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
+    /// A jump is trusted from this share of the largest force.
+    const LARGE: f64 = 0.3;
+    /// Rows behind the jump whose median is taken.
+    const ROWS: usize = 3;
+    let groups: Vec<Vec<Point>> = match segments {
+        None => vec![points.to_vec()],
+        Some(of) => [Segment::Approach, Segment::Retraction]
+            .map(|segment| points.iter().filter(|point| of[point.row - 1] == segment).copied().collect())
+            .to_vec(),
+    };
+    let mut found: Option<f64> = None;
+    for mut group in groups {
+        group.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
+        let (x, force): (Vec<f64>, Vec<f64>) = group.iter().map(|point| (point.x, point.force)).unzip();
+        if group.len() < 2 * END_ROWS || !free_end(&x, &force)[0] {
+            continue;
+        }
+        let end = &force[force.len() - (force.len() / END_SHARE).max(END_ROWS)..];
+        let limit = BEYOND * scatter(end).max(FLOOR * range(force.iter().copied()));
+        let base = median(end.to_vec())?;
+        let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
+        let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
+        let behind = median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
+        if behind.abs() > LARGE * most && found.is_none_or(|found| behind.abs() > found.abs()) {
+            found = Some(behind);
+        }
+    }
+    found.map(|behind| behind < 0.0)
 }
 
 /// Whether x stands still at the beginning or the end of the file while P goes on: a way never does, the force of bodies apart
@@ -365,6 +409,8 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     let end = &force[force.len() - count..];
     let whole = range(force.iter().copied());
     let limit = BEYOND * scatter(end).max(FLOOR * whole);
+    // Without single rows that are off: a median keeps the place of a step.
+    let force = filtered(&force);
     let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap_or(0);
     let rise = |i: usize| force[i + 1] - force[i];
     let jump = (least..force.len() - 1).max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
@@ -374,6 +420,9 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
         let within = rest.iter().position(|point| point.force >= line.at(point.x) - limit);
         let dropped = within.unwrap_or(0);
         return Branch { segment, attached: points, free: rest[dropped..].to_vec(), dropped };
+    }
+    if trends(&force) {
+        return Branch { segment, attached: points, free: Vec::new(), dropped: 0 };
     }
     // Without a jump the free part ends where three rows in a row are off.
     let base = median(end.to_vec()).unwrap_or(0.0);
@@ -385,6 +434,20 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     }
     let free = points.split_off((at + off).min(points.len()));
     Branch { segment, attached: points, free, dropped: 0 }
+}
+
+/// The running median of five.
+fn filtered(values: &[f64]) -> Vec<f64> {
+    let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
+    (0..values.len()).map(|i| if i < 2 || i + 3 > values.len() { values[i] } else { median(around(i).to_vec()).unwrap_or(values[i]) }).collect()
+}
+
+/// Whether the force still goes on at the end, as it does where a file ends before the pull-off: the medians of the thirds of the
+/// last tenth differ by more than noise.
+fn trends(force: &[f64]) -> bool {
+    let end = &force[force.len() - (force.len() / 10).max(6).min(force.len())..];
+    let thirds: Vec<f64> = end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
+    range(thirds.iter().copied()) > 2.0 * scatter(end) + FLOOR * range(force.iter().copied())
 }
 
 /// The line through a free part, by the medians of its halves.
@@ -434,6 +497,10 @@ fn noise(list: &[(Branch, Vec<Point>)], asked: &Asked, steps: [f64; 3], ranges: 
     let mut noise = Noise { sigma: [0.0; 3], assumed: [false; 3] };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
+        if axis == 2 && floor == 0.0 {
+            // There is no such column.
+            continue;
+        }
         let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
         let of_data = found[axis].unwrap_or(0.0).max(digits);
         (noise.sigma[axis], noise.assumed[axis]) = match asked.sigma[axis] {

@@ -9,6 +9,7 @@
 //! | [`unload`] | the unloading as a document |
 //! | [`cycle`] | the loop of loading and unloading as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
+//! | [`fit`] | a fit to a measured curve as a document, a table and text |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
 //! | [`cycle_table`] | a loop as text for a terminal |
@@ -21,6 +22,7 @@ pub mod columns;
 pub mod cycle;
 pub mod cycle_table;
 pub mod map;
+pub mod fit;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
@@ -32,6 +34,7 @@ pub mod verify;
 pub use crate::units::number;
 pub use cycle::CycleReport;
 pub use map::MapReport;
+pub use fit::FitReport;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;

@@ -1,0 +1,173 @@
+//! What the points determine: covariance, condition, and the direction in which they say nothing.
+//!
+//! ```text
+//! C = κ² S² [Σψ²/(n − p)] / (mean ψ')² (JᵀJ)⁻¹,    ψ of r/S,    κ = 1 + (p/n) var ψ'/(mean ψ')²
+//! ```
+//!
+//! P. J. Huber, *Robust Statistics* (1981), eq. (7.6.6). The condition is that of J with columns of length 1: beyond
+//! [`LARGEST_CONDITION`] no errors are told.
+
+use super::least_squares::Evaluated;
+use super::options::letter;
+use super::problem::{Parameter, Problem};
+use super::solve::HUBER;
+use crate::preset::Preset;
+use crate::units::number::{said, significant};
+use nalgebra::{DMatrix, DVector};
+
+/// The condition beyond which errors mean nothing.
+pub const LARGEST_CONDITION: f64 = 1e3;
+/// Exponents this near to a half are one.
+const HALVES: f64 = 0.02;
+
+/// What the points determine.
+#[derive(Debug, Clone)]
+pub struct Determined {
+    /// The condition of the whitened Jacobian.
+    pub condition: f64,
+    /// The standard errors of u; `None` where the condition is too large.
+    pub errors: Option<DVector<f64>>,
+    /// The correlations.
+    pub correlations: Option<DMatrix<f64>>,
+    /// What cannot be told, in words.
+    pub direction: Option<String>,
+}
+
+/// What `at`, the fit of `problem` with residuals of the scale `scale`, determines.
+pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robust: bool) -> Determined {
+    let p = u.len();
+    let lengths: Vec<f64> = at.jacobian.column_iter().map(|column| column.norm()).collect();
+    let mut white = at.jacobian.clone();
+    for (mut column, length) in white.column_iter_mut().zip(&lengths) {
+        if *length > 0.0 {
+            column /= *length;
+        }
+    }
+    let svd = white.svd(false, true);
+    let (Some(v), true) = (svd.v_t.as_ref(), p > 0) else {
+        return Determined { condition: f64::INFINITY, errors: None, correlations: None, direction: None };
+    };
+    let (most, least) = (svd.singular_values.max(), svd.singular_values.min());
+    let condition = if least > 0.0 { most / least } else { f64::INFINITY };
+    let refused = !(condition <= LARGEST_CONDITION) || lengths.contains(&0.0);
+    if refused {
+        let weakest = svd.singular_values.imin();
+        let direction: Vec<f64> = (0..p)
+            .map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 })
+            .collect();
+        let words = words(problem, at, u, &direction);
+        return Determined { condition, errors: None, correlations: None, direction: Some(words) };
+    }
+    let inner = DMatrix::from_fn(p, p, |i, j| {
+        let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
+        sum / (lengths[i] * lengths[j])
+    });
+    let factor = variance(&problem.real(&at.residuals), scale, p, robust);
+    let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * inner[(j, j)]).sqrt()));
+    let correlations =
+        DMatrix::from_fn(p, p, |i, j| inner[(i, j)] / (inner[(i, i)] * inner[(j, j)]).sqrt());
+    Determined { condition, errors: Some(errors), correlations: Some(correlations), direction: None }
+}
+
+/// What (JᵀJ)⁻¹ is multiplied by.
+fn variance(residuals: &[f64], scale: f64, p: usize, robust: bool) -> f64 {
+    let n = residuals.len() as f64;
+    let free = (n - p as f64).max(1.0);
+    if !robust {
+        return residuals.iter().map(|r| r * r).sum::<f64>() / free;
+    }
+    let psi: f64 = residuals.iter().map(|r| (r / scale).clamp(-HUBER, HUBER).powi(2)).sum();
+    let inside = residuals.iter().filter(|r| r.abs() <= HUBER * scale).count() as f64 / n;
+    let inside = inside.max(1.0 / n);
+    let kappa = 1.0 + p as f64 / n * (1.0 - inside) / inside;
+    kappa * kappa * scale * scale * (psi / free) / (inside * inside)
+}
+
+/// `R +10 %, E* -4.7 %, γ -9.1 % together move the curve by less than its noise: fix one of them (only γ·R and E*·√R)`.
+fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> String {
+    let parameters = &problem.parameters;
+    let largest = direction.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
+    // A length of the gap is what people know best; it leads where it does not lag.
+    let leads = |j: &usize| {
+        let of_gap = parameters[*j].key().starts_with("gap.");
+        direction[*j].abs() * if of_gap { 1.2 } else { 1.0 }
+    };
+    let logs = (0..direction.len()).filter(|j| parameters[*j].scale.is_none());
+    let lead = logs.max_by(|a, b| leads(a).total_cmp(&leads(b))).filter(|j| direction[*j].abs() > 1e-3 * largest);
+    let unit = match lead {
+        Some(lead) => 1.1_f64.ln() / direction[lead],
+        None => 1.0 / largest,
+    };
+    let moves: Vec<f64> = direction.iter().map(|d| d * unit).collect();
+    let name = |j: usize| letter(&problem.preset, &parameters[j].key());
+    let mut order: Vec<usize> = (0..moves.len()).collect();
+    order.sort_by_key(|j| Some(*j) != lead);
+    let share = |j: usize| moves[j].abs() / (largest * unit.abs());
+    let told: Vec<String> = order
+        .iter()
+        .filter(|j| share(**j) > 0.01)
+        .map(|&j| format!("{} {}", name(j), change(&problem.preset, &parameters[j], u[j], moves[j])))
+        .collect();
+    let moved = &at.jacobian * DVector::from_vec(moves.clone());
+    let noise = match moved.amax() {
+        most if most < 1.0 => "by less than its noise".to_owned(),
+        most => format!("by {} times its noise at most", significant(most, 2)),
+    };
+    let only = lead.and_then(|lead| products(&order, &moves, lead, parameters, &name));
+    let only = only.map_or_else(String::new, |only| format!(" ({only} can be told)"));
+    if let [alone] = told.as_slice() {
+        return format!("{alone} moves the curve {noise}: fix it");
+    }
+    format!("{} together move the curve {noise}: fix one of them{only}", told.join(", "))
+}
+
+/// `+10 %`, or for a shift `+3 um`.
+fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
+    let (before, after) = (parameter.value(u), parameter.value(u + by));
+    if parameter.scale.is_none() {
+        let percent = 100.0 * (after / before - 1.0);
+        let digits = if percent.abs() >= 9.95 { 0 } else { 1 };
+        return format!("{percent:+.digits$} %").replace('-', "−");
+    }
+    let text = said(&preset.units, super::run::quantity(preset, &parameter.key()), after - before);
+    if after >= before { format!("+{text}") } else { text.replacen('-', "−", 1) }
+}
+
+/// `only γ·R and E*·√R`, where all exponents are halves.
+fn products(
+    order: &[usize],
+    moves: &[f64],
+    lead: usize,
+    parameters: &[Parameter],
+    name: &dyn Fn(usize) -> String,
+) -> Option<String> {
+    let mut products = Vec::new();
+    for &j in order.iter().filter(|j| **j != lead) {
+        let exponent = -moves[j] / moves[lead];
+        if parameters[j].scale.is_some() {
+            // A shift that hardly moves has no part in it.
+            if exponent.abs() > HALVES {
+                return None;
+            }
+            continue;
+        }
+        let halves = (2.0 * exponent).round();
+        if (exponent - 0.5 * halves).abs() > HALVES || halves.abs() > 6.0 {
+            return None;
+        }
+        if halves != 0.0 {
+            let r = name(lead);
+            let size = 0.5 * halves.abs();
+            let power = match halves.abs() {
+                1.0 => format!("√{r}"),
+                2.0 => r,
+                4.0 => format!("{r}²"),
+                6.0 => format!("{r}³"),
+                _ => format!("{r}^{size}"),
+            };
+            products.push(format!("{}{}{power}", name(j), if halves > 0.0 { "·" } else { "/" }));
+        }
+    }
+    products.reverse();
+    (!products.is_empty()).then(|| format!("only {}", products.join(" and ")))
+}

@@ -1,0 +1,159 @@
+//! Intervals that need no straight line: by the profile of χ², and by a block bootstrap.
+
+use super::least_squares::{Settings, minimize};
+use super::problem::{Parameter, Problem, Target};
+use super::solve::{HUBER, Solved};
+use crate::gap::shapes::split_mix::SplitMix64;
+use crate::preset::Value;
+
+/// The rise of χ² at the ends of a 95 % interval of one value: the square of 1.96.
+const RISE: f64 = 3.841_458_820_694_124;
+
+/// The rounds and the tolerance of a fit that begins next to its end.
+const WARM: Settings = Settings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY };
+
+/// What a bootstrap found of one parameter, in base units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bootstrapped {
+    /// The standard deviation.
+    pub error: f64,
+    /// 2.5 and 97.5 % of the fits.
+    pub interval: [f64; 2],
+}
+
+impl Problem {
+    /// The same with the parameter `j` held at `u`.
+    fn holding(&self, j: usize, u: f64) -> Option<Self> {
+        let mut held = self.clone();
+        let Parameter { target, .. } = held.parameters.remove(j);
+        let value = self.parameters[j].value(u);
+        match target {
+            Target::Offset => held.instrument.offset = value,
+            Target::Baseline => held.instrument.baseline = value,
+            Target::Tilt => held.instrument.tilt = value,
+            Target::Key(key) => held.preset.set(&key, Value::Number(value)).ok()?,
+            // One of two adhesions: the other would become that of both.
+            Target::Adhesion(_) => return None,
+        }
+        Some(held)
+    }
+}
+
+fn without(u: &[f64], j: usize) -> Vec<f64> {
+    u.iter().enumerate().filter(|(i, _)| *i != j).map(|(_, u)| *u).collect()
+}
+
+/// The ends of the 95 % interval of the parameter `j`, in base units, where χ² has risen by 3.84 and all others are fitted again.
+pub fn profile(
+    problem: &Problem,
+    solved: &Solved,
+    error: f64,
+    j: usize,
+    robust: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<[f64; 2]> {
+    const TIMES: usize = 12;
+    let u = &solved.minimum.parameters;
+    let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
+    let scale = if robust { solved.scale * stretch(problem, solved) } else { rms(problem, solved) };
+    let mut end = |side: f64| {
+        let mut others = without(u, j);
+        // √Δχ² over the distance is nearly a straight line.
+        let mut root = |distance: f64, others: &mut Vec<f64>| {
+            let held = problem.holding(j, u[j] + side * distance)?;
+            let found = minimize(&held, others, &settings, go_on)?;
+            others.clone_from(&found.parameters);
+            Some((2.0 * (found.cost - solved.minimum.cost)).max(0.0).sqrt() / scale)
+        };
+        let mut distance = RISE.sqrt() * error;
+        for _ in 0..TIMES {
+            let found = root(distance, &mut others)?;
+            let ratio = RISE.sqrt() / found;
+            if !(ratio.is_finite() && ratio > 0.0) {
+                return None;
+            }
+            if (ratio - 1.0).abs() < 1e-3 {
+                return Some(problem.parameters[j].value(u[j] + side * distance));
+            }
+            distance *= ratio.clamp(0.3, 3.0);
+        }
+        None
+    };
+    Some([end(-1.0)?, end(1.0)?])
+}
+
+/// How much more the loss rises than that of normal residuals: the root of mean ψ² over mean ψ'.
+fn stretch(problem: &Problem, solved: &Solved) -> f64 {
+    let real = problem.real(&solved.minimum.at.residuals);
+    let psi: f64 = real.iter().map(|r| (r / solved.scale).clamp(-HUBER, HUBER).powi(2)).sum();
+    let inside = real.iter().filter(|r| r.abs() <= HUBER * solved.scale).count().max(1);
+    (psi / inside as f64).sqrt()
+}
+
+/// The root of the mean square of the residuals.
+fn rms(problem: &Problem, solved: &Solved) -> f64 {
+    let real = problem.real(&solved.minimum.at.residuals);
+    (real.iter().map(|r| r * r).sum::<f64>() / real.len() as f64).sqrt()
+}
+
+/// How many rows belong together: the lag at which the residuals have forgotten themselves, one over e.
+#[must_use]
+pub fn block(residuals: &[f64]) -> usize {
+    let n = residuals.len();
+    let mean = residuals.iter().sum::<f64>() / n.max(1) as f64;
+    let covariance = |lag: usize| {
+        residuals.iter().zip(&residuals[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>()
+    };
+    let whole = covariance(0);
+    (1..n / 10).find(|lag| covariance(*lag) < whole / std::f64::consts::E).unwrap_or(1)
+}
+
+/// `count` fits to blocks of rows drawn at random with the seed `seed`, each from the fit; how many came to an end, and what they
+/// found.
+pub fn bootstrap(
+    problem: &Problem,
+    solved: &Solved,
+    robust: bool,
+    (count, seed): (usize, u64),
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Option<(usize, Vec<Bootstrapped>)> {
+    let per = problem.per_point();
+    let first: Vec<f64> = solved.minimum.at.residuals.iter().step_by(per).copied().collect();
+    let (n, block) = (first.len(), block(&first));
+    let mut random = SplitMix64::new(seed);
+    let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
+    let mut drawn = problem.clone();
+    let mut found: Vec<Vec<f64>> = Vec::new();
+    for i in 0..count {
+        if !go_on(i as f64 / count as f64) {
+            break;
+        }
+        let mut counts = vec![0.0; per * n];
+        let mut rows = 0;
+        while rows < n {
+            let begin = usize::try_from(random.bits() % n as u64).unwrap_or(0);
+            for row in (begin..begin + block).map(|row| row % n).take(n - rows) {
+                (0..per).for_each(|k| counts[per * row + k] += 1.0);
+                rows += 1;
+            }
+        }
+        drawn.counts = Some(counts);
+        let fit = minimize(&drawn, &solved.minimum.parameters, &settings, &mut || true);
+        found.extend(fit.map(|fit| fit.parameters));
+    }
+    if found.len() < 10 {
+        return None;
+    }
+    let of = |(j, parameter): (usize, &Parameter)| {
+        let mut values: Vec<f64> = found.iter().map(|u| parameter.value(u[j])).collect();
+        values.sort_by(f64::total_cmp);
+        let many = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / many;
+        let error = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (many - 1.0)).sqrt();
+        // Some hundred.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let at = |share: f64| values[(share * (many - 1.0)).round() as usize];
+        Bootstrapped { error, interval: [at(0.025), at(0.975)] }
+    };
+    Some((found.len(), problem.parameters.iter().enumerate().map(of).collect()))
+}

@@ -1,0 +1,157 @@
+//! What is to be doubted about a fit.
+
+use super::path::Foot;
+use super::problem::{ADHESION, Problem, Target};
+use super::run::Fitted;
+use super::solve::{Solved, solve};
+use crate::measured::Segment;
+use crate::preset::{Preset, Value};
+use crate::problem::groups::LARGE_TABOR;
+use crate::problem::{Control, Groups};
+use crate::units::number::significant;
+use crate::units::{UnitSystem, number::short};
+
+/// A contact so wide, or an approach so deep, in units of R, is none of a soft ball.
+const WIDE: f64 = 0.5;
+const DEEP: f64 = 1.0;
+/// Moduli of everything people press, in Pa.
+const MODULI: [f64; 2] = [10.0, 1e12];
+/// Deviations of the number of runs beyond so many of its own are no chance.
+const RUNS: f64 = -5.0;
+/// Runs are counted in so many points at least.
+const RUNS_OF: usize = 40;
+/// Residuals below this share of the noise are rounding, in which there is always some order.
+const ROUNDING: f64 = 0.1;
+/// A χ² per point beyond it is more than noise.
+const LARGE_CHI: f64 = 1.5;
+
+/// The deviation of the number of runs of signs from that of chance, in its own; A. Wald and J. Wolfowitz, Ann. Math. Stat. 11,
+/// 147 (1940).
+#[must_use]
+pub fn runs(residuals: &[f64]) -> f64 {
+    let plus = residuals.iter().filter(|r| **r > 0.0).count() as f64;
+    let n = residuals.len() as f64;
+    let minus = n - plus;
+    let runs = 1.0 + residuals.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count() as f64;
+    let mean = 2.0 * plus * minus / n + 1.0;
+    let variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0);
+    if variance > 0.0 { (runs - mean) / variance.sqrt() } else { f64::NEG_INFINITY }
+}
+
+/// The doubts about the fit `solved`, whose fitted preset is `preset`.
+pub fn doubts(
+    problem: &Problem,
+    solved: &Solved,
+    preset: &Preset,
+    fitted: &[Fitted],
+    (chi_squared, known_noise): (f64, bool),
+) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let u = &solved.minimum.parameters;
+    let mut unit = |what: String| doubts.push(format!("{what}: check the unit of x"));
+    let radius = preset.gap.radius_of_curvature();
+    if let (Some(radius), Some(paths)) = (radius, problem.paths(u, None)) {
+        let (widest, deepest) = extent(problem, u, &paths);
+        if widest > WIDE * radius {
+            unit(format!("the contact radius reaches {} R", short(widest / radius, 3)));
+        }
+        if deepest > DEEP * radius {
+            unit(format!("the approach reaches {} R", short(deepest / radius, 3)));
+        }
+    }
+    let modulus = preset.material.effective_modulus;
+    if matches!(preset.units, UnitSystem::Si(_)) && !(MODULI[0]..=MODULI[1]).contains(&modulus) {
+        doubts.push(format!("E* = {} Pa is that of nothing people press: check the unit of x", significant(modulus, 3)));
+    }
+    if let Some(tabor) = Groups::of(&preset.problem(), preset.range_of_action()).tabor.filter(|mu| *mu < LARGE_TABOR) {
+        doubts.push(format!(
+            "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit of this \
+             method does not hold"
+        ));
+    }
+    let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
+    if let [approach, retraction] = adhesions[..]
+        && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
+        && (approach.value - retraction.value).abs() > 2.0 * a.hypot(b)
+    {
+        doubts.push(
+            "the works of adhesion of approach and retraction differ by more than their errors: not a quasi-static loop, but \
+             rate or ageing"
+                .to_owned(),
+        );
+    }
+    if solved.scale > ROUNDING {
+        let per = problem.per_point();
+        for segment in [Segment::Approach, Segment::Retraction] {
+            let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(per));
+            let of: Vec<f64> =
+                of.filter(|(datum, _)| !datum.free && datum.segment == segment).map(|(_, r)| *r).collect();
+            let runs = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
+            if runs < RUNS {
+                doubts.push(format!(
+                    "the model does not describe this: the residuals of the {} keep their sign for long runs ({} standard \
+                     deviations fewer than by chance)",
+                    segment.name(),
+                    short(-runs, 2)
+                ));
+            }
+        }
+    }
+    if known_noise && chi_squared > LARGE_CHI {
+        doubts.push(format!(
+            "the residuals are {} times the noise of the points: a value that is held may be wrong (the stiffness of the \
+             device above all), or the model",
+            short(chi_squared.sqrt(), 2)
+        ));
+    }
+    doubts
+}
+
+/// The largest contact radius and approach of the feet.
+fn extent(problem: &Problem, u: &[f64], paths: &super::problem::Paths) -> (f64, f64) {
+    let feet = problem.feet(paths, &problem.instrument_at(u)).unwrap_or_default();
+    let (mut widest, mut deepest) = (0.0, f64::NEG_INFINITY);
+    for (datum, foot) in problem.data.iter().zip(&feet) {
+        let Some(foot) = foot else { continue };
+        let path = paths.of(datum.segment);
+        if let Foot::Radius(s) = foot.foot {
+            widest = f64::max(widest, s);
+            deepest = f64::max(deepest, path.approach(s).unwrap_or(deepest));
+        }
+    }
+    (widest, deepest)
+}
+
+/// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
+pub fn of_spring(problem: &Problem, solved: &Solved, robust: bool, go_on: &mut dyn FnMut() -> bool) -> Option<String> {
+    const KEY: &str = "path.control.stiffness";
+    let Control::Stiffness(k) = problem.preset.path.control else { return None };
+    if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {
+        return None;
+    }
+    let mut told = Vec::new();
+    for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
+        let mut other = problem.clone();
+        other.preset.set(KEY, Value::Number(factor * k)).ok()?;
+        let found = solve(&other, &solved.minimum.parameters, robust, 40, go_on);
+        let words = match found {
+            None => format!("{words}: no fit"),
+            Some(found) => {
+                let changes: Vec<String> = problem
+                    .parameters
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, parameter)| parameter.scale.is_none())
+                    .map(|(j, parameter)| {
+                        let change = found.minimum.parameters[j] - solved.minimum.parameters[j];
+                        let name = super::options::letter(&problem.preset, &parameter.key());
+                        format!("{name} {:+.1} %", 100.0 * change.exp_m1()).replace('-', "−")
+                    })
+                    .collect();
+                format!("{words}: {}", changes.join(", "))
+            }
+        };
+        told.push(words);
+    }
+    Some(format!("with k {}", told.join("; with k ")))
+}

@@ -1,0 +1,141 @@
+//! What is asked of a fit, what can be free, and why there is none.
+
+use super::problem::{ADHESION, BASELINE, OFFSET, TILT, Target};
+use crate::measured::branches::Asked;
+use crate::measured::{Abscissa, BranchError, PointsError};
+use crate::preset::schema::{Kind, Row};
+use crate::preset::{Preset, Value};
+use crate::text::{closest, greek, quote};
+use thiserror::Error;
+
+/// What is asked of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The free keys, dotted or by their labels.
+    pub free: Vec<String>,
+    /// Whether each branch has a work of adhesion of its own.
+    pub separate: bool,
+    /// Whether outliers count linearly, or squared as all others.
+    pub robust: bool,
+    /// What is used of the points.
+    pub asked: Asked,
+    /// δ₀, P₀ and its slope, where they are given.
+    pub offset: Option<f64>,
+    /// P₀.
+    pub baseline: Option<f64>,
+    /// Its slope.
+    pub tilt: Option<f64>,
+    /// Whether starts other than the preset's are tried.
+    pub scan: bool,
+    /// Whether profile intervals are computed.
+    pub profile: bool,
+    /// How many fits of the bootstrap, and their seed.
+    pub bootstrap: Option<(usize, u64)>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            free: Vec::new(),
+            separate: false,
+            robust: true,
+            asked: Asked::default(),
+            offset: None,
+            baseline: None,
+            tilt: None,
+            scan: true,
+            profile: false,
+            bootstrap: None,
+        }
+    }
+}
+
+/// Why there is no fit.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FitError {
+    /// Nothing is free.
+    #[error("nothing is free: name the keys to fit, as in --free material.effective_modulus,material.work_of_adhesion")]
+    NothingFree,
+    /// A key that is not known, or cannot be fitted.
+    #[error("--free {key}: {why}")]
+    Key {
+        /// What was given, safe to show.
+        key: String,
+        /// Why not.
+        why: String,
+    },
+    /// The points give no branches.
+    #[error(transparent)]
+    Branches(#[from] BranchError),
+    /// The columns give no points.
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// Fewer points than parameters ask for.
+    #[error("{points} points in contact are too few for {parameters} free keys: at least {needed} are wanted")]
+    Few {
+        /// How many there are.
+        points: usize,
+        /// How many parameters.
+        parameters: usize,
+        /// How many are wanted.
+        needed: usize,
+    },
+    /// No start gives a curve that comes near to the points.
+    #[error("no values near those of the preset give a curve that reaches the points: check the unit of x and of the force")]
+    NoStart,
+    /// It was no longer wanted, before there was anything.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What a name after `--free` says.
+///
+/// # Errors
+/// [`FitError::Key`].
+pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target, FitError> {
+    let refused = |why: String| FitError::Key { key: quote(name), why };
+    match name {
+        OFFSET | "offset" if abscissa == Abscissa::Radius => {
+            return Err(refused("a contact radius has no offset".to_owned()));
+        }
+        OFFSET | "offset" => return Ok(Target::Offset),
+        BASELINE | "baseline" => return Ok(Target::Baseline),
+        TILT | "tilt" => return Ok(Target::Tilt),
+        _ => {}
+    }
+    let rows: Vec<Row> = preset.rows().collect();
+    let is_named = |row: &&Row| row.key == name || row.label == name || greek(&row.label) == name;
+    let gamma = (name == "γ" || name == "gamma").then_some(ADHESION);
+    let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma)) else {
+        let known = rows.iter().map(|row| &*row.key).chain([OFFSET, BASELINE, TILT]);
+        let meant = closest(name, known);
+        return Err(refused(format!(
+            "is no key of this preset{}",
+            meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
+        )));
+    };
+    let fits = row.key.starts_with("gap.")
+        || ["material.effective_modulus", ADHESION, "path.control.stiffness"].contains(&&*row.key);
+    if !fits || !matches!(row.kind, Kind::Positive | Kind::NonNegative) {
+        return Err(refused("is no positive number of the bodies, the gap or the spring, which alone can be fitted".to_owned()));
+    }
+    match preset.get(&row.key) {
+        Some(Value::Number(value)) if value > 0.0 => Ok(Target::Key(row.key.to_string())),
+        Some(_) => Err(refused("begins at 0, which has no logarithm: give it a first guess with --set".to_owned())),
+        None => Err(refused("has no value in this preset to begin with".to_owned())),
+    }
+}
+
+/// A key as a sentence has it: E*, γ, R.
+#[must_use]
+pub fn letter(preset: &Preset, key: &str) -> String {
+    if let Some(branch) = key.strip_prefix(ADHESION) {
+        return format!("γ{}", branch.replace('.', " of "));
+    }
+    match key {
+        OFFSET => "δ₀".to_owned(),
+        BASELINE => "P₀".to_owned(),
+        TILT => "tilt".to_owned(),
+        key => preset.row(key).map_or_else(|| key.to_owned(), |row| greek(&row.label)),
+    }
+}

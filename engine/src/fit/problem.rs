@@ -1,0 +1,331 @@
+//! What is fitted: parameters, data, residuals and their derivatives.
+
+use super::distance::{Nearest, Scaled};
+use super::least_squares::{Evaluated, LeastSquares};
+use super::path::{Path, Place, Reach};
+use crate::measured::branches::Point;
+use crate::measured::{Abscissa, Segment};
+use crate::preset::{Preset, Value};
+use nalgebra::{DMatrix, DVector};
+
+/// What a parameter is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Target {
+    /// A key of the preset.
+    Key(String),
+    /// The work of adhesion of one branch.
+    Adhesion(Segment),
+    /// δ₀: x = model + δ₀.
+    Offset,
+    /// P₀: P = model + P₀ + tilt x.
+    Baseline,
+    /// Its slope.
+    Tilt,
+}
+
+/// The key of the work of adhesion.
+pub const ADHESION: &str = "material.work_of_adhesion";
+
+/// A parameter that is free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// What it is.
+    pub target: Target,
+    /// Where it starts, in base units.
+    pub start: f64,
+    /// Its unit in u, unless u is its logarithm.
+    pub scale: Option<f64>,
+}
+
+impl Parameter {
+    /// u of a value.
+    #[must_use]
+    pub fn inner(&self, value: f64) -> f64 {
+        self.scale.map_or_else(|| value.ln(), |scale| value / scale)
+    }
+
+    /// The value of u.
+    #[must_use]
+    pub fn value(&self, u: f64) -> f64 {
+        self.scale.map_or_else(|| u.exp(), |scale| u * scale)
+    }
+
+    /// dv/du at a value.
+    #[must_use]
+    pub fn slope(&self, value: f64) -> f64 {
+        self.scale.unwrap_or(value)
+    }
+
+    /// Its dotted key; that of a branch's adhesion has the branch behind it.
+    #[must_use]
+    pub fn key(&self) -> String {
+        match &self.target {
+            Target::Key(key) => key.clone(),
+            Target::Adhesion(segment) => format!("{ADHESION}.{}", segment.name()),
+            Target::Offset => OFFSET.to_owned(),
+            Target::Baseline => BASELINE.to_owned(),
+            Target::Tilt => TILT.to_owned(),
+        }
+    }
+}
+
+/// The key of δ₀.
+pub const OFFSET: &str = "data.offset";
+/// The key of P₀.
+pub const BASELINE: &str = "data.baseline";
+/// The key of its slope.
+pub const TILT: &str = "data.tilt";
+
+/// One point that is fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Datum {
+    /// The point.
+    pub point: Point,
+    /// Its branch.
+    pub segment: Segment,
+    /// Whether the bodies are apart there.
+    pub free: bool,
+}
+
+/// The values between model and instrument.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Instrument {
+    /// δ₀.
+    pub offset: f64,
+    /// P₀.
+    pub baseline: f64,
+    /// Its slope.
+    pub tilt: f64,
+}
+
+/// What is fitted.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// The preset that the free keys are laid over, with the device.
+    pub preset: Preset,
+    /// What x is.
+    pub abscissa: Abscissa,
+    /// The free parameters.
+    pub parameters: Vec<Parameter>,
+    /// What is held of the instrument.
+    pub instrument: Instrument,
+    /// The points.
+    pub data: Vec<Datum>,
+    /// σ of x, P and s.
+    pub sigma: Place,
+    /// Whether s is measured beside x.
+    pub space: bool,
+    /// What the paths must reach.
+    pub reach: Reach,
+    /// How often each residual counts; none counts once.
+    pub counts: Option<Vec<f64>>,
+}
+
+/// The step of a derivative, in u.
+const STEP: f64 = 1e-5;
+
+/// The paths of the two branches, which are one unless their adhesions differ.
+pub struct Paths {
+    approach: Path,
+    retraction: Option<Path>,
+}
+
+impl Paths {
+    /// The path of a branch.
+    #[must_use]
+    pub fn of(&self, segment: Segment) -> &Path {
+        match (&self.retraction, segment) {
+            (Some(path), Segment::Retraction) => path,
+            _ => &self.approach,
+        }
+    }
+}
+
+impl Problem {
+    /// Residuals of one attached point.
+    #[must_use]
+    pub fn per_point(&self) -> usize {
+        if self.space { 2 } else { 1 }
+    }
+
+    /// 1/σ, 0 for what is not measured.
+    #[must_use]
+    pub fn weights(&self) -> Place {
+        [1.0 / self.sigma[0], 1.0 / self.sigma[1], if self.space { 1.0 / self.sigma[2] } else { 0.0 }]
+    }
+
+    /// The preset at `u`, of one branch.
+    #[must_use]
+    pub fn preset_at(&self, u: &[f64], segment: Segment) -> Option<Preset> {
+        let mut preset = self.preset.clone();
+        for (parameter, u) in self.parameters.iter().zip(u) {
+            let key = match &parameter.target {
+                Target::Key(key) => key.as_str(),
+                Target::Adhesion(of) if *of == segment => ADHESION,
+                _ => continue,
+            };
+            let value = parameter.value(*u);
+            // The two that need no check across keys.
+            match key {
+                "material.effective_modulus" if value.is_normal() => preset.material.effective_modulus = value,
+                ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,
+                key => preset.set(key, Value::Number(value)).ok()?,
+            }
+        }
+        Some(preset)
+    }
+
+    /// The instrument at `u`.
+    #[must_use]
+    pub fn instrument_at(&self, u: &[f64]) -> Instrument {
+        let mut instrument = self.instrument;
+        for (parameter, u) in self.parameters.iter().zip(u) {
+            let value = parameter.value(*u);
+            match parameter.target {
+                Target::Offset => instrument.offset = value,
+                Target::Baseline => instrument.baseline = value,
+                Target::Tilt => instrument.tilt = value,
+                _ => {}
+            }
+        }
+        instrument
+    }
+
+    fn path(&self, preset: &Preset, radius: Option<f64>, instrument: &Instrument) -> Option<Path> {
+        let [x, force, s] = self.reach.most;
+        let reach = Reach {
+            most: [x - instrument.offset, force - instrument.baseline, s],
+            radius: radius.or(self.reach.radius),
+            ..self.reach
+        };
+        Path::new(preset, self.abscissa, &reach)
+    }
+
+    /// The paths at `u`, which begin at the radius `radius` where that is given.
+    #[must_use]
+    pub fn paths(&self, u: &[f64], radius: Option<f64>) -> Option<Paths> {
+        let instrument = self.instrument_at(u);
+        let separate = self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)));
+        let of = |segment| self.path(&self.preset_at(u, segment)?, radius, &instrument);
+        let approach = of(Segment::Approach)?;
+        let retraction = if separate { Some(of(Segment::Retraction)?) } else { None };
+        Some(Paths { approach, retraction })
+    }
+
+    /// The paths at `u`, each beginning where that of `paths` does.
+    fn beside(&self, u: &[f64], paths: &Paths) -> Option<Paths> {
+        let instrument = self.instrument_at(u);
+        let of = |segment| self.path(&self.preset_at(u, segment)?, Some(paths.of(segment).outermost), &instrument);
+        let retraction = if paths.retraction.is_some() { Some(of(Segment::Retraction)?) } else { None };
+        Some(Paths { approach: of(Segment::Approach)?, retraction })
+    }
+
+    /// A point as the model has it, in units of noise.
+    fn corrected(&self, datum: &Datum, at: &Instrument) -> Place {
+        let Point { x, force, radius, .. } = datum.point;
+        let weights = self.weights();
+        let shift = if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };
+        [
+            (x - shift) * weights[0],
+            (force - at.baseline - at.tilt * x) * weights[1],
+            if self.space { radius * weights[2] } else { 0.0 },
+        ]
+    }
+
+    /// The feet of all attached points, nothing for free ones; `None` where one has none.
+    pub(super) fn feet(&self, paths: &Paths, at: &Instrument) -> Option<Vec<Option<Nearest>>> {
+        let weights = self.weights();
+        let scaled = [Segment::Approach, Segment::Retraction].map(|of| Scaled::new(paths.of(of), weights));
+        let foot = |datum: &Datum| {
+            if datum.free {
+                return Some(None);
+            }
+            let of = &scaled[usize::from(datum.segment == Segment::Retraction)];
+            of.nearest(self.corrected(datum, at)).map(Some)
+        };
+        self.data.iter().map(foot).collect()
+    }
+
+    /// The residuals of given feet: one of each point, two in space, where free points have a second one that is zero.
+    fn told(&self, feet: &[Option<Nearest>], at: &Instrument) -> DVector<f64> {
+        let per = self.per_point();
+        let mut residuals = DVector::zeros(per * self.data.len());
+        for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
+            match foot {
+                Some(foot) => (0..per).for_each(|k| residuals[per * i + k] = foot.residuals[k]),
+                None => residuals[per * i] = self.corrected(datum, at)[1],
+            }
+        }
+        residuals
+    }
+}
+
+impl LeastSquares for Problem {
+    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>> {
+        let (paths, at) = (self.paths(u, None)?, self.instrument_at(u));
+        Some(self.told(&self.feet(&paths, &at)?, &at))
+    }
+
+    fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
+        let (paths, at) = (self.paths(u, None)?, self.instrument_at(u));
+        let feet = self.feet(&paths, &at)?;
+        let residuals = self.told(&feet, &at);
+        let (per, weights) = (self.per_point(), self.weights());
+        let mut jacobian = DMatrix::zeros(residuals.len(), u.len());
+        for (j, parameter) in self.parameters.iter().enumerate() {
+            // How the scaled point moves against its foot, per unit of u.
+            let shift: Option<fn(&Datum) -> Place> = match parameter.target {
+                Target::Offset => Some(|_| [-1.0, 0.0, 0.0]),
+                Target::Baseline => Some(|_| [0.0, -1.0, 0.0]),
+                Target::Tilt => Some(|datum| [0.0, -datum.point.x, 0.0]),
+                _ => None,
+            };
+            if let (Some(shift), Some(scale)) = (shift, parameter.scale) {
+                for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
+                    let moved = shift(datum);
+                    match foot {
+                        Some(foot) => (0..per).for_each(|k| {
+                            let along: f64 = (0..3).map(|axis| foot.normals[k][axis] * moved[axis] * weights[axis]).sum();
+                            jacobian[(per * i + k, j)] = along * scale;
+                        }),
+                        None => jacobian[(per * i, j)] = moved[1] * weights[1] * scale,
+                    }
+                }
+                continue;
+            }
+            let beside = |h: f64| {
+                let mut u = u.to_vec();
+                u[j] += h;
+                let found = self.beside(&u, &paths)?;
+                let same = [Segment::Approach, Segment::Retraction]
+                    .iter()
+                    .all(|of| found.of(*of).pieces.len() == paths.of(*of).pieces.len());
+                same.then_some(found)
+            };
+            let (above, below) = (beside(STEP), beside(-STEP));
+            let (first, second, width) = match (&above, &below) {
+                (Some(above), Some(below)) => (below, above, 2.0 * STEP),
+                (Some(above), None) => (&paths, above, STEP),
+                (None, Some(below)) => (below, &paths, STEP),
+                (None, None) => return None,
+            };
+            for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
+                let Some(foot) = foot else { continue };
+                let place = |paths: &Paths| paths.of(datum.segment).foot(foot.piece, foot.foot);
+                let (a, b) = (place(first)?, place(second)?);
+                for k in 0..per {
+                    let along: f64 = (0..3)
+                        .filter(|axis| weights[*axis] > 0.0)
+                        .map(|axis| foot.normals[k][axis] * (b[axis] - a[axis]) * weights[axis])
+                        .sum();
+                    jacobian[(per * i + k, j)] = -along / width;
+                }
+            }
+        }
+        jacobian.iter().all(|x| x.is_finite()).then_some(Evaluated { residuals, jacobian })
+    }
+
+    fn counts(&self) -> Option<&[f64]> {
+        self.counts.as_deref()
+    }
+}

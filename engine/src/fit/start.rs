@@ -1,0 +1,170 @@
+//! Where a fit starts: the preset's values and a scan around them.
+//!
+//! E* over five decades; at each γ such that the smallest force is that of the points, δ₀ the median offset. Other free keys are
+//! tried at a few shares of their values.
+
+use super::least_squares::LeastSquares;
+use super::problem::{ADHESION, Datum, Problem, Target};
+use super::solve::{Solved, solve};
+use crate::measured::branches::median;
+use crate::measured::{Abscissa, Segment};
+
+/// Values of E*, and the decades they span.
+const MODULI: usize = 31;
+const DECADES: f64 = 5.0;
+/// Factors at which another free key is tried.
+const FACTORS: [f64; 5] = [1.0, 0.577_350_269_189_625_8, 1.732_050_807_568_877_2, 1.0 / 3.0, 3.0];
+/// Candidates at most.
+const MOST: usize = 400;
+/// Points by which candidates are compared, and those on which the best are run.
+const COMPARED: usize = 60;
+const RUN: usize = 240;
+/// How many of the best are run, and for how many rounds.
+pub const BEST: usize = 5;
+const ROUNDS: usize = 40;
+
+/// A start that was run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tried {
+    /// The mean distance of the points at its end, in σ.
+    pub distance: f64,
+    /// The snaps of its path there.
+    pub snaps: usize,
+}
+
+impl Problem {
+    /// The same with at most `most` points, evenly taken from those in contact and those apart.
+    fn thinned(&self, most: usize) -> Self {
+        let mut thinned = self.clone();
+        let step = self.data.len().div_ceil(most).max(1);
+        let keep = |free: bool| self.data.iter().filter(move |datum| datum.free == free).step_by(step).copied();
+        thinned.data = keep(false).chain(keep(true)).collect();
+        thinned
+    }
+
+    /// The mean distance at `u`.
+    fn distance(&self, u: &[f64]) -> Option<f64> {
+        let residuals = self.residuals(u)?;
+        let mean = residuals.iter().map(|r| r.abs()).sum::<f64>() / residuals.len() as f64;
+        mean.is_finite().then_some(mean)
+    }
+
+    fn index(&self, is: impl Fn(&Target) -> bool) -> Vec<usize> {
+        (0..self.parameters.len()).filter(|j| is(&self.parameters[*j].target)).collect()
+    }
+
+    /// Lets γ have the smallest force of the points, and δ₀ their median offset.
+    fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<f64>> {
+        const TIMES: usize = 6;
+        let adhesions = self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
+        let offsets = self.index(|t| *t == Target::Offset);
+        for _ in 0..if adhesions.is_empty() || least >= 0.0 { 0 } else { TIMES } {
+            let paths = self.paths(&u, None)?;
+            let ratio = least / paths.of(Segment::Retraction).least_force;
+            if !(ratio > 0.0 && ratio.is_finite()) || (ratio - 1.0).abs() < 0.01 {
+                break;
+            }
+            // A cone's grows with the square of γ.
+            for &j in &adhesions {
+                u[j] += 0.7 * ratio.ln();
+            }
+        }
+        if let (&[j], false) = (offsets.as_slice(), self.abscissa == Abscissa::Radius) {
+            let paths = self.paths(&u, None)?;
+            let at = self.instrument_at(&u);
+            let offset = |datum: &Datum| {
+                let x = paths.of(datum.segment).x_at_force(datum.point.force - at.baseline)?;
+                Some(datum.point.x - x)
+            };
+            let offsets: Vec<f64> = self.data.iter().filter(|datum| !datum.free).filter_map(offset).collect();
+            if let Some(offset) = median(offsets) {
+                u[j] = self.parameters[j].inner(offset);
+            }
+        }
+        Some(u)
+    }
+
+    /// The candidates, that of the preset first.
+    fn candidates(&self, scan: bool) -> Vec<Vec<f64>> {
+        let own: Vec<f64> = self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+        let mut list = vec![own.clone()];
+        if !scan {
+            return list;
+        }
+        let modulus = self.index(|t| *t == Target::Key("material.effective_modulus".to_owned()));
+        let others = self.index(|t| {
+            matches!(t, Target::Key(key) if key != ADHESION && key != "material.effective_modulus")
+        });
+        let mut grid = vec![own];
+        for j in others {
+            if grid.len() * FACTORS.len() > MOST / if modulus.is_empty() { 1 } else { MODULI } {
+                break;
+            }
+            grid = grid
+                .iter()
+                .flat_map(|u| {
+                    FACTORS.map(|factor| {
+                        let mut u = u.clone();
+                        u[j] += factor.ln();
+                        u
+                    })
+                })
+                .collect();
+        }
+        for u in grid {
+            match modulus.first() {
+                None => list.push(u),
+                Some(&j) => list.extend((0..MODULI).map(|i| {
+                    let mut u = u.clone();
+                    u[j] += (i as f64 / (MODULI - 1) as f64 - 0.5) * DECADES * std::f64::consts::LN_10;
+                    u
+                })),
+            }
+        }
+        list
+    }
+}
+
+/// The best start and those that were run; `go_on` is told the share that is done.
+pub fn start(
+    problem: &Problem,
+    scan: bool,
+    robust: bool,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Option<(Vec<f64>, Vec<Tried>)> {
+    let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
+    let attached = problem.data.iter().filter(|datum| !datum.free);
+    let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
+    let candidates = problem.candidates(scan);
+    let count = candidates.len() as f64;
+    let mut ranked: Vec<(f64, Vec<f64>)> = Vec::new();
+    for (i, u) in candidates.into_iter().enumerate() {
+        if !go_on(0.5 * i as f64 / count) {
+            break;
+        }
+        let at = problem.instrument_at(&u);
+        let settled = if scan { compared.settled(u.clone(), least - at.baseline) } else { Some(u.clone()) };
+        for u in [Some(u).filter(|_| i == 0), settled].into_iter().flatten() {
+            ranked.extend(compared.distance(&u).map(|distance| (distance, u)));
+        }
+    }
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ranked.truncate(BEST);
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut tried = Vec::new();
+    let count = ranked.len() as f64;
+    for (i, (before, u)) in ranked.into_iter().enumerate() {
+        let share = 0.5 + 0.3 * i as f64 / count;
+        let solved = solve(&run, &u, robust, ROUNDS, &mut || go_on(share));
+        let end = solved.map_or((before, u), |Solved { minimum, .. }| {
+            let distance = run.distance(&minimum.parameters).unwrap_or(before);
+            (distance, minimum.parameters)
+        });
+        let snaps = run.paths(&end.1, None).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
+        tried.push(Tried { distance: end.0, snaps });
+        if best.as_ref().is_none_or(|best| end.0 < best.0) {
+            best = Some(end);
+        }
+    }
+    best.map(|(_, u)| (u, tried))
+}

@@ -1,0 +1,329 @@
+//! A fit to a measured curve as a document, as text for a terminal and as CSV.
+
+use super::number::{exact, short, significant};
+use super::table::aligned;
+use crate::fit::options::letter;
+use crate::fit::run::{Fit, Residual, quantity};
+use crate::fit::least_squares::Ending;
+use crate::measured::{Abscissa, Segment};
+use crate::units::{Quantity, UnitSystem};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A fit, in base units: SI, or those of a reduced problem.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The file of the points.
+    pub file: String,
+    /// The values.
+    pub parameters: Vec<ParameterReport>,
+    /// The correlations of the values, in their order; `None` where they are not determined.
+    pub correlations: Option<Vec<Vec<f64>>>,
+    /// Σr²/(n − p), r in σ.
+    pub chi_squared: f64,
+    /// The points that are fitted.
+    pub points: usize,
+    /// Of them those in contact.
+    pub points_in_contact: usize,
+    /// Points more than four times their scale away.
+    pub outliers: usize,
+    /// Samples within jumps, which are left out.
+    pub dropped: usize,
+    /// Rows left out by range, segment or shape.
+    pub left_out: usize,
+    /// Whether the points determine the values.
+    pub determined: bool,
+    /// What they do not determine, in words.
+    pub direction: Option<String>,
+    /// The condition of the Jacobian, its columns of length 1; `None` where it is infinite.
+    pub condition: Option<f64>,
+    /// `converged`, `rounds` or `cancelled`.
+    pub ended: &'static str,
+    /// What x is.
+    pub abscissa: &'static str,
+    /// σ of x and of P.
+    pub sigma: [f64; 2],
+    /// Whether each was assumed.
+    pub sigma_assumed: [bool; 2],
+    /// Whether σ of P is that of the residuals.
+    pub sigma_from_residuals: bool,
+    /// The snaps of the fitted path.
+    pub snaps: usize,
+    /// The starts that were run, the nearest first.
+    pub starts: Vec<StartReport>,
+    /// E of one body, rigid the other, where a Poisson's ratio is given; with its standard error.
+    pub youngs_modulus: Option<[Option<f64>; 2]>,
+    /// Fits of the bootstrap, and the rows of its blocks.
+    pub bootstrap: Option<[usize; 2]>,
+    /// What was found, assumed and held.
+    pub notes: Vec<String>,
+    /// What is to be doubted.
+    pub warnings: Vec<String>,
+    /// How numbers are shown.
+    #[serde(skip)]
+    shown: UnitSystem,
+}
+
+/// One fitted value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterReport {
+    /// Its dotted key.
+    pub key: String,
+    /// The value.
+    pub value: f64,
+    /// Its standard error; `None` where it is not determined.
+    pub standard_error: Option<f64>,
+    /// Where the fit started.
+    pub start: f64,
+    /// Its unit; empty in a reduced problem.
+    pub unit: &'static str,
+    /// The 95 % interval by the profile of χ².
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile_interval: Option<[f64; 2]>,
+    /// The standard deviation of the bootstrap.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bootstrap_error: Option<f64>,
+    /// Its 95 % interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bootstrap_interval: Option<[f64; 2]>,
+    #[serde(skip)]
+    letter: String,
+    #[serde(skip)]
+    quantity: Quantity,
+}
+
+/// A start that was run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StartReport {
+    /// The mean distance of the points at its end, in σ.
+    pub distance: f64,
+    /// The snaps of its path.
+    pub snaps: usize,
+}
+
+impl FitReport {
+    /// The document of `fit` to the points of `file`, with E beside E* for Poisson's ratio ν.
+    #[must_use]
+    pub fn new(file: &str, fit: &Fit, abscissa: Abscissa, poisson: Option<f64>) -> Self {
+        let units = &fit.preset.units;
+        let is_si = matches!(units, UnitSystem::Si(_));
+        let parameters: Vec<ParameterReport> = fit
+            .parameters
+            .iter()
+            .map(|fitted| {
+                let quantity = quantity(&fit.preset, &fitted.key);
+                ParameterReport {
+                    key: fitted.key.clone(),
+                    value: fitted.value,
+                    standard_error: fitted.standard_error,
+                    start: fitted.start,
+                    unit: quantity.si().filter(|_| is_si).unwrap_or(""),
+                    profile_interval: fitted.profile,
+                    bootstrap_error: fitted.bootstrap.map(|found| found.error),
+                    bootstrap_interval: fitted.bootstrap.map(|found| found.interval),
+                    letter: letter(&fit.preset, &fitted.key),
+                    quantity,
+                }
+            })
+            .collect();
+        let modulus = parameters.iter().find(|parameter| parameter.key == "material.effective_modulus");
+        let youngs_modulus = poisson.map(|nu| {
+            let factor = 1.0 - nu * nu;
+            let value = modulus.map_or(fit.preset.material.effective_modulus, |parameter| parameter.value);
+            [Some(factor * value), modulus.and_then(|parameter| parameter.standard_error).map(|error| factor * error)]
+        });
+        let mut starts: Vec<StartReport> =
+            fit.starts.iter().map(|tried| StartReport { distance: tried.distance, snaps: tried.snaps }).collect();
+        starts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        Self {
+            schema: super::SCHEMA,
+            file: file.to_owned(),
+            parameters,
+            correlations: fit.correlations.clone(),
+            chi_squared: fit.chi_squared,
+            points: fit.points.iter().sum(),
+            points_in_contact: fit.points[0],
+            outliers: fit.outliers,
+            dropped: fit.dropped[0],
+            left_out: fit.dropped[1],
+            determined: fit.direction.is_none(),
+            direction: fit.direction.clone(),
+            condition: Some(fit.condition).filter(|condition| condition.is_finite()),
+            ended: match fit.ending {
+                Ending::Converged => "converged",
+                Ending::Rounds => "rounds",
+                Ending::Cancelled => "cancelled",
+            },
+            abscissa: abscissa.name(),
+            sigma: [fit.noise.sigma[0], fit.noise.sigma[1]],
+            sigma_assumed: [fit.noise.assumed[0], fit.noise.assumed[1]],
+            sigma_from_residuals: fit.noise_from_residuals,
+            snaps: fit.snaps,
+            starts,
+            youngs_modulus,
+            bootstrap: fit.bootstrapped,
+            notes: fit.notes.clone(),
+            warnings: fit.warnings.clone(),
+            shown: units.clone(),
+        }
+    }
+
+    /// The fit as lines of text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let units = &self.shown;
+        let mut text = format!("{}: force over {}\n", self.file, self.abscissa);
+        for note in &self.notes {
+            let _ = writeln!(text, "note: {note}");
+        }
+        let shown = |quantity, x: f64| units.shown(quantity, x);
+        let number = |quantity, x| significant(shown(quantity, x).number, 6);
+        let mut rows = vec![["key", "", "value", "error", "start", ""].map(str::to_owned).to_vec()];
+        for parameter in &self.parameters {
+            let unit = units.unit(parameter.quantity).map_or_else(String::new, crate::units::Unit::ascii);
+            rows.push(vec![
+                parameter.key.clone(),
+                parameter.letter.clone(),
+                number(parameter.quantity, parameter.value),
+                parameter.standard_error.map_or_else(
+                    || "-".to_owned(),
+                    |error| significant(shown(parameter.quantity, error).number, 2),
+                ),
+                number(parameter.quantity, parameter.start),
+                unit,
+            ]);
+        }
+        text.push('\n');
+        text.push_str(&aligned(&rows, 2));
+        for parameter in &self.parameters {
+            let interval = |[lo, hi]: [f64; 2]| {
+                format!("{} .. {}", number(parameter.quantity, lo), number(parameter.quantity, hi))
+            };
+            let key = &parameter.key;
+            if let Some(found) = parameter.profile_interval {
+                let _ = writeln!(text, "{key}: 95 % by the profile of chi squared {}", interval(found));
+            }
+            if let (Some(found), Some([count, block])) = (parameter.bootstrap_interval, self.bootstrap) {
+                let _ = writeln!(text, "{key}: 95 % of {count} fits to blocks of {block} rows {}", interval(found));
+            }
+        }
+        if let Some([Some(value), error]) = self.youngs_modulus {
+            let error = error.map_or_else(String::new, |error| {
+                format!(" +- {}", significant(shown(Quantity::Stress, error).number, 2))
+            });
+            let unit = units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));
+            let _ = writeln!(text, "E = {}{error}{unit}, if the other body is rigid", number(Quantity::Stress, value));
+        }
+        text.push('\n');
+        if let Some(correlations) = self.correlations.as_ref().filter(|rows| rows.len() > 1) {
+            let mut pairs = Vec::new();
+            for (i, row) in correlations.iter().enumerate() {
+                for (j, r) in row.iter().enumerate().take(i) {
+                    let names = [j, i].map(|k| self.parameters[k].letter.as_str());
+                    pairs.push(format!("{} {} {r:+.2}", names[0], names[1]));
+                }
+            }
+            let _ = writeln!(text, "correlations: {}", pairs.join(", "));
+        }
+        self.close(&mut text);
+        text
+    }
+
+    fn close(&self, text: &mut String) {
+        let units = &self.shown;
+        let _ = writeln!(
+            text,
+            "chi squared per point {}; {} points, {} of them in contact, {} outliers; dropped: {} within jumps, {} left out",
+            short(self.chi_squared, 4),
+            self.points,
+            self.points_in_contact,
+            self.outliers,
+            self.dropped,
+            self.left_out
+        );
+        let sigma = |quantity, x, assumed: bool| {
+            let told = super::number::with_unit(units, quantity, x, true, |x| short(x, 3));
+            if assumed { format!("{told} (assumed)") } else { told }
+        };
+        let of_force = if self.sigma_from_residuals { " (of the residuals)" } else { "" };
+        let _ = writeln!(
+            text,
+            "sigma of x {}, of P {}{of_force}",
+            sigma(Quantity::Length, self.sigma[0], self.sigma_assumed[0]),
+            sigma(Quantity::Force, self.sigma[1], self.sigma_assumed[1] && !self.sigma_from_residuals)
+        );
+        let starts: Vec<String> = self
+            .starts
+            .iter()
+            .map(|start| format!("{} ({})", short(start.distance, 3), start.snaps))
+            .collect();
+        let _ = writeln!(text, "starts, by the mean distance at their end in sigma (snaps): {}", starts.join(", "));
+        if let Some(direction) = &self.direction {
+            let _ = writeln!(text, "not determined: {direction}");
+        }
+        let end = match self.ended {
+            "converged" => "converged",
+            "rounds" => "NOT converged: these are the best values so far",
+            _ => "stopped: these are the best values so far",
+        };
+        let _ = writeln!(text, "end: {end}");
+    }
+
+    /// The header and the row of a table with one row for each file.
+    #[must_use]
+    pub fn row(&self) -> [Vec<String>; 2] {
+        let mut header = vec!["file".to_owned(), "state".to_owned()];
+        let state = match (self.ended, self.determined) {
+            ("converged", true) => "ok",
+            ("converged", false) => "not determined",
+            (other, _) => other,
+        };
+        let mut row = vec![self.file.clone(), state.to_owned()];
+        for parameter in &self.parameters {
+            header.push(parameter.key.clone());
+            header.push(format!("{} error", parameter.key));
+            row.push(exact(parameter.value));
+            row.push(parameter.standard_error.map_or_else(String::new, exact));
+        }
+        for (name, value) in [
+            ("chi_squared", exact(self.chi_squared)),
+            ("points", self.points.to_string()),
+            ("outliers", self.outliers.to_string()),
+            ("snaps", self.snaps.to_string()),
+            ("warnings", self.warnings.join("; ")),
+        ] {
+            header.push(name.to_owned());
+            row.push(value);
+        }
+        [header, row]
+    }
+}
+
+/// The points beside a fit as CSV: row, segment, x, P, part, residual in σ, outlier; x and P in base units, signs put right.
+#[must_use]
+pub fn residuals(residuals: &[Residual]) -> String {
+    let mut rows: Vec<&Residual> = residuals.iter().collect();
+    rows.sort_by_key(|residual| residual.datum.point.row);
+    let mut text = "row,segment,part,x,force,residual,outlier\n".to_owned();
+    for residual in rows {
+        let datum = &residual.datum;
+        let segment = match datum.segment {
+            Segment::Approach => "approach",
+            _ => "retraction",
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{},{segment},{},{},{},{},{}",
+            datum.point.row,
+            if datum.free { "free" } else { "contact" },
+            exact(datum.point.x),
+            exact(datum.point.force),
+            exact(residual.residual),
+            residual.outlier
+        );
+    }
+    text
+}
