@@ -28,12 +28,13 @@ const PAGES: [&str; 6] = [
     "examples/cluster/README.md",
 ];
 /// The generated parts; each is in some file.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     "screen",
     "keys",
     "preset keys",
     "output: -h",
     "output: cycle fig-9-weak",
+    "output: fit shipped:lens.csv lens --free E*,w,data.offset",
     "output: presets list",
     "output: sweep quantities",
     "output: trace wavy-sphere | head -1",

@@ -380,13 +380,16 @@ fn is_the_one_solution(ground: &Ground, found: &Cycle, name: &str) {
 
 #[test]
 fn without_adhesion_corners_are_passed() {
-    for (broken, approach) in [("0.05*max(r-0.1,0)", 0.02), ("3*max(r-0.06,0)^2", 0.02), ("0.02*max(r-0.07,0)", 0.012)] {
+    for (broken, approach) in
+        [("0.05*max(r-0.1,0)", 0.02), ("3*max(r-0.06,0)^2", 0.02), ("0.02*max(r-0.07,0)", 0.012)]
+    {
         let text = format!("r^2/2+0.0025*(1-cos(2*pi*r/0.05))+{broken}");
         let gap = TypedGap::new(&text, Vec::<FormulaParameter>::new(), Some(0.6)).unwrap();
         let ground = Ground::of(Arc::new(Shape::Formula(Arc::new(gap))), 0.5).unwrap();
         let turn = Turn::Approach(approach);
         let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
-        let found = cycle_on(&ground, 0.0, &setting, &|_| true).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found =
+            cycle_on(&ground, 0.0, &setting, &|_| true).unwrap_or_else(|error| panic!("{text}: {error}"));
         assert!(found.events.iter().any(|event| event.kind == EventKind::Touch), "{text}");
         is_the_one_solution(&ground, &found, &text);
     }
@@ -420,7 +423,8 @@ fn loops_of_measured_profiles() {
         let seconds = started.elapsed().as_secs_f64();
         match found {
             Ok(found) => {
-                let gains = found.events.iter().filter(|event| event.dissipated.is_some_and(|lost| lost < 0.0));
+                let gains =
+                    found.events.iter().filter(|event| event.dissipated.is_some_and(|lost| lost < 0.0));
                 println!(
                     "{number}: λ {wavelength:.3} A {amplitude:.1e} noise {noise:.0e} γ {gamma:.0e}: {} events, {} gain, balance {:.1e} of {:.2e}, {:?}, {seconds:.1} s",
                     found.events.len(),

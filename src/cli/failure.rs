@@ -4,6 +4,7 @@ use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, Reason};
 use crate::print::DrawError;
 use crate::print::FormatError;
+use crate::store::data::MeasuredError;
 use crate::store::file::FileError;
 use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;
@@ -32,6 +33,9 @@ pub enum Failure {
     /// A script cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A measured curve cannot be read.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
     /// The result could not be written to a file.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -159,6 +163,7 @@ impl Failure {
             Self::Session(error) => error.can_be_mended(),
             Self::Case(error) => error.can_be_mended(),
             Self::File(error) => error.can_be_mended(),
+            Self::Measured(error) => error.can_be_mended(),
             Self::Write(error) => error.can_be_mended(),
             Self::Map(error) => error.can_be_mended(),
             Self::Lines(error) => error.can_be_mended(),

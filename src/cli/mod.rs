@@ -5,7 +5,7 @@
 //! | 0 | success |
 //! | 1 | something failed: the computation, a full disk |
 //! | 2 | what the person can mend: bad usage, a bad value, a path that leads nowhere or must not be written |
-//! | 3 | with `--strict`: the result has inadmissible states |
+//! | 3 | with `--strict`: the result has inadmissible states; of a fit: the points do not determine the values |
 //! | 130, 143 | a sweep was stopped by Ctrl-C or SIGTERM; what was done is kept |
 //!
 //! Results go to standard output, everything else to standard error. A reader that goes away early
@@ -18,8 +18,10 @@ mod cycle;
 mod explore;
 mod failure;
 mod figures;
+mod fit;
 mod man;
 mod map;
+mod measured;
 mod output;
 mod plot;
 mod presets;
@@ -71,6 +73,8 @@ enum Command {
     Cycle(cycle::Arguments),
     /// Find where snaps begin: lines in two numbers of a preset, or its limit points over one
     Map(map::Arguments),
+    /// Fit values of a preset to measured curves
+    Fit(fit::Arguments),
     /// Draw a view as a figure for print
     Plot(plot::Arguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
@@ -116,6 +120,7 @@ pub fn run() -> ExitCode {
         Some(Command::Unload(arguments)) => unload::run(arguments),
         Some(Command::Cycle(arguments)) => cycle::run(arguments),
         Some(Command::Map(arguments)) => map::run(arguments),
+        Some(Command::Fit(arguments)) => fit::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),
         Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

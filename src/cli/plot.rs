@@ -1,20 +1,25 @@
 //! `pulloff plot`: a view of the explorer as a figure for print.
 
-use super::console::warn;
+use super::console::{note, warn};
+use super::measured::{fill, typed};
 use super::problem::Problem;
 use super::{Failure, output};
 use crate::explorer::maps::MapWish;
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View, Window};
 use crate::figure::Subject;
+use crate::figure::measured::Points;
 use crate::plot::map::{Map, MapError};
 use crate::plot::range::RangeError;
 use crate::plot::{Chart, Range, Width, series, svg, table};
 use crate::print::{Format, FormatError};
+use crate::store::data::read_measured;
 use crate::store::file::kind_of;
 use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
+use pulloff_engine::measured::Spec;
+use pulloff_engine::measured::branches::Asked;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::jump::Run;
@@ -56,6 +61,18 @@ pub struct Arguments {
     /// The part of the y axis that is shown, in its units as drawn; one end may be left out: --y -1..
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
     y: Option<Range>,
+    /// Lay the points of a measured curve behind it
+    #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
+    measured: Option<PathBuf>,
+    /// What the columns of the measured curve are, where its header does not say it: x=1,force=2
+    #[arg(long, value_name = "ROLE=COLUMN,...", requires = "measured")]
+    columns: Option<String>,
+    /// The x of the measured curve at which the approach is zero
+    #[arg(long, value_name = "LENGTH", requires = "measured", allow_hyphen_values = true)]
+    offset: Option<String>,
+    /// The force of the measured curve that is none [default: the median of its free part]
+    #[arg(long, value_name = "FORCE", requires = "measured", allow_hyphen_values = true)]
+    baseline: Option<String>,
     /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
     width: Width,
@@ -116,7 +133,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let loaded = arguments.problem.load()?;
     output::spares(arguments.output.as_deref(), "-o", &loaded)?;
     let data = arguments.data_file(&loaded)?;
-    let preset = loaded.preset;
+    let mut preset = loaded.preset;
+    let points = arguments.points(&mut preset)?;
     let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
     warn(&curve.base.warnings);
@@ -146,7 +164,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         axes,
         ..Subject::alone(&curve, overlays)
     };
-    let chart = arguments.part(Chart::of(&subject.figure(view), &Window::WHOLE))?;
+    let mut figure = subject.figure(view);
+    if points.is_some_and(|points| !points.lay(&mut figure, subject.scale())) {
+        return Err(Failure::Usage(format!(
+            "--measured: the file has not the columns of {}; points are drawn in force-approach, radius-force and \
+             radius-approach",
+            view.name()
+        )));
+    }
+    let chart = arguments.part(Chart::of(&figure, &Window::WHOLE))?;
     let picture = svg::svg(&chart, arguments.width);
     output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
     if let Some((path, overwrite)) = data {
@@ -156,6 +182,28 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 impl Arguments {
+    /// The measured points; the preset gets the spring that their file states.
+    fn points(&self, preset: &mut Preset) -> Result<Option<Points>, Failure> {
+        let Some(path) = &self.measured else { return Ok(None) };
+        let said = self.columns.as_deref().map_or(Ok(Spec::default()), Spec::parse);
+        let said = said.map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
+        let measured = read_measured(path, &said)?;
+        let wrong = |error: String| Failure::Usage(format!("{}: {error}", output::shown(path)));
+        let spring = fill(preset, &measured).map_err(wrong)?;
+        let points = measured.points(&preset.units, spring).map_err(|error| wrong(error.to_string()))?;
+        let branches = points.branches(&Asked::default()).map_err(|error| wrong(error.to_string()))?;
+        let given = |flag: &str, key: &str, text: &Option<String>| {
+            text.as_deref().map(|text| typed(preset, flag, key, text)).transpose()
+        };
+        let offset = given("--offset", "path.start_approach", &self.offset)?.unwrap_or(0.0);
+        let baseline = given("--baseline", "path.start_force", &self.baseline)?;
+        let baseline = baseline.or(branches.baseline).unwrap_or(0.0);
+        for text in measured.notes.iter().chain(&branches.notes) {
+            note(Some(text));
+        }
+        Ok(Some(Points::new(&branches, offset, baseline, spring)))
+    }
+
     /// The picture of the results of a sweep.
     fn of_sweep(&self, path: &Path) -> Result<String, Failure> {
         let results = Results::open(path).map_err(MapError::from)?;
@@ -251,16 +299,7 @@ fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<I
 
 /// A contact radius as typed, in SI or reduced units.
 fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
-    let wrong = |cause: &dyn std::fmt::Display| Failure::Usage(format!("--contact-radius: {cause}"));
-    let row = preset
-        .row("path.start_contact_radius")
-        .ok_or_else(|| wrong(&format!("expected {}", Quantity::Length.name())))?;
-    // The row is that of another key, which the message must not blame.
-    let words = |invalid: pulloff_engine::preset::Invalid| {
-        let text = invalid.to_string();
-        wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
-    };
-    preset.number(&row, text).map_err(words)
+    typed(preset, "--contact-radius", "path.start_contact_radius", text)
 }
 
 /// The format that is asked for; standard output and descriptors have no ending.

@@ -9,11 +9,12 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// The names of the subcommands, which no preset can have.
-pub(super) const SUBCOMMANDS: [&str; 14] = [
+pub(super) const SUBCOMMANDS: [&str; 15] = [
     "trace",
     "unload",
     "cycle",
     "map",
+    "fit",
     "plot",
     "figures",
     "sweep",

@@ -17,6 +17,7 @@
 //! | [`map`] | lines of a map of two numbers, limit points over one |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
+//! | [`measured`] | measured points behind a curve |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
@@ -26,6 +27,7 @@ pub mod contact_map;
 pub mod curves;
 pub mod loops;
 pub mod map;
+pub mod measured;
 pub mod parts;
 pub mod reading;
 pub mod scale;

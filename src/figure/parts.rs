@@ -92,6 +92,10 @@ pub enum Sign {
     Snaps(usize),
     /// A computed value, on a line through all of them.
     Value,
+    /// A measured point, of an approach or of a retraction: behind everything.
+    Measured {
+        loading: bool,
+    },
 }
 
 /// A sign at a point in axis values.

@@ -103,6 +103,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
         // Written as a number.
         Sign::Snaps(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
+        Sign::Measured { loading: true } => stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach"),
+        Sign::Measured { loading: false } => stamp(MarkerShape::Square, GREY, 1.1, "measured retraction"),
         // The axes say what it is.
         Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }

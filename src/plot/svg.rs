@@ -248,10 +248,15 @@ fn plots(chart: &Chart) -> Vec<Plot> {
     // The dots of the exact solution stand on the line that they agree with.
     let (exact, others): (Vec<&Line>, Vec<&Line>) =
         chart.lines.iter().partition(|line| line.role == Role::Exact);
-    let mut plots: Vec<Drawn> = others.into_iter().chain(exact).flat_map(line).collect();
-    let stamped: Vec<Mark> =
-        chart.marks.iter().copied().filter(|mark| !matches!(mark.sign, Sign::Snaps(_))).collect();
-    plots.extend(stamped.chunk_by(|a, b| a.sign == b.sign).filter_map(marks));
+    // Measured points stand behind everything.
+    let is_measured = |mark: &&Mark| matches!(mark.sign, Sign::Measured { .. });
+    // Numbers of snaps are written, not stamped.
+    let stamped = chart.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
+    let (behind, above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
+    let of = |some: &[Mark]| some.chunk_by(|a, b| a.sign == b.sign).filter_map(marks).collect::<Vec<_>>();
+    let mut plots: Vec<Drawn> = of(&behind);
+    plots.extend(others.into_iter().chain(exact).flat_map(line));
+    plots.extend(of(&above));
     if plots.is_empty() {
         // Without anything to draw the library draws no axes either.
         plots.push(LinePlot::new().into());

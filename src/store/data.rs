@@ -1,10 +1,13 @@
 //! The files of profiles: the engine reads no disk, and asks here for the rows that a preset names.
 
 use super::file::{FileError, read_bytes};
+use crate::mend::Mend;
 use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::measured::{self, Measured, Spec};
 use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
 use pulloff_engine::preset::profile::{Columns, LARGEST, TextError, parse};
 use pulloff_engine::preset::read::{self, ReadError};
+use pulloff_engine::preset::shipped::curve;
 use pulloff_engine::preset::{Files, Preset};
 use pulloff_engine::text::{is_unsafe, quote, show_path};
 use std::path::{Path, PathBuf};
@@ -22,10 +25,40 @@ pub enum ProfileError {
     Text { path: String, cause: TextError },
 }
 
+/// Why a file gives no measured curve. Names and paths in it are safe to show.
+#[derive(Debug, Error)]
+pub enum MeasuredError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("{path}: {cause}")]
+    Text { path: String, cause: measured::ReadError },
+    /// None that comes with the program, in words.
+    #[error("{0}")]
+    Shipped(String),
+}
+
+impl Mend for MeasuredError {
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::File(error) => error.can_be_mended(),
+            Self::Text { .. } | Self::Shipped(_) => true,
+        }
+    }
+}
+
 /// Reads the profile in the file `path`.
 pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
     let (bytes, _) = read_bytes(path, LARGEST)?;
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
+}
+
+/// Reads the measured curve in the file `path`, or the one that comes with the program, with what a person says of its columns.
+pub fn read_measured(path: &Path, spec: &Spec) -> Result<Measured, MeasuredError> {
+    let bytes = match path.to_str().and_then(curve) {
+        Some(text) => text.map_err(MeasuredError::Shipped)?.as_bytes().to_vec(),
+        None => read_bytes(path, LARGEST)?.0,
+    };
+    measured::parse(&bytes, spec).map_err(|cause| MeasuredError::Text { path: show_path(path), cause })
 }
 
 /// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that

@@ -52,9 +52,8 @@ pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robu
     let refused = !(condition <= LARGEST_CONDITION) || lengths.contains(&0.0);
     if refused {
         let weakest = svd.singular_values.imin();
-        let direction: Vec<f64> = (0..p)
-            .map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 })
-            .collect();
+        let direction: Vec<f64> =
+            (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
         let words = words(problem, at, u, &direction);
         return Determined { condition, errors: None, correlations: None, direction: Some(words) };
     }
@@ -64,8 +63,7 @@ pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robu
     });
     let factor = variance(&problem.real(&at.residuals), scale, p, robust);
     let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * inner[(j, j)]).sqrt()));
-    let correlations =
-        DMatrix::from_fn(p, p, |i, j| inner[(i, j)] / (inner[(i, i)] * inner[(j, j)]).sqrt());
+    let correlations = DMatrix::from_fn(p, p, |i, j| inner[(i, j)] / (inner[(i, i)] * inner[(j, j)]).sqrt());
     Determined { condition, errors: Some(errors), correlations: Some(correlations), direction: None }
 }
 
@@ -93,7 +91,8 @@ fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> Str
         direction[*j].abs() * if of_gap { 1.2 } else { 1.0 }
     };
     let logs = (0..direction.len()).filter(|j| parameters[*j].scale.is_none());
-    let lead = logs.max_by(|a, b| leads(a).total_cmp(&leads(b))).filter(|j| direction[*j].abs() > 1e-3 * largest);
+    let lead =
+        logs.max_by(|a, b| leads(a).total_cmp(&leads(b))).filter(|j| direction[*j].abs() > 1e-3 * largest);
     let unit = match lead {
         Some(lead) => 1.1_f64.ln() / direction[lead],
         None => 1.0 / largest,

@@ -137,7 +137,11 @@ impl<'a> Scaled<'a> {
         for _ in 0..STEPS {
             let (slope, off, along) = look(s)?;
             let length = dot(along, along);
-            if slope > 0.0 { hi = s } else { lo = s }
+            if slope > 0.0 {
+                hi = s
+            } else {
+                lo = s
+            }
             // By the curve's own bend after the first step.
             let bend = match last {
                 Some((t, before)) if t != s => (slope - before) / (s - t),

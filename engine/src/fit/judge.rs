@@ -61,9 +61,14 @@ pub fn doubts(
     }
     let modulus = preset.material.effective_modulus;
     if matches!(preset.units, UnitSystem::Si(_)) && !(MODULI[0]..=MODULI[1]).contains(&modulus) {
-        doubts.push(format!("E* = {} Pa is that of nothing people press: check the unit of x", significant(modulus, 3)));
+        doubts.push(format!(
+            "E* = {} Pa is that of nothing people press: check the unit of x",
+            significant(modulus, 3)
+        ));
     }
-    if let Some(tabor) = Groups::of(&preset.problem(), preset.range_of_action()).tabor.filter(|mu| *mu < LARGE_TABOR) {
+    if let Some(tabor) =
+        Groups::of(&preset.problem(), preset.range_of_action()).tabor.filter(|mu| *mu < LARGE_TABOR)
+    {
         doubts.push(format!(
             "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit of this \
              method does not hold"
@@ -123,7 +128,12 @@ fn extent(problem: &Problem, u: &[f64], paths: &super::problem::Paths) -> (f64, 
 }
 
 /// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
-pub fn of_spring(problem: &Problem, solved: &Solved, robust: bool, go_on: &mut dyn FnMut() -> bool) -> Option<String> {
+pub fn of_spring(
+    problem: &Problem,
+    solved: &Solved,
+    robust: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<String> {
     const KEY: &str = "path.control.stiffness";
     let Control::Stiffness(k) = problem.preset.path.control else { return None };
     if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {

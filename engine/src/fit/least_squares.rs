@@ -116,7 +116,8 @@ impl Factored {
             column.component_mul_assign(&roots);
         }
         let mut right = -at.residuals.component_mul(&roots);
-        let lengths = DVector::from_iterator(jacobian.ncols(), jacobian.column_iter().map(|column| column.norm()));
+        let lengths =
+            DVector::from_iterator(jacobian.ncols(), jacobian.column_iter().map(|column| column.norm()));
         let qr = jacobian.qr();
         qr.q_tr_mul(&mut right);
         let r = qr.r();
@@ -165,9 +166,8 @@ pub fn minimize(
     }
     let mut scales = DVector::zeros(u.len());
     let (mut mu, mut growth) = (FIRST, 2.0);
-    let end = |u: Vec<f64>, at, cost, ending, rounds| {
-        Some(Minimum { parameters: u, at, cost, ending, rounds })
-    };
+    let end =
+        |u: Vec<f64>, at, cost, ending, rounds| Some(Minimum { parameters: u, at, cost, ending, rounds });
     for round in 0..settings.rounds {
         if !go_on() {
             return end(u, at, best, Ending::Cancelled, round);

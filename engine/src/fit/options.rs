@@ -54,7 +54,9 @@ impl Default for Options {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FitError {
     /// Nothing is free.
-    #[error("nothing is free: name the keys to fit, as in --free material.effective_modulus,material.work_of_adhesion")]
+    #[error(
+        "nothing is free: name the keys to fit, as in --free material.effective_modulus,material.work_of_adhesion"
+    )]
     NothingFree,
     /// A key that is not known, or cannot be fitted.
     #[error("--free {key}: {why}")]
@@ -71,7 +73,9 @@ pub enum FitError {
     #[error(transparent)]
     Points(#[from] PointsError),
     /// Fewer points than parameters ask for.
-    #[error("{points} points in contact are too few for {parameters} free keys: at least {needed} are wanted")]
+    #[error(
+        "{points} points in contact are too few for {parameters} free keys: at least {needed} are wanted"
+    )]
     Few {
         /// How many there are.
         points: usize,
@@ -81,7 +85,9 @@ pub enum FitError {
         needed: usize,
     },
     /// No start gives a curve that comes near to the points.
-    #[error("no values near those of the preset give a curve that reaches the points: check the unit of x and of the force")]
+    #[error(
+        "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"
+    )]
     NoStart,
     /// It was no longer wanted, before there was anything.
     #[error("cancelled")]
@@ -106,7 +112,8 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let rows: Vec<Row> = preset.rows().collect();
     let is_named = |row: &&Row| row.key == name || row.label == name || greek(&row.label) == name;
     let gamma = (name == "γ" || name == "gamma").then_some(ADHESION);
-    let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma)) else {
+    let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
+    else {
         let known = rows.iter().map(|row| &*row.key).chain([OFFSET, BASELINE, TILT]);
         let meant = closest(name, known);
         return Err(refused(format!(
@@ -117,11 +124,16 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let fits = row.key.starts_with("gap.")
         || ["material.effective_modulus", ADHESION, "path.control.stiffness"].contains(&&*row.key);
     if !fits || !matches!(row.kind, Kind::Positive | Kind::NonNegative) {
-        return Err(refused("is no positive number of the bodies, the gap or the spring, which alone can be fitted".to_owned()));
+        return Err(refused(
+            "is no positive number of the bodies, the gap or the spring, which alone can be fitted"
+                .to_owned(),
+        ));
     }
     match preset.get(&row.key) {
         Some(Value::Number(value)) if value > 0.0 => Ok(Target::Key(row.key.to_string())),
-        Some(_) => Err(refused("begins at 0, which has no logarithm: give it a first guess with --set".to_owned())),
+        Some(_) => {
+            Err(refused("begins at 0, which has no logarithm: give it a first guess with --set".to_owned()))
+        }
         None => Err(refused("has no value in this preset to begin with".to_owned())),
     }
 }

@@ -110,8 +110,7 @@ impl Path {
         };
         let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
         let innermost = INNERMOST * outermost;
-        let mut curve =
-            Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, || true)?;
+        let mut curve = Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, || true)?;
         let held = control.in_units(units.stiffness);
         curve.hold(held);
         let mut path = Self {
@@ -128,7 +127,8 @@ impl Path {
         // A rising stretch outside a falling one, or one of either: a curve without snaps.
         let inside = |s: f64| s > innermost && s < outermost;
         let limits = curve.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
-        let unloading = if limits > 1 { unload_while(&curve, held, Losses::Once, || true).ok() } else { None };
+        let unloading =
+            if limits > 1 { unload_while(&curve, held, Losses::Once, || true).ok() } else { None };
         match unloading.filter(|unloading| unloading.events.iter().any(|event| event.after.is_some())) {
             None => path.pieces.push(Piece::Arc([outermost, innermost].map(|s| s * units.length))),
             Some(unloading) => {
@@ -139,7 +139,11 @@ impl Path {
                     if let Some(after) = &event.after {
                         let ends = [&event.before, after].map(|state| {
                             let s = state.contact_radius;
-                            [x_of(state.approach, state.force, s), state.force * units.force, s * units.length]
+                            [
+                                x_of(state.approach, state.force, s),
+                                state.force * units.force,
+                                s * units.length,
+                            ]
                         });
                         path.pieces.push(Piece::Line(ends));
                         path.snaps += 1;
@@ -166,7 +170,11 @@ impl Path {
     fn draw(&mut self, curve: &Curve) {
         let mut vertices = Vec::new();
         let ranges = [|at: &Sample| at.approach, |at: &Sample| at.force].map(|of| {
-            let ends = curve.samples.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+            let ends = curve
+                .samples
+                .iter()
+                .map(of)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
             ends[1] - ends[0]
         });
         for (piece, what) in self.pieces.iter().enumerate() {
@@ -179,7 +187,8 @@ impl Path {
                 Piece::Arc([outer, inner]) => {
                     let on = |s: &f64| s < outer && s > inner;
                     let radii = curve.samples.iter().map(|sample| sample.contact_radius * self.units.length);
-                    let radii: Vec<f64> = [*outer].into_iter().chain(radii.filter(on)).chain([*inner]).collect();
+                    let radii: Vec<f64> =
+                        [*outer].into_iter().chain(radii.filter(on)).chain([*inner]).collect();
                     for pair in radii.windows(2) {
                         add(self.at(pair[0]).map_or([f64::NAN; 3], |(at, _)| at), pair[0]);
                         self.bend([pair[0], pair[1]], ranges, DEEPEST, &mut add);
@@ -193,7 +202,13 @@ impl Path {
     }
 
     /// Adds corners between two radii where the curve turns: at a limit point it may turn back within a step.
-    fn bend(&self, [outer, inner]: [f64; 2], ranges: [f64; 2], depth: usize, add: &mut dyn FnMut(Place, f64)) {
+    fn bend(
+        &self,
+        [outer, inner]: [f64; 2],
+        ranges: [f64; 2],
+        depth: usize,
+        add: &mut dyn FnMut(Place, f64),
+    ) {
         let direction = |s: f64| {
             let place = self.solution.place((s / self.units.length).min(self.solution.reach()))?;
             let local = self.solution.at(place);
@@ -247,7 +262,9 @@ impl Path {
     pub fn foot(&self, piece: usize, foot: Foot) -> Option<Place> {
         match (self.pieces.get(piece)?, foot) {
             (Piece::Arc(_), Foot::Radius(s)) => self.at(s).map(|(at, _)| at),
-            (Piece::Arc([s, _]), Foot::Outer) | (Piece::Arc([_, s]), Foot::Inner) => self.at(*s).map(|(at, _)| at),
+            (Piece::Arc([s, _]), Foot::Outer) | (Piece::Arc([_, s]), Foot::Inner) => {
+                self.at(*s).map(|(at, _)| at)
+            }
             (Piece::Line([at, _]), Foot::Outer) | (Piece::Line([_, at]), Foot::Inner) => Some(*at),
             (Piece::Line([before, after]), Foot::Share(t)) => {
                 Some(std::array::from_fn(|i| after[i] + t * (before[i] - after[i])))

@@ -167,7 +167,9 @@ impl Problem {
             let value = parameter.value(*u);
             // The two that need no check across keys.
             match key {
-                "material.effective_modulus" if value.is_normal() => preset.material.effective_modulus = value,
+                "material.effective_modulus" if value.is_normal() => {
+                    preset.material.effective_modulus = value
+                }
                 ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,
                 key => preset.set(key, Value::Number(value)).ok()?,
             }
@@ -215,7 +217,8 @@ impl Problem {
     /// The paths at `u`, each beginning where that of `paths` does.
     fn beside(&self, u: &[f64], paths: &Paths) -> Option<Paths> {
         let instrument = self.instrument_at(u);
-        let of = |segment| self.path(&self.preset_at(u, segment)?, Some(paths.of(segment).outermost), &instrument);
+        let of =
+            |segment| self.path(&self.preset_at(u, segment)?, Some(paths.of(segment).outermost), &instrument);
         let retraction = if paths.retraction.is_some() { Some(of(Segment::Retraction)?) } else { None };
         Some(Paths { approach: of(Segment::Approach)?, retraction })
     }
@@ -285,7 +288,8 @@ impl LeastSquares for Problem {
                     let moved = shift(datum);
                     match foot {
                         Some(foot) => (0..per).for_each(|k| {
-                            let along: f64 = (0..3).map(|axis| foot.normals[k][axis] * moved[axis] * weights[axis]).sum();
+                            let along: f64 =
+                                (0..3).map(|axis| foot.normals[k][axis] * moved[axis] * weights[axis]).sum();
                             jacobian[(per * i + k, j)] = along * scale;
                         }),
                         None => jacobian[(per * i, j)] = moved[1] * weights[1] * scale,

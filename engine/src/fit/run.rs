@@ -129,20 +129,22 @@ pub fn fit(
         wanted = wanted && go_on(share);
         wanted
     };
-    let (u, starts) =
-        start(&problem, options.scan, options.robust, &mut told).ok_or(FitError::NoStart)?;
-    let mut last = |problem: &Problem, u: &[f64]| {
-        solve(problem, u, options.robust, ROUNDS, &mut || told(0.85))
-    };
+    let (u, starts) = start(&problem, options.scan, options.robust, &mut told).ok_or(FitError::NoStart)?;
+    let mut last =
+        |problem: &Problem, u: &[f64]| solve(problem, u, options.robust, ROUNDS, &mut || told(0.85));
     let mut solved = last(&problem, &u).ok_or(FitError::NoStart)?;
     // Without a free part the residuals say how well the force is known.
     let from_residuals = branches.baseline.is_none() && options.asked.sigma[1].is_none();
     if from_residuals {
         for _ in 0..2 {
-            problem.sigma[1] = (problem.sigma[1] * solved.scale).max(crate::measured::branches::FLOOR * branches.ranges[1]);
+            problem.sigma[1] =
+                (problem.sigma[1] * solved.scale).max(crate::measured::branches::FLOOR * branches.ranges[1]);
             solved = last(&problem, &solved.minimum.parameters).ok_or(FitError::NoStart)?;
         }
-        notes.push("there is no free part: sigma of the force is that of the residuals, and the baseline is held".to_owned());
+        notes.push(
+            "there is no free part: sigma of the force is that of the residuals, and the baseline is held"
+                .to_owned(),
+        );
     }
     let at = &solved.minimum.at;
     let u = solved.minimum.parameters.clone();
@@ -155,19 +157,26 @@ pub fn fit(
             let value = parameter.value(u[j]);
             let error = what.errors.as_ref().map(|errors| errors[j] * parameter.slope(value).abs());
             let key = parameter.key();
-            Fitted { key, value, standard_error: error, start: parameter.start, profile: None, bootstrap: None }
+            Fitted {
+                key,
+                value,
+                standard_error: error,
+                start: parameter.start,
+                profile: None,
+                bootstrap: None,
+            }
         })
         .collect();
     let mut bootstrapped = None;
     if let Some(errors) = &what.errors {
         if options.profile {
             for (j, fitted) in fitted.iter_mut().enumerate() {
-                fitted.profile =
-                    profile(&problem, &solved, errors[j], j, options.robust, &mut || told(0.9));
+                fitted.profile = profile(&problem, &solved, errors[j], j, options.robust, &mut || told(0.9));
             }
         }
         if let Some(asked) = options.bootstrap {
-            let found = bootstrap(&problem, &solved, options.robust, asked, &mut |share| told(0.9 + 0.1 * share));
+            let found =
+                bootstrap(&problem, &solved, options.robust, asked, &mut |share| told(0.9 + 0.1 * share));
             if let Some((count, found)) = found {
                 let per = problem.per_point();
                 let first: Vec<f64> = at.residuals.iter().step_by(per).copied().collect();
@@ -205,7 +214,9 @@ pub fn fit(
         }
     }
     Ok(Fit {
-        correlations: what.correlations.map(|c| c.row_iter().map(|row| row.iter().copied().collect()).collect()),
+        correlations: what
+            .correlations
+            .map(|c| c.row_iter().map(|row| row.iter().copied().collect()).collect()),
         chi_squared,
         points: [count(false), count(true)],
         outliers: residuals.iter().filter(|residual| residual.outlier).count(),
@@ -274,7 +285,10 @@ fn problem(
     let segments = branches.list.len();
     if options.separate {
         let Some(at) = targets.iter().position(|target| *target == Target::Key(ADHESION.to_owned())) else {
-            return Err(FitError::Key { key: ADHESION.to_owned(), why: "--separate splits it, so it must be free".to_owned() });
+            return Err(FitError::Key {
+                key: ADHESION.to_owned(),
+                why: "--separate splits it, so it must be free".to_owned(),
+            });
         };
         if segments < 2 || data.iter().all(|datum| datum.segment == Segment::Retraction) {
             return Err(FitError::Key {
@@ -312,7 +326,9 @@ fn problem(
     if attached < needed {
         return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
     }
-    let most = |of: fn(&Datum) -> f64| data.iter().map(of).filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    let most = |of: fn(&Datum) -> f64| {
+        data.iter().map(of).filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max)
+    };
     let of_radius = branches.abscissa == Abscissa::Radius;
     let radius = if of_radius { most(|datum| datum.point.x) } else { most(|datum| datum.point.radius) };
     let reach = Reach {

@@ -37,7 +37,8 @@ impl Problem {
     fn thinned(&self, most: usize) -> Self {
         let mut thinned = self.clone();
         let step = self.data.len().div_ceil(most).max(1);
-        let keep = |free: bool| self.data.iter().filter(move |datum| datum.free == free).step_by(step).copied();
+        let keep =
+            |free: bool| self.data.iter().filter(move |datum| datum.free == free).step_by(step).copied();
         thinned.data = keep(false).chain(keep(true)).collect();
         thinned
     }
@@ -56,7 +57,8 @@ impl Problem {
     /// Lets γ have the smallest force of the points, and δ₀ their median offset.
     fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<f64>> {
         const TIMES: usize = 6;
-        let adhesions = self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
+        let adhesions =
+            self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
         let offsets = self.index(|t| *t == Target::Offset);
         for _ in 0..if adhesions.is_empty() || least >= 0.0 { 0 } else { TIMES } {
             let paths = self.paths(&u, None)?;
@@ -86,15 +88,16 @@ impl Problem {
 
     /// The candidates, that of the preset first.
     fn candidates(&self, scan: bool) -> Vec<Vec<f64>> {
-        let own: Vec<f64> = self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+        let own: Vec<f64> =
+            self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
         let mut list = vec![own.clone()];
         if !scan {
             return list;
         }
         let modulus = self.index(|t| *t == Target::Key("material.effective_modulus".to_owned()));
-        let others = self.index(|t| {
-            matches!(t, Target::Key(key) if key != ADHESION && key != "material.effective_modulus")
-        });
+        let others = self.index(
+            |t| matches!(t, Target::Key(key) if key != ADHESION && key != "material.effective_modulus"),
+        );
         let mut grid = vec![own];
         for j in others {
             if grid.len() * FACTORS.len() > MOST / if modulus.is_empty() { 1 } else { MODULI } {

@@ -138,7 +138,8 @@ fn a_sphere_is_found_from_values_three_times_off() {
         *x += 0.7;
         *p += 0.01 + 0.002 * *x;
     }
-    let fit = run(&preset(SPHERE, 3.9, 0.06, ""), &shifted, &[E, W, "data.offset", "data.baseline", "data.tilt"]);
+    let fit =
+        run(&preset(SPHERE, 3.9, 0.06, ""), &shifted, &[E, W, "data.offset", "data.baseline", "data.tilt"]);
     close(&fit, &[1.3, 0.02, 0.7, 0.01, 0.002], 1e-8);
 }
 
@@ -236,7 +237,8 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
     let radii: Vec<f64> = (0..200).map(|i| 1.6 - 0.005 * f64::from(i)).collect();
     let (x, force): (Vec<f64>, Vec<f64>) = radii.iter().map(|s| truth(*s)).unzip();
     let segments = Some(vec![Segment::Retraction; 200]);
-    let three = Points { abscissa: Abscissa::Approach, x, force, radius: Some(radii), steps: [1e-30; 3], segments };
+    let three =
+        Points { abscissa: Abscissa::Approach, x, force, radius: Some(radii), steps: [1e-30; 3], segments };
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
     assert!(fit.direction.is_none());
@@ -361,10 +363,18 @@ fn two_works_of_adhesion_are_no_quasi_static_loop() {
     let keys: Vec<&str> = fit.parameters.iter().map(|fitted| fitted.key.as_str()).collect();
     assert_eq!(keys[1..3], [format!("{W}.approach"), format!("{W}.retraction")]);
     close(&fit, &[1.3, 0.01, 0.03], 0.02);
-    assert!(fit.warnings.iter().any(|warning| warning.contains("not a quasi-static loop")), "{:?}", fit.warnings);
+    assert!(
+        fit.warnings.iter().any(|warning| warning.contains("not a quasi-static loop")),
+        "{:?}",
+        fit.warnings
+    );
     // One alone does not describe it.
     let one = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W]);
-    assert!(one.warnings.iter().any(|warning| warning.contains("does not describe this")), "{:?}", one.warnings);
+    assert!(
+        one.warnings.iter().any(|warning| warning.contains("does not describe this")),
+        "{:?}",
+        one.warnings
+    );
 }
 
 #[test]
@@ -377,7 +387,11 @@ fn profile_and_bootstrap_agree_with_the_errors_and_the_best_so_far_is_kept() {
     for fitted in &found.parameters[..2] {
         let error = fitted.standard_error.unwrap();
         let [lo, hi] = fitted.profile.unwrap();
-        assert!(((fitted.value - lo) / error / 1.96 - 1.0).abs() < 0.35, "{lo} {} {hi} {error}", fitted.value);
+        assert!(
+            ((fitted.value - lo) / error / 1.96 - 1.0).abs() < 0.35,
+            "{lo} {} {hi} {error}",
+            fitted.value
+        );
         assert!(((hi - fitted.value) / error / 1.96 - 1.0).abs() < 0.35);
         let bootstrap = fitted.bootstrap.unwrap();
         assert!((0.6..1.6).contains(&(bootstrap.error / error)), "{} {error}", bootstrap.error);

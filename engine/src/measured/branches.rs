@@ -357,7 +357,8 @@ fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
         let base = median(end.to_vec())?;
         let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
         let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
-        let behind = median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
+        let behind =
+            median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
         if behind.abs() > LARGE * most && found.is_none_or(|found| behind.abs() > found.abs()) {
             found = Some(behind);
         }
@@ -439,14 +440,23 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
 /// The running median of five.
 fn filtered(values: &[f64]) -> Vec<f64> {
     let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
-    (0..values.len()).map(|i| if i < 2 || i + 3 > values.len() { values[i] } else { median(around(i).to_vec()).unwrap_or(values[i]) }).collect()
+    (0..values.len())
+        .map(|i| {
+            if i < 2 || i + 3 > values.len() {
+                values[i]
+            } else {
+                median(around(i).to_vec()).unwrap_or(values[i])
+            }
+        })
+        .collect()
 }
 
 /// Whether the force still goes on at the end, as it does where a file ends before the pull-off: the medians of the thirds of the
 /// last tenth differ by more than noise.
 fn trends(force: &[f64]) -> bool {
     let end = &force[force.len() - (force.len() / 10).max(6).min(force.len())..];
-    let thirds: Vec<f64> = end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
+    let thirds: Vec<f64> =
+        end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
     range(thirds.iter().copied()) > 2.0 * scatter(end) + FLOOR * range(force.iter().copied())
 }
 

@@ -20,6 +20,23 @@ pub struct Shipped {
 pub static DATA: &[Shipped] =
     &[Shipped { name: "rough-sphere.csv", text: include_str!("../../presets/data/rough-sphere.csv") }];
 
+/// The measured curves that come with the program.
+pub static CURVES: &[Shipped] =
+    &[Shipped { name: "lens.csv", text: include_str!("../../presets/data/lens.csv") }];
+
+/// The shipped curve that `name`, with [`SHIPPED_DATA`] before it, means.
+///
+/// # Errors
+/// Which there are, in words; `None` for another name.
+pub fn curve(name: &str) -> Option<Result<&'static str, String>> {
+    let wanted = name.strip_prefix(SHIPPED_DATA)?;
+    let found = CURVES.iter().find(|shipped| shipped.name == wanted);
+    Some(found.map(|shipped| shipped.text).ok_or_else(|| {
+        let known: Vec<String> = CURVES.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();
+        format!("\"{}\" does not come with the program; there is {}", quote(name), known.join(", "))
+    }))
+}
+
 /// The shipped data of this name.
 #[must_use]
 pub fn data(name: &str) -> Option<&'static str> {
@@ -63,6 +80,7 @@ pub static SHIPPED: &[Shipped] = &[
     Shipped { name: "random-waves", text: include_str!("../../presets/random-waves.toml") },
     Shipped { name: "formula", text: include_str!("../../presets/formula.toml") },
     Shipped { name: "profile", text: include_str!("../../presets/profile.toml") },
+    Shipped { name: "lens", text: include_str!("../../presets/lens.toml") },
 ];
 
 /// The shipped preset of this name.

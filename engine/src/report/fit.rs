@@ -2,9 +2,9 @@
 
 use super::number::{exact, short, significant};
 use super::table::aligned;
+use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Residual, quantity};
-use crate::fit::least_squares::Ending;
 use crate::measured::{Abscissa, Segment};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
@@ -132,10 +132,16 @@ impl FitReport {
         let youngs_modulus = poisson.map(|nu| {
             let factor = 1.0 - nu * nu;
             let value = modulus.map_or(fit.preset.material.effective_modulus, |parameter| parameter.value);
-            [Some(factor * value), modulus.and_then(|parameter| parameter.standard_error).map(|error| factor * error)]
+            [
+                Some(factor * value),
+                modulus.and_then(|parameter| parameter.standard_error).map(|error| factor * error),
+            ]
         });
-        let mut starts: Vec<StartReport> =
-            fit.starts.iter().map(|tried| StartReport { distance: tried.distance, snaps: tried.snaps }).collect();
+        let mut starts: Vec<StartReport> = fit
+            .starts
+            .iter()
+            .map(|tried| StartReport { distance: tried.distance, snaps: tried.snaps })
+            .collect();
         starts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         Self {
             schema: super::SCHEMA,
@@ -206,15 +212,24 @@ impl FitReport {
                 let _ = writeln!(text, "{key}: 95 % by the profile of chi squared {}", interval(found));
             }
             if let (Some(found), Some([count, block])) = (parameter.bootstrap_interval, self.bootstrap) {
-                let _ = writeln!(text, "{key}: 95 % of {count} fits to blocks of {block} rows {}", interval(found));
+                let _ = writeln!(
+                    text,
+                    "{key}: 95 % of {count} fits to blocks of {block} rows {}",
+                    interval(found)
+                );
             }
         }
         if let Some([Some(value), error]) = self.youngs_modulus {
             let error = error.map_or_else(String::new, |error| {
                 format!(" +- {}", significant(shown(Quantity::Stress, error).number, 2))
             });
-            let unit = units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));
-            let _ = writeln!(text, "E = {}{error}{unit}, if the other body is rigid", number(Quantity::Stress, value));
+            let unit =
+                units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));
+            let _ = writeln!(
+                text,
+                "E = {}{error}{unit}, if the other body is rigid",
+                number(Quantity::Stress, value)
+            );
         }
         text.push('\n');
         if let Some(correlations) = self.correlations.as_ref().filter(|rows| rows.len() > 1) {
@@ -259,7 +274,11 @@ impl FitReport {
             .iter()
             .map(|start| format!("{} ({})", short(start.distance, 3), start.snaps))
             .collect();
-        let _ = writeln!(text, "starts, by the mean distance at their end in sigma (snaps): {}", starts.join(", "));
+        let _ = writeln!(
+            text,
+            "starts, by the mean distance at their end in sigma (snaps): {}",
+            starts.join(", ")
+        );
         if let Some(direction) = &self.direction {
             let _ = writeln!(text, "not determined: {direction}");
         }

@@ -21,8 +21,8 @@
 pub mod columns;
 pub mod cycle;
 pub mod cycle_table;
-pub mod map;
 pub mod fit;
+pub mod map;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
@@ -33,8 +33,8 @@ pub mod verify;
 
 pub use crate::units::number;
 pub use cycle::CycleReport;
-pub use map::MapReport;
 pub use fit::FitReport;
+pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
 pub use trace::TraceReport;

@@ -108,7 +108,7 @@ fn mark(mark: &Placed, styles: &Styles) -> Mark {
     let style = match mark.sign {
         Sign::OtherLimit(_) => styles.aid,
         Sign::Landing => styles.landing,
-        Sign::Crest | Sign::Edge | Sign::Snaps(_) => styles.smooth,
+        Sign::Crest | Sign::Edge | Sign::Snaps(_) | Sign::Measured { .. } => styles.smooth,
         Sign::Touch
         | Sign::Turn
         | Sign::Limit

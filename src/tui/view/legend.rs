@@ -78,6 +78,8 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Maximum => (2, "maximum"),
         Sign::Barrier => (1, "barrier"),
         Sign::Walker => (1, "here"),
+        Sign::Measured { loading: true } => (2, "measured approach"),
+        Sign::Measured { loading: false } => (2, "measured retraction"),
     })
 }
 

@@ -62,5 +62,7 @@ pub fn letter(sign: Sign) -> &'static str {
         Sign::Preset => "+",
         Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)],
         Sign::Value => "o",
+        Sign::Measured { loading: true } => ",",
+        Sign::Measured { loading: false } => ".",
     }
 }

@@ -173,7 +173,8 @@ pub(super) fn beyond(error: CycleError, approach: f64, force: f64) -> CycleError
             CycleError::BeyondGap { radius: known, approach, force }
         }
         CycleError::State(
-            error @ (AnnuliError::Contacts(ContactsError::TooMany { .. }) | AnnuliError::TooManyPoints { .. }),
+            error
+            @ (AnnuliError::Contacts(ContactsError::TooMany { .. }) | AnnuliError::TooManyPoints { .. }),
         ) => CycleError::TooMany { error, approach },
         other => other,
     }
