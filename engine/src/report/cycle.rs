@@ -1,8 +1,9 @@
 //! The whole loop of loading and unloading as a document.
 
+use super::SCHEMA;
 use super::problem::ProblemReport;
+use super::rows::{RowsError, Table};
 use super::unload::LOSS_AGREEMENT;
-use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
@@ -218,8 +219,16 @@ impl CycleReport {
     /// The states as CSV, a row for each contact.
     ///
     /// # Errors
-    /// As [`rows::csv`].
-    pub fn csv(&self) -> Result<String, rows::RowsError> {
+    /// As [`Table::csv`].
+    pub fn csv(&self) -> Result<String, RowsError> {
+        self.table()?.csv()
+    }
+
+    /// The states under the names of their columns, a row for each contact.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
         let rows: Vec<ContactRow> = self
             .states
             .iter()
@@ -240,7 +249,7 @@ impl CycleReport {
                 })
             })
             .collect();
-        rows::csv(COLUMNS, &rows)
+        Table::of(COLUMNS, &rows)
     }
 }
 

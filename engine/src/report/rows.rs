@@ -1,4 +1,4 @@
-//! Nested rows as CSV, or with tabs: names joined by `_`, nothing for null.
+//! Nested rows as a table, CSV, or with tabs: names joined by `_`, nothing for null.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -18,12 +18,60 @@ pub enum RowsError {
     Csv(#[from] csv::Error),
 }
 
+/// Rows under the names of their columns; null where a row has nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// The names, in the order of the cells.
+    pub columns: Vec<String>,
+    /// The cells of each row, one for each column.
+    pub rows: Vec<Vec<Value>>,
+}
+
+impl Table {
+    /// `rows` under the names `columns`.
+    ///
+    /// # Errors
+    /// [`RowsError::Shape`] when a row has a value without a column, so that none is lost silently.
+    pub fn of<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<Self, RowsError> {
+        let cells = |row: &R| {
+            let mut cells = HashMap::new();
+            flatten("", serde_json::to_value(row)?, &mut cells);
+            let row = columns.iter().map(|column| cells.remove(*column).unwrap_or_default()).collect();
+            cells.into_keys().next().map_or(Ok(row), |name| Err(RowsError::Shape(name)))
+        };
+        let rows = rows.iter().map(cells).collect::<Result<_, _>>()?;
+        Ok(Self { columns: columns.iter().map(|column| (*column).to_owned()).collect(), rows })
+    }
+
+    /// As CSV text under a header.
+    ///
+    /// # Errors
+    /// Only where the writer fails, which memory excludes.
+    pub fn csv(&self) -> Result<String, RowsError> {
+        self.separated(b',')
+    }
+
+    fn separated(&self, separator: u8) -> Result<String, RowsError> {
+        let mut writer = csv::WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
+        writer.write_record(&self.columns)?;
+        for row in &self.rows {
+            writer.write_record(row.iter().map(|cell| match cell {
+                Value::Null => String::new(),
+                Value::String(text) => text.clone(),
+                other => other.to_string(),
+            }))?;
+        }
+        let bytes = writer.into_inner().map_err(|e| RowsError::Csv(e.into_error().into()))?;
+        String::from_utf8(bytes).map_err(|e| RowsError::Shape(e.to_string()))
+    }
+}
+
 /// `rows` as CSV text with the header `columns`.
 ///
 /// # Errors
-/// [`RowsError::Shape`] when a row has a value without a column, so that none is lost silently.
+/// As [`Table::of`].
 pub fn csv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
-    separated(b',', columns, rows)
+    Table::of(columns, rows)?.csv()
 }
 
 /// The same with tabs between the cells, as spreadsheets take it from a clipboard.
@@ -31,35 +79,19 @@ pub fn csv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsErr
 /// # Errors
 /// As [`csv()`].
 pub fn tsv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
-    separated(b'\t', columns, rows)
+    Table::of(columns, rows)?.separated(b'\t')
 }
 
-fn separated<R: Serialize>(separator: u8, columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
-    let mut writer = csv::WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
-    writer.write_record(columns)?;
-    for row in rows {
-        let mut cells = HashMap::new();
-        flatten("", &serde_json::to_value(row)?, &mut cells);
-        writer.write_record(columns.iter().map(|column| cells.remove(*column).unwrap_or_default()))?;
-        if let Some(name) = cells.into_keys().next() {
-            return Err(RowsError::Shape(name));
-        }
-    }
-    let bytes = writer.into_inner().map_err(|e| RowsError::Csv(e.into_error().into()))?;
-    String::from_utf8(bytes).map_err(|e| RowsError::Shape(e.to_string()))
-}
-
-fn flatten(name: &str, value: &Value, cells: &mut HashMap<String, String>) {
+fn flatten(name: &str, value: Value, cells: &mut HashMap<String, Value>) {
     match value {
         Value::Null => {}
         Value::Object(members) => {
             for (key, value) in members {
-                let name = if name.is_empty() { key.clone() } else { format!("{name}_{key}") };
+                let name = if name.is_empty() { key } else { format!("{name}_{key}") };
                 flatten(&name, value, cells);
             }
         }
-        Value::String(text) => drop(cells.insert(name.to_owned(), text.clone())),
-        other => drop(cells.insert(name.to_owned(), other.to_string())),
+        other => drop(cells.insert(name.to_owned(), other)),
     }
 }
 

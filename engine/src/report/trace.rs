@@ -1,10 +1,11 @@
 //! The equilibrium curve as a document.
 
+use super::SCHEMA;
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
+use super::rows::{RowsError, Table};
 use super::unload::control_name;
-use super::{SCHEMA, rows};
 use crate::case::{Case, CaseError};
 use crate::preset::Preset;
 use crate::problem::Control;
@@ -293,15 +294,23 @@ impl TraceReport {
         }
     }
 
+    /// The points under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        if self.points.iter().all(|point| point.exact.is_none()) {
+            return Table::of(COLUMNS, &self.points);
+        }
+        Table::of(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
+    }
+
     /// The points as CSV.
     ///
     /// # Errors
-    /// As [`rows::csv`].
-    pub fn csv(&self) -> Result<String, rows::RowsError> {
-        if self.points.iter().all(|point| point.exact.is_none()) {
-            return rows::csv(COLUMNS, &self.points);
-        }
-        rows::csv(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
+    /// As [`Table::csv`].
+    pub fn csv(&self) -> Result<String, RowsError> {
+        self.table()?.csv()
     }
 }
 

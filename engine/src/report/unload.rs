@@ -1,16 +1,17 @@
 //! The unloading as a document.
 
+use super::SCHEMA;
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::ProblemReport;
-use super::{SCHEMA, rows};
+use super::rows::{RowsError, Table};
 use crate::case::{Case, CaseError};
 use crate::gap::Gap;
 use crate::gap::wave_index;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced};
 use crate::quasistatic::overlap::passed_while;
-use crate::quasistatic::{Event, EventKind, Losses, Overlap, State, Unloading};
+use crate::quasistatic::{Detail, Event, EventKind, Losses, Overlap, State, Unloading};
 use crate::units::Quantity;
 use serde::Serialize;
 
@@ -127,12 +128,29 @@ impl UnloadReport {
     /// # Errors
     /// As [`UnloadReport::compute`], and [`CaseError::Cancelled`] when `go_on` said no.
     pub fn compute_while(preset: &Preset, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
+        Self::compute_with(preset, Losses::Twice, true, go_on)
+    }
+
+    /// The same with these losses; without `admissibility` it is not known. Each of the two takes longer than all the rest.
+    ///
+    /// # Errors
+    /// As [`UnloadReport::compute_while`].
+    pub fn compute_with(
+        preset: &Preset,
+        losses: Losses,
+        admissibility: bool,
+        go_on: &dyn Fn(f64) -> bool,
+    ) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &mut |share| go_on(share))?;
-        let curve = case.curve(|| go_on(1.0))?;
-        let unloading = case.unload_while(&curve, case.control, Losses::Twice, || go_on(1.0))?;
-        let passed =
-            passed_while(&curve, &unloading.pieces, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
-        let mut report = Self::new(preset, &case, &unloading).checked(&case, &unloading, &passed);
+        let detail = if admissibility { Detail::Drawn } else { Detail::Borders };
+        let curve = case.curve_in(detail, || go_on(1.0))?;
+        let unloading = case.unload_while(&curve, case.control, losses, || go_on(1.0))?;
+        let mut report = Self::new(preset, &case, &unloading);
+        if admissibility {
+            let passed =
+                passed_while(&curve, &unloading.pieces, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
+            report = report.checked(&case, &unloading, &passed);
+        }
         report.warnings.extend(case.unsettled(&unloading));
         Ok(report)
     }
@@ -202,12 +220,20 @@ impl UnloadReport {
         self
     }
 
+    /// The events under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        Table::of(COLUMNS, &self.events)
+    }
+
     /// The events as CSV.
     ///
     /// # Errors
-    /// As [`rows::csv`].
-    pub fn csv(&self) -> Result<String, rows::RowsError> {
-        rows::csv(COLUMNS, &self.events)
+    /// As [`Table::csv`].
+    pub fn csv(&self) -> Result<String, RowsError> {
+        self.table()?.csv()
     }
 }
 
