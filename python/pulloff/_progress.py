@@ -1,0 +1,41 @@
+"""Progress of long computations: a bar of tqdm where there is one, or a function of the caller."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import Callable, Iterator, Optional, Union
+
+Progress = Union[None, bool, Callable[[float], object]]
+"""``None``: a bar where tqdm is installed and it takes longer than a second; ``True`` and ``False``: a bar always or never;
+a function is told the share that is done, 0 to 1, some times a second, and ends the computation by an exception."""
+
+# What takes less shows no bar.
+_PATIENCE = 1.0
+
+
+@contextmanager
+def told(progress: Progress, what: str) -> Iterator[Optional[Callable[[float], object]]]:
+    """The function that the engine tells its progress."""
+    if callable(progress):
+        yield progress
+        return
+    if progress is False:
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        if progress:
+            raise ImportError("progress=True needs tqdm: pip install tqdm, or give a function") from None
+        yield None
+        return
+    form = "{desc} {percentage:3.0f} %|{bar}| {elapsed}"
+    with tqdm(
+        total=1.0, desc=what, leave=False, bar_format=form, delay=0.0 if progress else _PATIENCE
+    ) as bar:
+
+        def tell(share: float) -> None:
+            bar.n = max(bar.n, min(share, 1.0))
+            bar.refresh() if progress else bar.update(0.0)
+
+        yield tell

@@ -1,0 +1,96 @@
+"""What can go wrong, each with the engine's own sentence.
+
+Every exception of the package is a :class:`Error`. Values that are refused are a ``ValueError`` as well.
+"""
+
+from __future__ import annotations
+
+from typing import Optional, Sequence, Tuple
+
+
+class Error(Exception):
+    """Whatever the engine says no to."""
+
+
+class PresetError(Error, ValueError):
+    """A preset or a value that is refused.
+
+    Attributes
+    ----------
+    key : str or None
+        The key of the first mistake, such as ``"gap.amplitude"``.
+    line : int or None
+        Its line, where there is a text; the first line is 1.
+    mistakes : sequence of (line, key, sentence)
+        All mistakes that were found.
+    """
+
+    def __init__(
+        self,
+        sentence: str = "",
+        *,
+        key: Optional[str] = None,
+        line: Optional[int] = None,
+        mistakes: Sequence[Tuple[Optional[int], Optional[str], str]] = (),
+    ) -> None:
+        super().__init__(sentence)
+        self.key = key
+        self.line = line
+        self.mistakes = tuple(mistakes)
+
+
+class SpecError(Error, ValueError):
+    """A spec of a sweep that is refused; ``line`` says where, in the text or in what a dict was written as."""
+
+    def __init__(self, sentence: str = "", *, line: Optional[int] = None) -> None:
+        super().__init__(sentence)
+        self.line = line
+
+
+class ComputationError(Error):
+    """A problem that is in order and cannot be computed."""
+
+
+class GapError(ComputationError):
+    """A gap or a basis that cannot be resolved."""
+
+
+class StartError(ComputationError):
+    """There is no equilibrium at the start, or the end lies outside it."""
+
+
+class UnstableStart(ComputationError):
+    """The start is unstable and there is no stable state further out."""
+
+
+class NoLoop(ComputationError):
+    """There is no loop of loading and unloading."""
+
+
+class NoState(ComputationError, ValueError):
+    """There is no equilibrium at the contact radius asked for, or a radius is out of range."""
+
+
+class NotCertified(Error, ValueError):
+    """A function that samples do not resolve: nothing is computed of it.
+
+    Attributes
+    ----------
+    radius : float
+        Where the curve through the samples misses it most.
+    difference : float
+        By how much, in the unit of the gap.
+    """
+
+    def __init__(self, sentence: str = "", *, radius: float, difference: float) -> None:
+        super().__init__(sentence)
+        self.radius = radius
+        self.difference = difference
+
+
+class Cancelled(Error):
+    """It was stopped; Ctrl-C raises ``KeyboardInterrupt`` instead."""
+
+
+class InternalError(Error, RuntimeError):
+    """A fault of the engine itself."""

@@ -1,0 +1,106 @@
+//! Errors of the engine as exceptions of the package: `pulloff.errors` has the classes, the engine has the sentences.
+
+use pulloff_engine::CaseError;
+use pulloff_engine::preset::{Invalid, Mistake, Origin, ReadError};
+use pulloff_engine::sweep::SpecError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::any::Any;
+
+/// An exception of the class `name` in `pulloff.errors`, with this sentence and these attributes.
+pub fn raise(py: Python<'_>, name: &str, sentence: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
+    let made = py
+        .import("pulloff.errors")
+        .and_then(|module| module.getattr(name))
+        .and_then(|class| class.call((sentence,), Some(attributes)));
+    match made {
+        Ok(value) => PyErr::from_value(value),
+        Err(error) => error,
+    }
+}
+
+fn plain(py: Python<'_>, name: &str, sentence: &str) -> PyErr {
+    raise(py, name, sentence, &PyDict::new(py))
+}
+
+/// A preset that is refused, with the first mistake's key and line.
+fn preset(py: Python<'_>, sentence: &str, mistakes: &[(Option<usize>, Option<&str>, String)]) -> PyErr {
+    let attributes = PyDict::new(py);
+    let filled = || {
+        let first = mistakes.first();
+        attributes.set_item("key", first.and_then(|(_, key, _)| *key))?;
+        attributes.set_item("line", first.and_then(|(line, ..)| *line))?;
+        let all: Vec<_> = mistakes.iter().map(|(line, key, text)| (*line, *key, text.as_str())).collect();
+        attributes.set_item("mistakes", all)
+    };
+    match filled() {
+        Ok(()) => raise(py, "PresetError", sentence, &attributes),
+        Err(error) => error,
+    }
+}
+
+/// A preset that cannot be read.
+pub fn of_reading(py: Python<'_>, error: &ReadError) -> PyErr {
+    let line = |mistake: &Mistake| match &mistake.origin {
+        Origin::File { line, .. } => *line,
+        Origin::Assignment(_) => None,
+    };
+    let mistakes: Vec<_> = error
+        .mistakes
+        .iter()
+        .map(|mistake| (line(mistake), mistake.invalid.key(), mistake.to_string()))
+        .collect();
+    preset(py, &error.to_string(), &mistakes)
+}
+
+/// A value that a problem does not take.
+pub fn of_value(py: Python<'_>, error: &Invalid) -> PyErr {
+    preset(py, &error.to_string(), &[(None, error.key(), error.to_string())])
+}
+
+/// A value of a key that is of no type a key takes.
+pub fn of_type(py: Python<'_>, key: &str, sentence: &str) -> PyErr {
+    preset(py, sentence, &[(None, Some(key), sentence.to_owned())])
+}
+
+/// A name or a file that gives no preset.
+pub fn of_source(py: Python<'_>, sentence: &str) -> PyErr {
+    preset(py, sentence, &[(None, None, sentence.to_owned())])
+}
+
+/// A spec of a sweep that is refused.
+pub fn of_spec(py: Python<'_>, error: &SpecError) -> PyErr {
+    let attributes = PyDict::new(py);
+    let line = match &error.origin {
+        Origin::File { line, .. } => *line,
+        Origin::Assignment(_) => None,
+    };
+    match attributes.set_item("line", line) {
+        Ok(()) => raise(py, "SpecError", &error.to_string(), &attributes),
+        Err(error) => error,
+    }
+}
+
+/// A problem that cannot be computed.
+pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
+    let name = match error {
+        CaseError::Basis(_) | CaseError::Table { .. } => "GapError",
+        CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => "StartError",
+        CaseError::Unload { .. } => "UnstableStart",
+        CaseError::Cycle { .. } => "NoLoop",
+        CaseError::Cancelled => "Cancelled",
+    };
+    plain(py, name, &error.to_string())
+}
+
+/// A state that is asked for and is not there.
+pub fn of_state(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "NoState", sentence)
+}
+
+/// A panic, a fault of the engine itself.
+pub fn of_panic(py: Python<'_>, payload: &(dyn Any + Send)) -> PyErr {
+    let words = payload.downcast_ref::<String>().map(String::as_str);
+    let words = words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no words");
+    plain(py, "InternalError", &format!("a fault of the engine itself, please report it: {words}"))
+}

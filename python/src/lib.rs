@@ -1,0 +1,35 @@
+//! The engine of pulloff for Python: the module `pulloff._engine`, under the package `pulloff`, which is what people see.
+//!
+//! Here is only what needs Rust: problems, long computations that let other threads run and can be interrupted, and results
+//! as columns and JSON. Names, defaults and everything a person reads are in the package's Python.
+//!
+//! | file | what lives there |
+//! |---|---|
+//! | `errors` | errors of the engine as exceptions of the package |
+//! | `files` | presets and profiles from the disk |
+//! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is told |
+//! | `document` | a result: its JSON, its columns as arrays |
+//! | `problem` | a problem, and all that is computed of it |
+//! | `sweep` | many problems on all cores |
+
+mod document;
+mod errors;
+mod files;
+mod problem;
+mod running;
+mod sweep;
+
+use pyo3::prelude::*;
+
+/// The engine: not for use by itself, the package `pulloff` is.
+#[pymodule]
+fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<document::Document>()?;
+    module.add_class::<problem::Problem>()?;
+    module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::between, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::quantities, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,284 @@
+//! A problem, and all that is computed of it.
+
+use crate::document::Document;
+use crate::running::long;
+use crate::{errors, files};
+use numpy::{PyArray1, PyReadonlyArray1};
+use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::disc::{Basis, Exact, TableError, outside};
+use pulloff_engine::gap::Gap;
+use pulloff_engine::gap::shapes::{Profile, Rows, Smoothing};
+use pulloff_engine::preset::read::{read_holding, read_in};
+use pulloff_engine::preset::{Preset, Value, shipped, write};
+use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::Losses;
+use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::report::{CycleReport, TraceReport, UnloadReport};
+use pulloff_engine::text::{closest, quote};
+use pulloff_engine::units::Unit;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The names and titles of the presets that come with the package.
+#[pyfunction]
+pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for preset in shipped::SHIPPED {
+        all.set_item(preset.name, find(py, preset.name)?.title)?;
+    }
+    Ok(all)
+}
+
+/// The preset of this name that comes with the package.
+fn find(py: Python<'_>, name: &str) -> PyResult<Preset> {
+    let names = || shipped::SHIPPED.iter().map(|shipped| shipped.name);
+    let Some(found) = shipped::find(name) else {
+        let meant = closest(name, names()).map_or_else(
+            || format!("there is {}", names().collect::<Vec<_>>().join(", ")),
+            |meant| format!("did you mean {meant}?"),
+        );
+        return Err(errors::of_source(py, &format!("no preset is called \"{}\"; {meant}", quote(name))));
+    };
+    read_text(py, None, found.name, found.text)
+}
+
+fn read_text(py: Python<'_>, folder: Option<&Path>, name: &str, text: &str) -> PyResult<Preset> {
+    read_in(files::FILES, folder, name, text, &[] as &[&str]).map_err(|error| errors::of_reading(py, &error))
+}
+
+/// The value of a key, as Python has it.
+fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
+    let py = given.py();
+    let other = || {
+        let kind = given.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
+        errors::of_type(py, key, &format!("{} must be a number or a text, not {}", quote(key), quote(&kind)))
+    };
+    if given.is_instance_of::<PyBool>() {
+        return Err(other());
+    }
+    if given.is_instance_of::<PyString>() {
+        let text: String = given.extract()?;
+        let Some(row) = preset.row(key) else { return Ok(Value::Text(text)) };
+        return row.parse(&text).map_err(|error| errors::of_value(py, &error));
+    }
+    if !given.is_instance_of::<PyFloat>()
+        && (given.is_instance_of::<PyInt>() || given.hasattr("__index__")?)
+        && let Ok(n) = given.extract::<i64>()
+    {
+        return Ok(Value::Integer(n));
+    }
+    given.extract::<f64>().map(Value::Number).map_err(|_| other())
+}
+
+/// `preset` with these changes, checked as a whole.
+fn changed(mut preset: Preset, changes: Option<&Bound<'_, PyDict>>) -> PyResult<Preset> {
+    let Some(changes) = changes.filter(|changes| !changes.is_empty()) else { return Ok(preset) };
+    let py = changes.py();
+    let mut values = Vec::new();
+    for (key, given) in changes {
+        let Ok(key) = key.extract::<String>() else {
+            return Err(errors::of_source(py, "the keys of changes are texts, such as \"gap.amplitude\""));
+        };
+        let given = value(&preset, &key, &given)?;
+        values.push((key, given));
+    }
+    let laid = preset.set_all(values.iter().map(|(key, value)| (key.as_str(), value.clone())));
+    laid.map_err(|error| errors::of_value(py, &error))?;
+    Ok(preset)
+}
+
+type Array<'py> = Bound<'py, PyArray1<f64>>;
+
+/// One problem, immutable.
+#[pyclass(frozen, module = "pulloff._engine")]
+pub struct Problem {
+    pub preset: Preset,
+}
+
+#[pymethods]
+impl Problem {
+    /// A preset that comes with the package.
+    #[staticmethod]
+    fn shipped(py: Python<'_>, name: &str) -> PyResult<Self> {
+        Ok(Self { preset: find(py, name)? })
+    }
+
+    /// The text of a preset; its files are relative to the current folder.
+    #[staticmethod]
+    fn of_text(py: Python<'_>, text: &str) -> PyResult<Self> {
+        Ok(Self { preset: read_text(py, None, "the text", text)? })
+    }
+
+    /// A preset file.
+    #[staticmethod]
+    fn of_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let text = files::text(&path).map_err(|error| errors::of_source(py, &error))?;
+        Ok(Self { preset: read_text(py, path.parent(), &path.to_string_lossy(), &text)? })
+    }
+
+    /// The text of a preset whose profile has these rows, in its own unit of length.
+    #[staticmethod]
+    fn of_rows(
+        py: Python<'_>,
+        text: &str,
+        r: PyReadonlyArray1<'_, f64>,
+        h: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let rows = Rows {
+            name: "arrays".to_owned(),
+            radii: r.as_slice()?.to_vec(),
+            gaps: h.as_slice()?.to_vec(),
+            unit: Unit::parse("m", 0).ok(),
+            ..Rows::default()
+        };
+        let read = read_holding(files::FILES, "from_gap", text, Some(Arc::new(rows)));
+        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
+    }
+
+    /// The same problem with other values.
+    fn replace(&self, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Ok(Self { preset: changed(self.preset.clone(), Some(changes))? })
+    }
+
+    /// Its title.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.preset.title
+    }
+
+    /// Its values by their keys.
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (row, value) in self.preset.values() {
+            match value {
+                Value::Number(x) => all.set_item(&*row.key, x)?,
+                Value::Integer(n) => all.set_item(&*row.key, n)?,
+                Value::Control(Control::Stiffness(k)) => {
+                    all.set_item(&*row.key, format!("stiffness={k:?}"))?
+                }
+                other => all.set_item(&*row.key, other.to_string())?,
+            }
+        }
+        Ok(all)
+    }
+
+    /// As the text of a preset.
+    fn to_toml(&self) -> String {
+        write(&self.preset)
+    }
+
+    /// The equilibrium curve.
+    fn trace(&self, py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<Document> {
+        let made = long(py, progress, |go_on| TraceReport::compute_while(&self.preset, go_on))?;
+        made.map(Document::new).map_err(|error| errors::of_case(py, &error))
+    }
+
+    /// The unloading. Without `areas` losses are by energy alone, without `admissibility` it is not known.
+    fn unload(
+        &self,
+        py: Python<'_>,
+        areas: bool,
+        admissibility: bool,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Document> {
+        let losses = if areas { Losses::Twice } else { Losses::Once };
+        let made = long(py, progress, |go_on| {
+            UnloadReport::compute_with(&self.preset, losses, admissibility, go_on)
+        })?;
+        made.map(Document::new).map_err(|error| errors::of_case(py, &error))
+    }
+
+    /// The loop of loading and unloading.
+    fn cycle(&self, py: Python<'_>, areas: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
+        let areas = if areas { Areas::Yes } else { Areas::No };
+        let made = long(py, progress, |go_on| CycleReport::compute(&self.preset, areas, go_on))?;
+        made.map(Document::new).map_err(|error| errors::of_case(py, &error))
+    }
+
+    /// The approach, the pressure and the gap at the radii `r` in equilibrium at the contact radius `s`, by the exact
+    /// solution: pressure NaN at and outside the edge, the gap 0 inside and NaN beyond what is known of the bodies.
+    fn across<'py>(
+        &self,
+        py: Python<'py>,
+        s: f64,
+        r: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+        let radii = r.as_slice()?.to_vec();
+        if !(s > 0.0 && s.is_finite()) {
+            return Err(errors::of_state(
+                py,
+                &format!("s = {s} is out of range: a contact radius is above 0"),
+            ));
+        }
+        if let Some(wrong) = radii.iter().find(|r| !(**r >= 0.0 && r.is_finite())) {
+            return Err(errors::of_state(py, &format!("r = {wrong} is out of range: radii are not below 0")));
+        }
+        let state = long(py, None, |go_on| State::of(&self.preset, s, &radii, go_on))?;
+        let state = state.map_err(|error| errors::of_case(py, &error))?;
+        let Some(state) = state else {
+            let sentence =
+                format!("there is no equilibrium at the contact radius {s}: the gap is not known so far out");
+            return Err(errors::of_state(py, &sentence));
+        };
+        let array = |values| PyArray1::from_vec(py, values);
+        Ok((state.approach, array(state.pressure), array(state.gap)))
+    }
+}
+
+/// The smooth curve through the samples (r, h), as the engine has it, at the radii `at`.
+#[pyfunction]
+pub fn between(
+    r: PyReadonlyArray1<'_, f64>,
+    h: PyReadonlyArray1<'_, f64>,
+    at: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Vec<f64>> {
+    let profile = Profile::new(r.as_slice()?, h.as_slice()?, Smoothing::None)
+        .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
+    Ok(at.as_slice()?.iter().map(|r| profile.jet(*r).value).collect())
+}
+
+/// A state across the radius, in the units of the preset.
+struct State {
+    approach: f64,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+}
+
+impl State {
+    fn of(
+        preset: &Preset,
+        s: f64,
+        radii: &[f64],
+        go_on: &dyn Fn(f64) -> bool,
+    ) -> Result<Option<Self>, CaseError> {
+        let case = Case::prepare(preset, &mut |share| go_on(share))?;
+        let units = case.units();
+        let s = s / units.length;
+        // Far out it takes long: here it can be stopped.
+        let farthest = radii.iter().fold(s, |most, r| most.max(r / units.length));
+        let mut asked = || go_on(1.0);
+        match case.table.up_to_while(farthest, 0, &mut asked) {
+            Err(TableError::Cancelled) => return Err(CaseError::Cancelled),
+            // What is known of it is enough, or else there is no equilibrium.
+            Err(TableError::TooFine(_)) | Ok(_) => {}
+        }
+        let exact = Exact::new(Arc::clone(&case.table), s);
+        let Some(at) = exact.equilibrium(&case.reduced, s) else { return Ok(None) };
+        let delta = at.approach;
+        let Ok(panels) = case.table.up_to(s) else { return Ok(None) };
+        let reduced: Vec<f64> = radii.iter().map(|r| r / units.length).collect();
+        let stress = units.force / (units.length * units.length);
+        let pressure =
+            |r: &f64| if *r < s { outside::pressure(&panels, s, delta, *r) * stress } else { f64::NAN };
+        let outer: Vec<f64> = reduced.iter().map(|r| r.max(s)).collect();
+        let opened = exact.gap_outside(&case.reduced, s, delta, &outer);
+        let gap = reduced.iter().zip(opened).map(|(r, gap)| if *r < s { 0.0 } else { gap * units.length });
+        Ok(Some(Self {
+            approach: delta * units.length,
+            pressure: reduced.iter().map(pressure).collect(),
+            gap: gap.collect(),
+        }))
+    }
+}

@@ -1,0 +1,119 @@
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import pulloff
+
+
+def test_columns_are_those_of_the_document(fig_9):
+    curve = fig_9.trace()
+    document = curve.to_dict()
+    assert document["schema"] == 1 and len(document["points"]) == len(curve)
+    for name in ("force", "approach", "contact_radius", "energy"):
+        array = getattr(curve, name)
+        assert array.dtype == np.float64 and array.shape == (len(curve),)
+        assert array.tolist() == [point[name] for point in document["points"]]
+    assert curve.stable_chosen.dtype == np.bool_ and curve.step.dtype == np.int64
+    assert curve.stable_force.tolist() == [point["stable"]["force"] for point in document["points"]]
+    assert np.isnan(curve.tangent_stiffness).sum() == sum(
+        point["tangent_stiffness"] is None for point in document["points"]
+    )
+    assert set(curve.columns) <= set(dir(curve))
+    with pytest.raises(AttributeError):
+        curve.nothing
+    with pytest.raises(KeyError, match="contact_radius"):
+        curve["nothing"]
+
+
+def test_the_documents_are_those_of_the_program(fig_9, tmp_path):
+    program = os.environ.get("PULLOFF_PROGRAM")
+    if program is None:
+        pytest.skip("PULLOFF_PROGRAM does not say where the program is")
+    for command, ours in [("trace", fig_9.trace()), ("unload", fig_9.unload())]:
+        file = tmp_path / f"{command}.json"
+        subprocess.run([program, command, "fig-9", "--format", "json", "-o", str(file)], check=True)
+        assert ours.to_json() == file.read_text()
+        csv = tmp_path / f"{command}.csv"
+        subprocess.run([program, command, "fig-9", "-o", str(csv)], check=True)
+        assert csv.read_text().splitlines()[0].split(",") == ours.columns
+
+
+def test_unloading(fig_9):
+    whole = fig_9.unload()
+    assert whole.kind.tolist()[-1] == "pull-off" and set(whole.kind[:-1]) == {"snap"}
+    assert whole.dissipated == pytest.approx(whole.dissipated_by_area, rel=1e-6)
+    assert whole.total_dissipated == pytest.approx(np.nansum(whole.dissipated), rel=1e-12)
+    assert np.isnan(whole.after_force[-1]) and whole.admissible.dtype == np.bool_
+    quick = fig_9.unload(areas=False, admissibility=False)
+    assert quick.before_force.tolist() == whole.before_force.tolist()
+    assert quick.dissipated.tolist() == whole.dissipated.tolist()
+    assert np.isnan(quick.dissipated_by_area).all() and quick.admissible.tolist() == [None] * len(quick)
+    force = fig_9.unload(control="force")
+    assert force.to_dict()["control"] == "force" and np.isnan(force.dissipated[-1])
+    assert fig_9.unload(control=0.15).to_dict()["control"] == {"stiffness": 0.15}
+
+
+def test_cycle():
+    loop = pulloff.Problem("fig-9-cycle").cycle()
+    sums = loop.loop
+    assert sums["dissipated"] == pytest.approx(sums["work_of_loading"] + sums["work_of_unloading"], rel=1e-6)
+    assert [event["kind"] for event in loop.events][0] == "first-touch"
+    assert set(loop.direction) == {"loading", "unloading"} and (loop.outer_radius > loop.inner_radius).all()
+    assert loop.contact.min() == 0 and loop.state.dtype == np.int64
+    with pytest.raises(pulloff.PresetError):
+        pulloff.Problem("fig-9-cycle").cycle(to_force=1.0, to_radius=0.2)
+
+
+def test_a_state_of_the_smooth_sphere_is_that_of_jkr():
+    gamma, s = 0.004, 0.2
+    sphere = pulloff.Problem(
+        f"[material]\neffective_modulus=1\nwork_of_adhesion={gamma}\n[gap]\nshape='wavy-sphere'\nradius_of_curvature=1\n"
+        "amplitude=0\nwavelength=0.05\n[path]\nstart_contact_radius=0.3\n"
+    )
+    r = np.linspace(0.0, 0.19, 20).reshape(4, 5)
+    t, tension = np.sqrt(s**2 - r**2), np.sqrt(2 * np.pi * gamma * s)
+    assert sphere.pressure(s, r) == pytest.approx((2 * t - tension / t) / np.pi, rel=1e-9, abs=1e-12)
+    assert (sphere.gap(s, r) == 0.0).all()
+    r = np.linspace(s, 0.4, 20)
+    angle, t = np.arcsin(s / r), np.sqrt(r**2 - s**2)
+    expected = r**2 / 2 + ((2 * s**2 - r**2) * angle + s * t) / np.pi - 2 / np.pi * tension * angle - (s**2 - tension)
+    assert sphere.gap(s, r) == pytest.approx(expected, abs=1e-12)
+    assert np.isnan(sphere.pressure(s, r)).all()
+    for s, r in [(-1.0, 0.1), (np.nan, 0.1), (0.1, -1.0), (0.1, np.inf)]:
+        with pytest.raises(pulloff.NoState):
+            sphere.pressure(s, r)
+
+
+def test_units_are_kept():
+    si = pulloff.Problem("fig-9-si")
+    reduced = pulloff.Problem("fig-9")
+    scale = si["gap.radius_of_curvature"]
+    s, r = 0.3, np.array([0.1, 0.2])
+    stress = si["material.effective_modulus"] / reduced["material.effective_modulus"]
+    assert si.pressure(s * scale, r * scale) == pytest.approx(reduced.pressure(s, r) * stress, rel=1e-9)
+
+
+def test_notebook_and_optional_packages(fig_9):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    sweep = pulloff.sweep({"preset": fig_9, "axis": [{"key": "gap.amplitude", "values": [1e-3, 2e-3]}]})
+    for result in (fig_9.trace(), fig_9.unload(), pulloff.Problem("fig-9-cycle").cycle(areas=False), sweep):
+        page = result._repr_html_()
+        assert page.count("<tr>") == min(len(result), 12) + 1 and "<script" not in page
+        axes = result.plot()
+        assert axes.lines and axes.get_xlabel() and axes.get_ylabel()
+        assert result.plot(ax=axes) is axes
+        matplotlib.pyplot.close("all")
+    pandas = pytest.importorskip("pandas")
+    frame = fig_9.trace().to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns) == fig_9.trace().columns
+    assert json.loads(json.dumps(sweep.to_dict()))["row"] == [0, 1]
+
+
+def test_import_is_light():
+    code = "import sys, pulloff; print([m for m in ('pandas', 'matplotlib', 'tqdm') if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
