@@ -312,7 +312,7 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
         Id::ZoomOut,
         Id::CrossHair,
         Id::Right,
-        Id::Fit,
+        Id::Whole,
         Id::Pin,
         Id::NextPanel,
         Id::Down,
@@ -477,7 +477,7 @@ fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_
 #[test]
 fn zoom_and_cross_hair_have_their_limits() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::Fit);
+    session.does(Id::Whole);
     assert!(session.status().contains("the whole chart is shown"));
     session.does(Id::CrossHair);
     assert_eq!(session.model.panel, Panel::Charts);
@@ -491,7 +491,7 @@ fn zoom_and_cross_hair_have_their_limits() {
         session.does(Id::ZoomIn);
     }
     assert!(session.status().contains("no closer"), "{}", session.status());
-    session.does(Id::Fit).does(Id::Cancel);
+    session.does(Id::Whole).does(Id::Cancel);
     assert!(session.model.cross.is_none() && session.model.window(View::ForceApproach).is_whole());
 }
 

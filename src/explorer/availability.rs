@@ -47,7 +47,7 @@ pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
         Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
             format!("select a parameter first: {} goes to the Problem panel", Id::NextPanel.named())
         }
-        Id::Fit => "the whole chart is shown".to_owned(),
+        Id::Whole => "the whole chart is shown".to_owned(),
         Id::Pins => format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named()),
         _ if model.is_computing() => "the curve is being computed".to_owned(),
         _ => format!("there is no curve: change a value, or {} computes it again", Id::Restart.named()),

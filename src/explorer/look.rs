@@ -34,12 +34,12 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
         Some(window) => model.windows[view as usize] = window,
         None if closer => model.tell(Level::Info, "no closer: there is nothing more to tell apart"),
         None => {
-            model.tell(Level::Info, format!("no further away: {} shows the whole chart", Id::Fit.named()));
+            model.tell(Level::Info, format!("no further away: {} shows the whole chart", Id::Whole.named()));
         }
     }
 }
 
-pub(super) fn fit(model: &mut Model) {
+pub(super) fn whole(model: &mut Model) {
     model.windows[model.view as usize] = Window::WHOLE;
 }
 
@@ -55,7 +55,11 @@ pub(super) fn cross_hair(model: &mut Model) {
 pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     let window = model.window(model.view);
     let Some((x, y)) = model.cross else {
-        model.windows[model.view as usize] = window.moved(right * PAN, up * PAN);
+        let window = window.moved(right * PAN, up * PAN);
+        model.windows[model.view as usize] = window;
+        if window.is_beyond() {
+            model.tell(Level::Info, format!("past the end of the curve: {} shows all of it", Id::Whole.named()));
+        }
         return;
     };
     let (x, y) = (x + right * ACROSS, y + up * UPWARDS);

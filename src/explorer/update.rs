@@ -237,7 +237,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
         Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
         Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
-        Id::Fit => look::fit(model),
+        Id::Whole => look::whole(model),
         Id::CrossHair => look::cross_hair(model),
         Id::Pin => look::pin(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },

@@ -242,6 +242,11 @@ impl Window {
         [self.x, self.y].iter().all(|[lo, hi]| lo.is_finite() && (CLOSEST..=WIDEST).contains(&(hi - lo)))
     }
 
+    /// Whether its middle is past an end of the whole.
+    pub fn is_beyond(&self) -> bool {
+        [self.x, self.y].iter().any(|[lo, hi]| !(0.0..=1.0).contains(&(0.5 * (lo + hi))))
+    }
+
     /// How many times closer than the whole.
     pub fn magnification(&self) -> f64 {
         1.0 / (self.x[1] - self.x[0])

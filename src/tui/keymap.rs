@@ -147,7 +147,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::PreviousView => &[Char('T')],
         Id::ZoomIn => &[Char('+'), Char('=')],
         Id::ZoomOut => &[Char('-')],
-        Id::Fit => &[Char('f')],
+        Id::Whole => &[Char('f')],
         Id::CrossHair => &[Char('i')],
         Id::Axes => &[Char('a')],
         Id::Events => &[Char('v')],

@@ -42,6 +42,8 @@ pub struct Prompt {
     pub waits: bool,
     /// The column of what is wrong in the text, from 1, where it has one.
     pub fault: Option<usize>,
+    /// How often Tab found nothing more to add: each time the next names are listed.
+    pub listed: usize,
 }
 
 /// What a typed line is for.
@@ -63,11 +65,22 @@ pub enum Purpose {
 /// The help, and what is looked for in it.
 #[derive(Debug, Clone, Default)]
 pub struct Help {
+    pub page: usize,
     pub line: usize,
     pub typing: Option<Input>,
     pub pattern: String,
-    /// Where it was found: the line, the number of that place from 1, and how many there are.
-    pub found: Option<(usize, usize, usize)>,
+    pub found: Option<Found>,
+}
+
+/// Where a pattern was found in the help.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Found {
+    pub page: usize,
+    pub line: usize,
+    /// The number of that place, from 1, over all pages.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
 }
 
 impl Prompt {
@@ -85,6 +98,7 @@ impl Prompt {
             error: None,
             waits: false,
             fault: None,
+            listed: 0,
         }
     }
 

@@ -102,7 +102,7 @@ commands! {
         PreviousView "previous-view" Nothing "view back": "the view before";
         ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";
         ZoomOut "zoom-out" Curve ("place") "wider": "further away";
-        Fit "fit" Zoom "fit": "the whole chart again";
+        Whole "whole" Zoom "whole": "the whole chart again";
         CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
         Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
         Events "events" Nothing "events": "events on the curve, of the loop with rings, or walked";

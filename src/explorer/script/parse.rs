@@ -72,7 +72,7 @@ fn is_of_screen(id: Id) -> bool {
             | Id::PreviousView
             | Id::ZoomIn
             | Id::ZoomOut
-            | Id::Fit
+            | Id::Whole
             | Id::CrossHair
             | Id::Axes
             | Id::Device

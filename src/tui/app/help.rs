@@ -1,9 +1,9 @@
-//! The help: scrolled, and searched with `/`, `n` and `N`.
+//! The help: its pages by Tab, scrolled, and searched with `/`, `n` and `N`.
 
 use super::state::App;
 use crate::explorer::Id;
-use crate::tui::overlay::{Help, Overlay};
-use crate::tui::view::help::plain;
+use crate::tui::overlay::{Found, Help, Overlay};
+use crate::tui::view::help::{PAGES, plain};
 use crossterm::event::{Event, KeyCode, KeyEvent};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
@@ -25,6 +25,10 @@ impl App {
             (_, KeyCode::Char('/')) => help.typing = Some(Input::default()),
             (_, KeyCode::Char('n')) if has_pattern => self.look(&mut help, true),
             (_, KeyCode::Char('N')) if has_pattern => self.look(&mut help, false),
+            (_, KeyCode::Tab) => (help.page, help.line) = ((help.page + 1) % PAGES.len(), 0),
+            (_, KeyCode::BackTab) => {
+                (help.page, help.line) = ((help.page + PAGES.len() - 1) % PAGES.len(), 0);
+            }
             (Some(Id::Up), _) => help.line = help.line.saturating_sub(1),
             (Some(Id::Down), _) => help.line += 1,
             (_, KeyCode::PageUp) => help.line = help.line.saturating_sub(PAGE),
@@ -32,7 +36,7 @@ impl App {
             (Some(Id::Cancel | Id::Quit | Id::Help | Id::Edit), _) => return,
             _ => {}
         }
-        help.line = help.line.min(plain(self).len());
+        help.line = help.line.min(plain(self, help.page).len());
         self.overlay = Some(Overlay::Help(help));
     }
 
@@ -57,23 +61,29 @@ impl App {
         }
     }
 
-    /// The next place of the pattern, or the one before, round and round; the first one not above what is shown.
+    /// The next place of the pattern on any page, or the one before, round and round; the first one not above what is
+    /// shown.
     fn look(&self, help: &mut Help, down: bool) {
         let wanted = help.pattern.to_lowercase();
-        let lines = plain(self);
-        let places: Vec<usize> = (0..lines.len())
-            .filter(|line| !wanted.is_empty() && lines[*line].to_lowercase().contains(&wanted))
-            .collect();
-        let here = help.found.map(|(line, ..)| line);
+        let lines = (0..PAGES.len()).flat_map(|page| {
+            plain(self, page).into_iter().enumerate().map(move |(line, text)| ((page, line), text))
+        });
+        let has = |text: &str| !wanted.is_empty() && text.to_lowercase().contains(&wanted);
+        let places: Vec<(usize, usize)> = lines.filter(|(_, text)| has(text)).map(|(at, _)| at).collect();
+        let shown = (help.page, help.line);
+        let here = help.found.map(|found| (found.page, found.line));
         let next = if down {
-            places.iter().position(|place| here.map_or(*place >= help.line, |here| *place > here)).or(Some(0))
+            places.iter().position(|place| here.map_or(*place >= shown, |here| *place > here)).or(Some(0))
         } else {
-            let before = places.iter().rposition(|place| *place < here.unwrap_or(help.line));
+            let before = places.iter().rposition(|place| *place < here.unwrap_or(shown));
             before.or_else(|| places.len().checked_sub(1))
         };
-        help.found = next.and_then(|at| Some((*places.get(at)?, at + 1, places.len())));
-        if let Some((line, ..)) = help.found {
-            help.line = line;
+        help.found = next.and_then(|at| {
+            let (page, line) = *places.get(at)?;
+            Some(Found { page, line, number: at + 1, of: places.len() })
+        });
+        if let Some(found) = help.found {
+            (help.page, help.line) = (found.page, found.line);
         }
     }
 }

@@ -13,6 +13,9 @@ use tui_input::backend::crossterm::EventHandler;
 /// What stands below an empty line.
 const NOTE: &str = "a command and what it takes; Tab completes, Up and Down bring lines back";
 
+/// The most columns of names that are listed at a time: with what stands behind them they fit a narrow screen.
+const LISTED: usize = 48;
+
 impl App {
     pub(super) fn ask_line(&mut self) -> Vec<Effect> {
         let effects = self.run(Id::CommandLine.into());
@@ -55,11 +58,15 @@ impl App {
         let tail: String = prompt.input.value().chars().skip(cursor).collect();
         let Completion { line, offers } = complete(&head, &self.model.preset, &self.model.preset_names);
         let cursor = line.chars().count();
+        let listed = if line == head { prompt.listed } else { 0 };
         changed(prompt, Input::new(line + &tail).with_cursor(cursor));
         prompt.note = match &*offers {
             [] => "nothing begins so".to_owned(),
             [_] => note(prompt.input.value()),
-            offers => sanitize(&offers.join("  "), 140),
+            offers => {
+                prompt.listed = listed + 1;
+                offered(offers, listed)
+            }
         };
     }
 
@@ -87,12 +94,33 @@ impl App {
     }
 }
 
+/// The names that can go on, as many as a line holds; `turn` counts how often they were listed.
+fn offered(offers: &[String], turn: usize) -> String {
+    let mut pages: Vec<String> = Vec::new();
+    for offer in offers {
+        let offer = sanitize(offer, LISTED);
+        match pages.last_mut() {
+            Some(page) if page.chars().count() + 2 + offer.chars().count() <= LISTED => {
+                page.push_str("  ");
+                page.push_str(&offer);
+            }
+            _ => pages.push(offer),
+        }
+    }
+    let at = turn % pages.len().max(1);
+    match &*pages {
+        [all] => all.clone(),
+        pages => format!("{}  ({} of {}, Tab goes on)", pages[at], at + 1, pages.len()),
+    }
+}
+
 /// Another text: what was wrong with the last is forgotten.
 fn changed(prompt: &mut Prompt, input: Input) {
     prompt.note = note(input.value());
     prompt.input = input;
     prompt.error = None;
     prompt.fault = None;
+    prompt.listed = 0;
 }
 
 fn note(line: &str) -> String {

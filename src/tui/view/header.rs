@@ -74,7 +74,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if let Some(text) = warned(&app.keymap, &warnings, room) {
         spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
-        spans.push(Span::styled(format!("  {}", theme.text(&model.preset.title)), theme.dim()));
+        // The title was given to other values.
+        let changed = if model.is_unsaved() && !model.preset.title.is_empty() { ", modified" } else { "" };
+        let title = theme.text(&model.preset.title);
+        let room = room.saturating_sub(changed.len());
+        let title: String = title.chars().take(room).collect();
+        spans.push(Span::styled(format!("  {title}{changed}"), theme.dim()));
     }
     frame.render_widget(Line::from(spans), area);
 }

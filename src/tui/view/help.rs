@@ -1,4 +1,4 @@
-//! The help, read from the one table of commands.
+//! The help in three pages: how to read the screen, first steps, and every key, read from the one table of commands.
 
 use super::parts::panel;
 use crate::explorer::Model;
@@ -14,8 +14,14 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph};
 
 /// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
-const FIRST_STEPS: &str = "\u{1}next-limit\u{1} runs to a limit point, \u{1}jump\u{1} takes the jump, \u{1}undo\u{1} undoes. \
-                           Then select A and press \u{1}more\u{1} a few times.";
+const FIRST_STEPS: &[&str] = &[
+    "The walker @ stands at the start of the path. \u{1}next-limit\u{1} runs to the first limit point: there the edge lets go.",
+    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the pull-off;      \u{1}undo\u{1} takes the last command back, whatever it was.",
+    "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its      unit where the preset has units.",
+    "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the      displacement.",
+    "\u{1}next-view\u{1} shows the pressure, the gap, the energy; \u{1}cross-hair\u{1} reads numbers off the chart.",
+    "\u{1}save-as\u{1} keeps the preset under a name of yours, \u{1}export\u{1} writes curve, walk, events or a figure, and      \u{1}open\u{1} lists the presets. A session is kept without asking: pulloff --resume goes on with it.",
+];
 
 /// The same.
 const READING: &[&str] = &[
@@ -35,6 +41,31 @@ const READING: &[&str] = &[
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; in the basis of rings, more rings give more.",
 ];
+
+/// What the screen writes short, a line each.
+const SHORT: &[(&str, &str)] = &[
+    ("δ  P  s", "approach, force (a pull is negative), contact radius: the outermost edge"),
+    ("P/Pc", "the force over the pull-off force of the smooth sphere, 3πγR/2"),
+    ("A/λ  λ/R", "height of the waves over their length, their length over the radius of the sphere"),
+    ("γ'", "2πγ/(E*R): adhesion against stiffness"),
+    ("λ²/AR", "above 8.58 the gap rises all the way; below it has rings that do not touch without adhesion"),
+    ("α", "Johnson's √(2γλ/(π²E*A²)): large where adhesion flattens the waves"),
+    ("μ", "Tabor's number: from 5 on the adhesion acts at the edge alone, as computed here"),
+    ("crest 8", "the crest nearest to the edge, counted from the axis; 8>7: from one to the next"),
+    ("digits 13", "of force and contact radius, how many can be trusted, by the state's own check"),
+    ("P off the exact", "the force less that of the exact solution at this radius, as a share of it"),
+    ("stable δ yes", "whether the state stays with the displacement (δ), the force (P), the spring (k) held"),
+    ("step 0.02", "the longest step by hand, as a share of the range of δ, P and s of the curve"),
+    ("dP/dδ", "the slope of the curve; with s held: that of a punch of this radius"),
+    ("lost 3e-4", "energy lost in jumps; with a + behind it, a jump without bound comes on top"),
+    ("no bound", "a dead load falls for ever: what is lost at the pull-off has no end"),
+    ("by area agrees", "the same loss as the area between the curve and the way of the device"),
+    ("admissible", "whether the bodies stay apart outside the contact"),
+    ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),
+];
+
+/// The pages by their names, in the order of [`entries`].
+pub const PAGES: [&str; 3] = ["how to read it", "first steps", "keys"];
 
 /// Where what a key does begins.
 const MEANING: usize = 20;
@@ -87,19 +118,58 @@ fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<HelpLine> {
     entries
 }
 
-fn entries(app: &App) -> Vec<HelpLine> {
+/// The lines of a page.
+fn entries(app: &App, page: usize) -> Vec<HelpLine> {
+    match page {
+        0 => reading(app),
+        1 => steps(app),
+        _ => keys(app),
+    }
+}
+
+/// A title with nothing above it, or an empty line.
+fn section(entries: &mut Vec<HelpLine>, theme: Theme, title: &str) {
+    if !entries.is_empty() {
+        entries.push(HelpLine::new("", "", Style::new()));
+    }
+    entries.push(HelpLine::new("", title, theme.strong()));
+}
+
+/// What is said now, what is written short, and what the chart shows.
+fn reading(app: &App) -> Vec<HelpLine> {
     let (theme, keymap) = (app.theme, &app.keymap);
-    let section =
-        |title: &str| [HelpLine::new("", "", Style::new()), HelpLine::new("", title, theme.strong())];
-    let spelled = |text: &str| HelpLine::new("  ", theme.text(&keymap.spelled(text)), Style::new());
-    let mut entries = vec![HelpLine::new("", "First steps", theme.strong()), spelled(FIRST_STEPS)];
-    entries.extend(section("Now"));
+    let mut entries = Vec::new();
+    section(&mut entries, theme, "Now");
     entries.extend(now(theme, keymap, &app.model));
+    section(&mut entries, theme, "Written short");
+    entries.extend(SHORT.iter().map(|(short, text)| {
+        let label = format!("  {:<1$}", theme.text(short), MEANING - 2);
+        HelpLine::new(&label, theme.text(text), Style::new())
+    }));
+    section(&mut entries, theme, "The chart");
+    entries.extend(READING.iter().map(|text| spelled(app, text)));
+    entries
+}
+
+fn spelled(app: &App, text: &str) -> HelpLine {
+    HelpLine::new("  ", app.theme.text(&app.keymap.spelled(text)), Style::new())
+}
+
+fn steps(app: &App) -> Vec<HelpLine> {
+    let mut entries = Vec::new();
+    section(&mut entries, app.theme, "First steps");
+    entries.extend(FIRST_STEPS.iter().map(|text| spelled(app, text)));
+    entries
+}
+
+fn keys(app: &App) -> Vec<HelpLine> {
+    let (theme, keymap) = (app.theme, &app.keymap);
+    let mut entries = Vec::new();
     let mut current = "";
     for row in ROWS {
         if row.section != current {
             current = row.section;
-            entries.extend(section(current));
+            section(&mut entries, theme, current);
         }
         let label = format!("  {:<1$}", keymap.label(row.id), MEANING - 2);
         entries
@@ -107,36 +177,43 @@ fn entries(app: &App) -> Vec<HelpLine> {
     }
     let label = format!("  {:<1$}", "Ctrl-Z", MEANING - 2);
     entries.push(HelpLine::new(&label, "back to the shell; fg returns", Style::new()));
-    entries.extend(section("How to read it"));
-    entries.extend(READING.iter().map(|text| spelled(text)));
     entries
 }
 
-/// The lines as they are searched.
-pub fn plain(app: &App) -> Vec<String> {
-    entries(app).iter().map(|entry| format!("{}{} {}", entry.label, entry.text, entry.name)).collect()
+/// The lines of a page as they are searched.
+pub fn plain(app: &App, page: usize) -> Vec<String> {
+    entries(app, page).iter().map(|entry| format!("{}{} {}", entry.label, entry.text, entry.name)).collect()
 }
 
 fn title(help: &Help) -> String {
+    let page = format!("Help {} of {}: {}", help.page + 1, PAGES.len(), PAGES[help.page]);
     match (&help.typing, help.found) {
-        (Some(input), _) => format!("Help  /{}_", input.value()),
-        (None, Some((_, at, of))) => format!("Help  /{}: {at} of {of}, n and N go on", help.pattern),
-        (None, None) if help.pattern.is_empty() => {
-            "Help: up and down scroll, / searches, Esc closes".to_owned()
+        (Some(input), _) => format!("{page}  /{}_", input.value()),
+        (None, Some(found)) => {
+            format!("{page}  /{}: {} of {}, n and N go on", help.pattern, found.number, found.of)
         }
-        (None, None) => format!("Help  /{}: not found", help.pattern),
+        (None, None) if help.pattern.is_empty() => {
+            format!("{page} (Tab: the next page, / searches, Esc closes)")
+        }
+        (None, None) => format!("{page}  /{}: not found", help.pattern),
     }
+}
+
+/// The rows of these lines.
+fn count(lines: &[Vec<Line<'_>>]) -> usize {
+    lines.iter().map(Vec::len).sum()
 }
 
 /// Draws the help over the screen, from its first line shown on.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
-    let block = panel(theme, &title(help), true);
+    let mut block = panel(theme, &title(help), true);
     let inner = block.inner(area);
     let mut lines: Vec<Vec<Line<'_>>> =
-        entries(app).iter().map(|entry| entry.rows(theme, usize::from(inner.width))).collect();
-    if let Some(found) = help.found.and_then(|(line, ..)| lines.get_mut(line)) {
+        entries(app, help.page).iter().map(|entry| entry.rows(theme, usize::from(inner.width))).collect();
+    let found = help.found.filter(|found| found.page == help.page);
+    if let Some(found) = found.and_then(|found| lines.get_mut(found.line)) {
         for row in found {
             *row = Line::styled(row.to_string(), theme.selection());
         }
@@ -148,7 +225,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
         last -= 1;
         room -= lines[last].len();
     }
-    let shown: Vec<Line<'_>> = lines.split_off(help.line.min(last)).into_iter().flatten().collect();
+    let first = help.line.min(last);
+    let (above, all) = (count(&lines[..first]), count(&lines));
+    let shown: Vec<Line<'_>> = lines.split_off(first).into_iter().flatten().collect();
+    let end = (above + usize::from(inner.height)).min(all);
+    block = block.title_bottom(Line::from(format!("lines {} to {end} of {all}", above + 1)).right_aligned());
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
     frame.render_widget(Paragraph::new(shown), inner);

@@ -155,6 +155,8 @@ fn whole_screens_as_text() {
     insta::assert_snapshot!("landing_120x40", screen.text(120, 40));
     screen.keys("?");
     insta::assert_snapshot!("help_100x45", screen.text(100, 45));
+    screen.keys("\t\t");
+    insta::assert_snapshot!("help_of_keys_100x45", screen.text(100, 45));
     screen.keys("\x1btav\r-1\r");
     insta::assert_snapshot!("refused_value_80x24", screen.text(80, 24));
 }

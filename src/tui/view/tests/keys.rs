@@ -17,7 +17,7 @@ fn sentences_name_the_keys_of_a_person() {
     bind(
         &mut screen,
         "next-limit = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
-         events = \"F7\"\nsave-as = \"W\"\nfit = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"",
+         events = \"F7\"\nsave-as = \"W\"\nwhole = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"",
     );
     let says = |screen: &Screen, text: &str| {
         let shown = screen.text(120, 40);
@@ -41,9 +41,9 @@ fn sentences_name_the_keys_of_a_person() {
     screen.press(KeyCode::F(9));
     says(&screen, ":pins lists the pins");
     screen.press(KeyCode::F(5));
-    let help = super::super::help::plain(&screen.app).join("\n");
+    let help = (0..3).flat_map(|page| super::super::help::plain(&screen.app, page)).collect::<Vec<_>>().join("\n");
     assert!(
-        help.contains("F2 runs to a limit point, J takes the jump, F4 undoes. Then select A and press )")
+        help.contains("F2 runs to the first limit point") && help.contains("J takes the jump") && help.contains("press )")
     );
     screen.keys("\x1b)q");
     says(&screen, "Esc stays, W");

@@ -86,6 +86,55 @@ fn tab_completes_and_up_and_down_bring_lines_back() {
 }
 
 #[test]
+fn tab_pages_through_all_names_and_begins_again() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":\t");
+    let mut names = String::new();
+    let note = |screen: &Screen| match &screen.app.overlay {
+        Some(Overlay::Prompt(prompt)) => prompt.note.clone(),
+        other => unreachable!("no line to type: {other:?}"),
+    };
+    let first = note(&screen);
+    let pages = 1 + first.rsplit_once(" of ").unwrap().1.split_once(',').unwrap().0.parse::<usize>().unwrap();
+    for _ in 1..pages {
+        let shown = note(&screen);
+        assert!(shown.chars().count() <= 76 && screen.text(80, 24).contains(&shown), "{shown}");
+        names.push_str(&shown);
+        names.push(' ');
+        screen.keys("\t");
+    }
+    assert_eq!(note(&screen), first);
+    for row in crate::explorer::command::ROWS {
+        assert!(names.split_whitespace().any(|name| name == row.name), "{}: {names}", row.name);
+    }
+    // Whatever is typed begins anew.
+    screen.keys("s\t");
+    assert!(note(&screen).starts_with("step") && prompt(&screen).0 == "s");
+}
+
+#[test]
+fn a_title_says_when_it_was_given_to_other_values_and_a_chart_when_it_is_past_the_curve() {
+    let mut screen = Screen::new("wavy-sphere");
+    let header = |screen: &mut Screen| screen.text(120, 40).lines().next().unwrap().to_owned();
+    assert!(!header(&mut screen).contains("modified"));
+    screen.keys(":set gap.amplitude=0.003\r");
+    assert!(header(&mut screen).trim_end().ends_with("from wave to wave, modified"), "{}", header(&mut screen));
+    screen.keys("u");
+    assert!(!header(&mut screen).contains("modified"));
+    screen.app.model.panel = crate::explorer::Panel::Charts;
+    let past = |screen: &mut Screen| screen.text(120, 40).contains("past the end of the curve: f shows all of it");
+    screen.keys("++");
+    screen.press(KeyCode::Right);
+    assert!(!past(&mut screen));
+    for _ in 0..20 {
+        screen.press(KeyCode::Right);
+    }
+    assert!(past(&mut screen));
+    screen.keys("f");
+    assert!(screen.app.model.window(screen.app.model.view).is_whole());
+}
+
+#[test]
 fn the_help_is_searched() {
     let mut screen = Screen::new("fig-3-jkr");
     let found = |screen: &Screen| match &screen.app.overlay {
@@ -93,15 +142,17 @@ fn the_help_is_searched() {
         other => unreachable!("no help: {other:?}"),
     };
     screen.keys("?/PRESET\r");
-    let (first, at, of) = found(&screen).unwrap();
-    assert!(at == 1 && of > 2, "{at} of {of}");
+    let first = found(&screen).unwrap();
+    let of = first.of;
+    assert!(first.number == 1 && of > 2, "{first:?}");
     assert!(screen.text(80, 24).contains(&format!("/PRESET: 1 of {of}")));
     screen.keys("n");
-    assert!(found(&screen).unwrap().0 > first);
+    let second = found(&screen).unwrap();
+    assert!((second.page, second.line) > (first.page, first.line));
     screen.keys("NN");
-    assert_eq!(found(&screen).unwrap().1, of);
+    assert_eq!(found(&screen).unwrap().number, of);
     screen.keys("n");
-    assert_eq!(found(&screen), Some((first, 1, of)));
+    assert_eq!(found(&screen), Some(first));
     screen.keys("/qqq\r");
     assert!(found(&screen).is_none() && screen.text(80, 24).contains("/qqq: not found"));
     // Typed text is no command, and Esc leaves the text first.
@@ -121,7 +172,7 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     screen.keys("wu ");
     assert_eq!(screen.app.model.history.cursor(), Some(0));
     assert!(screen.text(80, 24).contains("F4 step"));
-    screen.keys("?");
+    screen.keys("?\t\t");
     let help = screen.text(100, 60);
     assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains(":jump"), "{help}");
     // A list is chosen from with Enter all the same.
@@ -179,7 +230,11 @@ fn the_help_names_commands_and_undo_takes_a_count() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("?");
     let shown = screen.text(100, 30);
-    assert!(shown.lines().nth(1).unwrap().contains("First steps"), "{shown}");
+    assert!(shown.lines().next().unwrap().contains("Help 1 of 3: how to read it"), "{shown}");
+    screen.keys("\t");
+    assert!(screen.text(100, 30).lines().nth(1).unwrap().contains("First steps"));
+    screen.press(KeyCode::BackTab);
+    assert_eq!(screen.text(100, 30), shown);
     for (keys, found) in [("/next-limit\r", "next-limit"), ("/double-step\r", "double-step")] {
         screen.keys(keys);
         let shown = screen.text(100, 30);
