@@ -100,7 +100,7 @@ fn between(from: &Preset, to: &Preset, share: f64) -> Option<Preset> {
     let mut changes = Vec::new();
     for row in to.rows().filter(|row| !row.key.starts_with("display.") && row.key != "title") {
         match (from.get(&row.key), to.get(&row.key)) {
-            (Some(Value::Number(a)), Some(Value::Number(b))) if a != b => {
+            (Some(Value::Number(a)), Some(Value::Number(b))) if a.to_bits() != b.to_bits() => {
                 changes.push((row.key.clone(), Value::Number(a + share * (b - a))));
             }
             (a, b) if a != b && !row.key.starts_with("path.") => return None,
