@@ -27,6 +27,7 @@ from .errors import (
     Error,
     GapError,
     InternalError,
+    MapError,
     NoLoop,
     NoState,
     NotCertified,
@@ -35,7 +36,7 @@ from .errors import (
     StartError,
     UnstableStart,
 )
-from .results import Cycle, Sweep, Table, Trace, Unloading
+from .results import Cycle, Map, Sweep, Table, Trace, Unloading
 
 __version__ = _engine.__version__
 
@@ -46,6 +47,8 @@ __all__ = [
     "Error",
     "GapError",
     "InternalError",
+    "Map",
+    "MapError",
     "NoLoop",
     "NoState",
     "NotCertified",

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _engine
 from ._progress import Progress, told
-from .errors import NotCertified, PresetError
-from .results import Cycle, Trace, Unloading
+from .errors import MapError, NotCertified, PresetError
+from .results import Cycle, Map, Trace, Unloading
 
 Value = Union[float, int, str]
 Control = Union[str, float]
+Axis = Union[Tuple[str, float, float], Tuple[str, float, float, str]]
 
 # A function is sampled at so many radii at first and at most: as many as the engine takes as knots.
 _SAMPLES = (65, 3841)
@@ -224,6 +225,39 @@ class Problem:
         with told(progress, "cycle") as tell:
             return Cycle(problem.cycle(areas, tell))
 
+    def map(
+        self,
+        x: Axis,
+        y: Union[Axis, str] = "control",
+        *,
+        control: Optional[Control] = None,
+        cells: Tuple[int, int] = (48, 36),
+        progress: Progress = None,
+    ) -> Map:
+        """Where snaps begin, as lines in two numbers, or the limit points over one.
+
+        Parameters
+        ----------
+        x : (key, from, to) or (key, from, to, "log")
+            A key of the problem, a group as ``"groups.adhesion"``, or ``"compliance"``, which is 1/k from 0 (displacement) to
+            ``math.inf`` (a dead load).
+        y : the same, or {"control", "approach", "force"}
+            Another number; or, of the limit points over x, what is wanted of them.
+        control : {"displacement", "force"} or float, optional
+            As of :meth:`unload`.
+        cells : (columns, rows)
+            At the corners of how many cells the snaps are counted, where both axes are numbers.
+        """
+        if isinstance(y, str) and y not in ("control", "approach", "force"):
+            raise MapError(f"y = {y!r} is not known: it must be 'control', 'approach', 'force', or (key, from, to)")
+        columns, rows = (int(count) for count in cells)
+        if not (1 <= columns <= 1000 and 1 <= rows <= 1000):
+            raise MapError(f"cells = {cells!r} is out of range: from 1 to 1000 columns and rows")
+        problem = self._under(control)
+        ordinate, other = (y, None) if isinstance(y, str) else ("control", _axis(y))
+        with told(progress, "map") as tell:
+            return Map(problem.map(_axis(x), other, ordinate, columns, rows, tell))
+
     def pressure(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.
 
@@ -251,6 +285,16 @@ class Problem:
             return self._native
         given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
         return self._native.replace({"path.control": given})
+
+
+def _axis(axis: Axis) -> Tuple[str, float, float, bool]:
+    words = "an axis is (key, from, to) or (key, from, to, 'log')"
+    if isinstance(axis, str) or not 3 <= len(axis) <= 4 or (len(axis) == 4 and axis[3] != "log"):
+        raise MapError(f"{axis!r}: {words}")
+    key, lo, hi = axis[:3]
+    if not isinstance(key, str):
+        raise MapError(f"{axis!r}: {words}")
+    return key, float(lo), float(hi), len(axis) == 4
 
 
 def _column(name: str, values: ArrayLike) -> NDArray[np.float64]:

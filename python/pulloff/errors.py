@@ -67,6 +67,10 @@ class NoLoop(ComputationError):
     """There is no loop of loading and unloading."""
 
 
+class MapError(ComputationError, ValueError):
+    """There is no map over these axes."""
+
+
 class NoState(ComputationError, ValueError):
     """There is no equilibrium at the contact radius asked for, or a radius is out of range."""
 

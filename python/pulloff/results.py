@@ -306,6 +306,52 @@ class Cycle(Result):
         return ax
 
 
+class Map(Result):
+    """Lines in two numbers on which the number of snaps changes, or the limit points over one number; each column has the
+    shape (points,)."""
+
+    line: Floats
+    """The number of the point's line, from 1; NaN where it is on none."""
+    kind: Texts
+    """``fold``, ``cusp``, ``swallowtail``, ``landing`` or ``start``."""
+    crest: Floats
+    contact_radius: Floats
+    x: Floats
+    """The number on the x axis; NaN where it is infinite."""
+    y: Floats
+    control_value: Floats
+    stable: Texts
+    changes: NDArray[Any]
+    """Of a line of a map, whether the number of snaps differs on its two sides."""
+
+    @property
+    def counts(self) -> Optional[Dict[str, NDArray[np.float64]]]:
+        """The snaps at the corners of the cells: ``x``, shape (columns + 1,), ``y``, shape (rows + 1,), and ``snaps``, shape
+        (rows + 1, columns + 1); NaN where there is no path. None for limit points."""
+        counts = self._said()["counts"]
+        return counts and {name: np.array(values, dtype=float) for name, values in counts.items()}
+
+    def _title(self) -> str:
+        said = self._said()
+        return f"{said['y']['key']} over {said['x']['key']}, {len(self)} points"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the lines, over the number of snaps where it was counted, and returns the axes of matplotlib."""
+        ax = self._axes(ax)
+        said, counts = self._said(), self.counts
+        if counts is not None:
+            drawn = ax.pcolormesh(counts["x"], counts["y"], counts["snaps"], shading="nearest", cmap="Blues")
+            ax.figure.colorbar(drawn, label="snaps")
+        for number in np.unique(self.line[~np.isnan(self.line)]):
+            rows = (self.line == number) & (self.kind != "swallowtail")
+            ax.plot(self.x[rows], self.y[rows], color="black", linewidth=0.8)
+        for axis, name in ((said["x"], "x"), (said["y"], "y")):
+            getattr(ax, f"set_{name}label")(axis["key"])
+            if axis["logarithmic"]:
+                getattr(ax, f"set_{name}scale")("log")
+        return ax
+
+
 class Sweep(Table):
     """Many problems: the axes' values, the quantities and the error of each row; each column has the shape (rows,)."""
 

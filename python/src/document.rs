@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
-use pulloff_engine::report::{self, CycleReport, TraceReport, UnloadReport};
+use pulloff_engine::report::{self, CycleReport, MapReport, TraceReport, UnloadReport};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -19,7 +19,7 @@ pub trait Report: Send + Sync {
 }
 
 macro_rules! reports {
-    ($($report:ty),*) => {
+    ($($report:ty: $said:ident),*) => {
         $(impl Report for $report {
             fn json(&self) -> Result<String, serde_json::Error> {
                 report::json(self)
@@ -30,13 +30,13 @@ macro_rules! reports {
             }
 
             fn warnings(&self) -> &[String] {
-                &self.warnings
+                &self.$said
             }
         })*
     };
 }
 
-reports!(TraceReport, UnloadReport, CycleReport);
+reports!(TraceReport: warnings, UnloadReport: warnings, CycleReport: warnings, MapReport: notes);
 
 /// A result, immutable.
 #[pyclass(frozen, module = "pulloff._engine")]
@@ -87,11 +87,11 @@ impl Document {
 }
 
 /// Columns of true and false.
-const FLAGS: [&str; 4] = ["stable_displacement", "stable_force", "stable_chosen", "admissible"];
+const FLAGS: [&str; 5] = ["stable_displacement", "stable_force", "stable_chosen", "admissible", "changes"];
 /// Columns of whole numbers.
 const WHOLE: [&str; 5] = ["step", "newton_iterations", "state", "piece", "contact"];
 /// Columns of texts.
-const TEXTS: [&str; 3] = ["kind", "reason", "direction"];
+const TEXTS: [&str; 4] = ["kind", "reason", "direction", "stable"];
 
 /// The cells of a column by its name, whatever rows there are: true or false, whole numbers, texts, else numbers with NaN
 /// for nothing. Texts, and flags that are not known, are a list with None for nothing.

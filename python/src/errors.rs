@@ -2,6 +2,7 @@
 
 use pulloff_engine::CaseError;
 use pulloff_engine::preset::{Invalid, Mistake, Origin, ReadError};
+use pulloff_engine::report::map::MapError;
 use pulloff_engine::sweep::SpecError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -91,6 +92,20 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
         CaseError::Cancelled => "Cancelled",
     };
     plain(py, name, &error.to_string())
+}
+
+/// A map that cannot be made.
+pub fn of_map(py: Python<'_>, error: &MapError) -> PyErr {
+    match error {
+        MapError::Case(error) => of_case(py, error),
+        MapError::Cancelled => plain(py, "Cancelled", &error.to_string()),
+        MapError::Family(_) => plain(py, "MapError", &error.to_string()),
+    }
+}
+
+/// An axis of a map that is none.
+pub fn of_axis(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "MapError", sentence)
 }
 
 /// A state that is asked for and is not there.

@@ -13,7 +13,9 @@ use pulloff_engine::preset::{Preset, Value, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::cycle::Areas;
-use pulloff_engine::report::{CycleReport, TraceReport, UnloadReport};
+use pulloff_engine::report::map::Ordinate;
+use pulloff_engine::report::{CycleReport, MapReport, TraceReport, UnloadReport};
+use pulloff_engine::stability::{Axis, COMPLIANCE};
 use pulloff_engine::text::{closest, quote};
 use pulloff_engine::units::Unit;
 use pyo3::prelude::*;
@@ -197,6 +199,32 @@ impl Problem {
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
+    /// Where snaps begin, as lines in two numbers, or the limit points over one.
+    #[expect(clippy::too_many_arguments, reason = "the axes of a map as Python hands them over")]
+    fn map(
+        &self,
+        py: Python<'_>,
+        x: (String, f64, f64, bool),
+        y: Option<(String, f64, f64, bool)>,
+        ordinate: &str,
+        columns: u32,
+        rows: u32,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Document> {
+        let x = self.axis(py, &x)?;
+        let y = match (y, ordinate) {
+            (Some(y), _) => Ordinate::Key(self.axis(py, &y)?),
+            (None, "approach") => Ordinate::Approach,
+            (None, "force") => Ordinate::Force,
+            (None, _) => Ordinate::Control,
+        };
+        // What a map has done says nothing of what is left.
+        let made = long(py, progress, |go_on| {
+            MapReport::compute(&self.preset, x, &y, [columns, rows], &|| go_on(0.0))
+        })?;
+        made.map(Document::new).map_err(|error| errors::of_map(py, &error))
+    }
+
     /// The approach, the pressure and the gap at the radii `r` in equilibrium at the contact radius `s`, by the exact
     /// solution: pressure NaN at and outside the edge, the gap 0 inside and NaN beyond what is known of the bodies.
     fn across<'py>(
@@ -224,6 +252,25 @@ impl Problem {
         };
         let array = |values| PyArray1::from_vec(py, values);
         Ok((state.approach, array(state.pressure), array(state.gap)))
+    }
+}
+
+impl Problem {
+    /// An axis of a map: a number of the preset, a group, or the compliance of the device.
+    fn axis(&self, py: Python<'_>, (key, from, to, log): &(String, f64, f64, bool)) -> PyResult<Axis> {
+        let is_number = self.preset.row(key).is_some_and(|row| row.kind.is_number());
+        if key != COMPLIANCE && !is_number {
+            let sentence = match self.preset.clone().set(key, 1.0.into()) {
+                Err(invalid) => invalid.to_string(),
+                Ok(()) => {
+                    format!("{}: an axis is a number of the preset, a group, or compliance", quote(key))
+                }
+            };
+            return Err(errors::of_axis(py, &sentence));
+        }
+        let unit = self.preset.gap.length().unwrap_or(1.0) * self.preset.material.effective_modulus;
+        Axis::new(key, [*from, *to], *log, 1.0 / unit)
+            .map_err(|error| errors::of_axis(py, &error.to_string()))
     }
 }
 

@@ -68,6 +68,27 @@ def test_cycle():
         pulloff.Problem("fig-9-cycle").cycle(to_force=1.0, to_radius=0.2)
 
 
+def test_map(fig_9):
+    folds = fig_9.map(("gap.amplitude", 1e-3, 3e-3), "approach")
+    assert set(folds.kind) <= {"fold", "cusp", "landing"} and folds.counts is None
+    # At the amplitude of the problem the folds are its limit points.
+    document = fig_9.replace({"basis.kind": "exact"}).trace().to_dict()
+    limits = [at["approach"] for at in document["limit_points"] if at["control"] == "displacement"]
+    near = folds.y[np.abs(folds.x - fig_9["gap.amplitude"]) < 2e-5]
+    assert all(np.min(np.abs(near - limit)) < 1e-3 for limit in limits)
+    counted = fig_9.map(("gap.amplitude", 1e-3, 3e-3), ("path.start_contact_radius", 0.3, 0.4), cells=(4, 3))
+    assert counted.counts["snaps"].shape == (4, 5) and counted.counts["x"].shape == (5,)
+    snaps = [
+        len(fig_9.replace({"gap.amplitude": x, "basis.kind": "exact", "path.start_contact_radius": counted.counts["y"][0]}).unload()) - 1
+        for x in counted.counts["x"].tolist()
+    ]
+    assert counted.counts["snaps"][0].tolist() == snaps
+    for x, y in [(("gap.amplitud", 0, 1), "force"), (("gap.shape", 0, 1), "force"), (("gap.amplitude", 2, 1), "force"),
+                 (("gap.amplitude", 0, 1), "sideways"), (("gap.amplitude", 0), "force")]:
+        with pytest.raises(pulloff.MapError):
+            fig_9.map(x, y)
+
+
 def test_a_state_of_the_smooth_sphere_is_that_of_jkr():
     gamma, s = 0.004, 0.2
     sphere = pulloff.Problem(

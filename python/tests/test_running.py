@@ -15,6 +15,7 @@ WORK = {
     "trace": "while True: problem.trace(progress=told)",
     "unload": "while True: problem.unload(progress=told)",
     "cycle": "while True: loop.cycle(progress=told)",
+    "map": "while True: problem.map(('gap.amplitude', 1e-3, 4e-3), ('material.work_of_adhesion', 1e-3, 1e-2), progress=told)",
     "sweep": f"pulloff.sweep({MANY}, progress=told)",
     # So far out that the table takes minutes.
     "gap": "told(0.0), problem.gap(0.3, 3000.0)",

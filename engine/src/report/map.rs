@@ -2,7 +2,7 @@
 
 use super::SCHEMA;
 use super::problem::ProblemReport;
-use super::rows::{self, RowsError};
+use super::rows::{RowsError, Table};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
@@ -207,12 +207,20 @@ impl MapReport {
         if go_on() { Ok(report) } else { Err(MapError::Cancelled) }
     }
 
+    /// The points under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        Table::of(COLUMNS, &self.rows)
+    }
+
     /// The points as CSV.
     ///
     /// # Errors
-    /// Only if the rows do not fit the columns, which their types exclude.
+    /// As [`Table::csv`].
     pub fn csv(&self) -> Result<String, RowsError> {
-        rows::csv(COLUMNS, &self.rows)
+        self.table()?.csv()
     }
 
     fn rows_of_map(&mut self, family: &Family, map: &Map) {
