@@ -159,6 +159,11 @@ fn the_law_holds_at_every_limit_point_of_the_curve() {
         let curve = case.curve(|| true).unwrap();
         let family = Family::new(&preset, Vec::new()).unwrap();
         let law = family.member(&[]).unwrap().law(&[]).unwrap();
+        let radii: Vec<f64> = (1..=1000).map(|k| 0.0005 * f64::from(k)).collect();
+        for (s, many) in radii.iter().zip(law.over(&radii)) {
+            let one = law.critical(*s).unwrap();
+            assert!((many - one).abs() <= 1e-13 * one.max(1e-6), "{s} {many} {one}");
+        }
         let limits = curve.limit_points(control);
         assert_eq!(limits.len(), 19);
         for limit in limits {

@@ -58,7 +58,10 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
         let window = window.moved(right * PAN, up * PAN);
         model.windows[model.view as usize] = window;
         if window.is_beyond() {
-            model.tell(Level::Info, format!("past the end of the curve: {} shows all of it", Id::Whole.named()));
+            model.tell(
+                Level::Info,
+                format!("past the end of the curve: {} shows all of it", Id::Whole.named()),
+            );
         }
         return;
     };

@@ -59,7 +59,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         (0..=RADII).map(|k| case.end + (case.start - case.end) * k as f64 / RADII as f64).collect();
     let law = |control| Law { panels: panels.clone(), control };
     let curve = |law: &Law| -> Vec<(f64, f64)> {
-        radii.iter().map(|s| (at(*s), law.critical(*s).map_or(f64::NAN, place))).collect()
+        radii.iter().zip(law.over(&radii)).map(|(s, adhesion)| (at(*s), place(adhesion))).collect()
     };
     let own = law(case.control);
     let points = curve(&own);

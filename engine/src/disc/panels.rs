@@ -306,6 +306,17 @@ impl Panels {
         [four(&of.value), slopes, four(&of.area)]
     }
 
+    /// g' at eight radii, which lie on one panel.
+    pub fn eight_slopes(&self, panel: usize, radii: &[f64; 8]) -> [f64; 8] {
+        let of = &*self.list[panel];
+        if let Some(law) = &self.law {
+            return radii.map(|a| law.slope(a));
+        }
+        let x = radii.map(|a| of.place(a));
+        let slopes = chebyshev::sum8(&of.slope, &x);
+        std::array::from_fn(|i| slopes[i] / of.weight(x[i]))
+    }
+
     /// g and ∫g at eight radii, which lie on one panel: the dense curve is made of these.
     pub fn eight(&self, panel: usize, radii: &[f64; 8]) -> [[f64; 8]; 2] {
         let of = &*self.list[panel];

@@ -236,11 +236,7 @@ impl Family {
                 [lo, hi, middle].map(|value| self.with(&[&corner[..], &[(axis, value)]].concat()));
             let (a, b, m) = (a?, b?, m?);
             let factor = |preset: &Preset, value: f64| self.reduced(preset).work_of_adhesion / value;
-            let same = |preset: &Preset| {
-                preset.material.effective_modulus == b.material.effective_modulus
-                    && preset.path == b.path
-                    && preset.material.work_of_adhesion == b.material.work_of_adhesion
-            };
+            let same = |preset: &Preset| preset.material == b.material && preset.path == b.path;
             let proportional = (factor(&m, middle) / factor(&b, hi) - 1.0).abs() <= ROUNDING;
             let role = if a.gap == b.gap && a.path == b.path && factor(&b, hi) > 0.0 && proportional {
                 Role::Adhesion(factor(&b, hi))
@@ -336,13 +332,12 @@ impl Family {
                 Role::Other => {}
             }
         }
-        let source = match source {
-            Some(source) => source,
-            None => {
-                let reach = self.radii[1].max(self.reach(&self.preset));
-                let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
-                Source::One(own.up_to(reach)?)
-            }
+        let source = if let Some(source) = source {
+            source
+        } else {
+            let reach = self.radii[1].max(self.reach(&self.preset));
+            let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
+            Source::One(own.up_to(reach)?)
         };
         Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control, made })
     }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! One curve answers for every work of adhesion: the line γ cuts it at all limit points. At its extrema pairs of them are born:
-//! F' = 0, a cusp. Where h'' jumps γ_k has a corner and no derivative: an extremum there is none.
+//! F' = 0, a cusp. Where h'' jumps `γ_k` has a corner and no derivative: an extremum there is none.
 
 use super::weight::Weight;
 use crate::disc::chebyshev::{self, ROOT_NODES, Rule};
@@ -88,6 +88,30 @@ impl Law {
         let place = self.place(s)?;
         let slope = self.panels.weighted_slope(place) / self.panels.list()[place.panel].weight(place.x);
         Some(adhesion_of(Weight::of(self.control, s).value * slope))
+    }
+
+    /// [`Law::critical`] at many radii, which run one way; not a number where it is none.
+    pub fn over(&self, radii: &[f64]) -> Vec<f64> {
+        let mut found = Vec::with_capacity(radii.len());
+        let mut rest = radii;
+        while let Some((s, others)) = rest.split_first() {
+            // Eight at a time where they lie on one panel.
+            let place = self.place(*s);
+            let eight = rest.first_chunk::<8>().zip(place).filter(|(eight, place)| {
+                let span = &self.panels.list()[place.panel].span;
+                eight.iter().all(|s| span.lo < *s && *s <= span.hi)
+            });
+            if let Some((eight, place)) = eight {
+                let slopes = self.panels.eight_slopes(place.panel, eight);
+                let pairs = eight.iter().zip(slopes);
+                found.extend(pairs.map(|(s, slope)| adhesion_of(Weight::of(self.control, *s).value * slope)));
+                rest = &rest[8..];
+            } else {
+                found.push(self.critical(*s).unwrap_or(f64::NAN));
+                rest = others;
+            }
+        }
+        found
     }
 
     fn place(&self, s: f64) -> Option<Place> {

@@ -227,7 +227,7 @@ impl Family {
     fn landing_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Landing);
         // Along the axis that keeps the gap, where one does: a table serves a whole column.
-        let along = if self.keeps_gap(1) || !self.keeps_gap(0) { 1 } else { 0 };
+        let along = usize::from(self.keeps_gap(1) || !self.keeps_gap(0));
         let mut starts = Vec::new();
         for share in even(LANDING_COLUMNS) {
             let mut at = [share; 2];

@@ -41,9 +41,12 @@ fn sentences_name_the_keys_of_a_person() {
     screen.press(KeyCode::F(9));
     says(&screen, ":pins lists the pins");
     screen.press(KeyCode::F(5));
-    let help = (0..3).flat_map(|page| super::super::help::plain(&screen.app, page)).collect::<Vec<_>>().join("\n");
+    let help =
+        (0..3).flat_map(|page| super::super::help::plain(&screen.app, page)).collect::<Vec<_>>().join("\n");
     assert!(
-        help.contains("F2 runs to the first limit point") && help.contains("J takes the jump") && help.contains("press )")
+        help.contains("F2 runs to the first limit point")
+            && help.contains("J takes the jump")
+            && help.contains("press )")
     );
     screen.keys("\x1b)q");
     says(&screen, "Esc stays, W");

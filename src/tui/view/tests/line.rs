@@ -118,11 +118,16 @@ fn a_title_says_when_it_was_given_to_other_values_and_a_chart_when_it_is_past_th
     let header = |screen: &mut Screen| screen.text(120, 40).lines().next().unwrap().to_owned();
     assert!(!header(&mut screen).contains("modified"));
     screen.keys(":set gap.amplitude=0.003\r");
-    assert!(header(&mut screen).trim_end().ends_with("from wave to wave, modified"), "{}", header(&mut screen));
+    assert!(
+        header(&mut screen).trim_end().ends_with("from wave to wave, modified"),
+        "{}",
+        header(&mut screen)
+    );
     screen.keys("u");
     assert!(!header(&mut screen).contains("modified"));
     screen.app.model.panel = crate::explorer::Panel::Charts;
-    let past = |screen: &mut Screen| screen.text(120, 40).contains("past the end of the curve: f shows all of it");
+    let past =
+        |screen: &mut Screen| screen.text(120, 40).contains("past the end of the curve: f shows all of it");
     screen.keys("++");
     screen.press(KeyCode::Right);
     assert!(!past(&mut screen));
