@@ -175,44 +175,6 @@ fn the_law_holds_at_every_limit_point_of_the_curve() {
 }
 
 #[test]
-#[ignore = "prints times"]
-fn times() {
-    let preset = waves(Control::Displacement, 0.41, 0.05, 0.025);
-    for (x, y) in [
-        (axis(AMPLITUDE, [0.0, 0.0125], false), axis(ADHESION, [1e-3, 1.0], true)),
-        (axis("groups.wavelength_over_radius", [0.02, 0.1], false), axis(ADHESION, [1e-3, 1.0], true)),
-        (axis("compliance", [0.0, f64::INFINITY], false), axis(ADHESION, [1e-3, 1.0], true)),
-        (axis("compliance", [0.0, f64::INFINITY], false), axis(AMPLITUDE, [0.0, 0.0125], false)),
-        (axis("groups.wavelength_over_radius", [0.02, 0.1], false), axis(AMPLITUDE, [0.0005, 0.0125], false)),
-    ] {
-        let clock = std::time::Instant::now();
-        let family = Family::new(&preset, vec![x, y]).unwrap();
-        println!("family {:?}", clock.elapsed());
-        let clock = std::time::Instant::now();
-        let mut map = family.map(&|| true).unwrap();
-        println!("map {:?}", clock.elapsed());
-        let clock = std::time::Instant::now();
-        family.mark_changes(&mut map, &|| true);
-        println!("changes {:?}", clock.elapsed());
-        for line in &map.lines {
-            let ends = [line.points.first(), line.points.last()]
-                .map(|p| p.map(|p| (p.contact_radius, [0, 1].map(|k| family.axes[k].value(p.at[k])))));
-            let dim = line.changes.iter().filter(|c| **c).count();
-            println!(
-                "{:?} {:?} {} points, {} tips, {dim} change, {ends:?}",
-                line.sort,
-                line.crest,
-                line.points.len(),
-                line.tips.len()
-            );
-        }
-        let clock = std::time::Instant::now();
-        family.counts([32, 24], &|| true).unwrap();
-        println!("counts {:?}", clock.elapsed());
-    }
-}
-
-#[test]
 fn the_smallest_amplitude_that_snaps_is_that_known_for_every_device() {
     let known = &data()["first_pair"];
     let adhesion = known["adhesion"].as_f64().unwrap();
