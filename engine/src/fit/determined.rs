@@ -49,7 +49,7 @@ pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robu
     };
     let (most, least) = (svd.singular_values.max(), svd.singular_values.min());
     let condition = if least > 0.0 { most / least } else { f64::INFINITY };
-    let refused = !(condition <= LARGEST_CONDITION) || lengths.contains(&0.0);
+    let refused = condition.is_nan() || condition > LARGEST_CONDITION || lengths.contains(&0.0);
     if refused {
         let weakest = svd.singular_values.imin();
         let direction: Vec<f64> =
@@ -125,7 +125,7 @@ fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
     let (before, after) = (parameter.value(u), parameter.value(u + by));
     if parameter.scale.is_none() {
         let percent = 100.0 * (after / before - 1.0);
-        let digits = if percent.abs() >= 9.95 { 0 } else { 1 };
+        let digits = usize::from(percent.abs() < 9.95);
         return format!("{percent:+.digits$} %").replace('-', "−");
     }
     let text = said(&preset.units, super::run::quantity(preset, &parameter.key()), after - before);

@@ -138,22 +138,23 @@ impl<'a> Scaled<'a> {
             let (slope, off, along) = look(s)?;
             let length = dot(along, along);
             if slope > 0.0 {
-                hi = s
+                hi = s;
             } else {
-                lo = s
+                lo = s;
             }
             // By the curve's own bend after the first step.
             let bend = match last {
-                Some((t, before)) if t != s => (slope - before) / (s - t),
-                _ => length,
+                Some((t, before)) => (slope - before) / (s - t),
+                None => length,
             };
+            // Of two places that are one it is no number.
             let bend = if bend > 0.1 * length { bend } else { length };
             let mut next = s - slope / bend;
             if !(next > lo && next < hi) {
                 next = 0.5 * (lo + hi);
             }
             let way = (next - s).abs();
-            if !(way * length.sqrt() > FOUND) || way <= 4.0 * f64::EPSILON * s {
+            if way * length.sqrt() <= FOUND || way <= 4.0 * f64::EPSILON * s {
                 return self.told(piece, Foot::Radius(s), off, along);
             }
             last = Some((s, slope));

@@ -22,8 +22,8 @@ const RUNS: f64 = -5.0;
 const RUNS_OF: usize = 40;
 /// Residuals below this share of the noise are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
-/// A χ² per point beyond it is more than noise.
-const LARGE_CHI: f64 = 1.5;
+/// Residuals so many times the noise of the free part, outliers apart, are more than noise.
+const LARGE_SCALE: f64 = 1.3;
 
 /// The deviation of the number of runs of signs from that of chance, in its own; A. Wald and J. Wolfowitz, Ann. Math. Stat. 11,
 /// 147 (1940).
@@ -44,7 +44,7 @@ pub fn doubts(
     solved: &Solved,
     preset: &Preset,
     fitted: &[Fitted],
-    (chi_squared, known_noise): (f64, bool),
+    known_noise: bool,
 ) -> Vec<String> {
     let mut doubts = Vec::new();
     let u = &solved.minimum.parameters;
@@ -102,11 +102,11 @@ pub fn doubts(
             }
         }
     }
-    if known_noise && chi_squared > LARGE_CHI {
+    if known_noise && solved.scale > LARGE_SCALE {
         doubts.push(format!(
             "the residuals are {} times the noise of the points: a value that is held may be wrong (the stiffness of the \
              device above all), or the model",
-            short(chi_squared.sqrt(), 2)
+            short(solved.scale, 2)
         ));
     }
     doubts

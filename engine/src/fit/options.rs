@@ -10,6 +10,7 @@ use thiserror::Error;
 
 /// What is asked of a fit.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Options {
     /// The free keys, dotted or by their labels.
     pub free: Vec<String>,
@@ -111,7 +112,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     }
     let rows: Vec<Row> = preset.rows().collect();
     let is_named = |row: &&Row| row.key == name || row.label == name || greek(&row.label) == name;
-    let gamma = (name == "γ" || name == "gamma").then_some(ADHESION);
+    let gamma = ["γ", "gamma", "w"].contains(&name).then_some(ADHESION);
     let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
     else {
         let known = rows.iter().map(|row| &*row.key).chain([OFFSET, BASELINE, TILT]);

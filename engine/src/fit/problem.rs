@@ -168,7 +168,7 @@ impl Problem {
             // The two that need no check across keys.
             match key {
                 "material.effective_modulus" if value.is_normal() => {
-                    preset.material.effective_modulus = value
+                    preset.material.effective_modulus = value;
                 }
                 ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,
                 key => preset.set(key, Value::Number(value)).ok()?,

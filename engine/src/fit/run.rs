@@ -14,6 +14,7 @@ use crate::measured::{Abscissa, Branches, Points, Segment};
 use crate::preset::{Preset, Value};
 use crate::problem::Start;
 use crate::units::Quantity;
+use nalgebra::DVector;
 
 /// Points in contact for each free parameter, at least.
 const PER_PARAMETER: usize = 3;
@@ -149,24 +150,7 @@ pub fn fit(
     let at = &solved.minimum.at;
     let u = solved.minimum.parameters.clone();
     let what = determined(&problem, at, &u, solved.scale, options.robust);
-    let mut fitted: Vec<Fitted> = problem
-        .parameters
-        .iter()
-        .enumerate()
-        .map(|(j, parameter)| {
-            let value = parameter.value(u[j]);
-            let error = what.errors.as_ref().map(|errors| errors[j] * parameter.slope(value).abs());
-            let key = parameter.key();
-            Fitted {
-                key,
-                value,
-                standard_error: error,
-                start: parameter.start,
-                profile: None,
-                bootstrap: None,
-            }
-        })
-        .collect();
+    let mut fitted = values(&problem, &u, what.errors.as_ref());
     let mut bootstrapped = None;
     if let Some(errors) = &what.errors {
         if options.profile {
@@ -194,25 +178,13 @@ pub fn fit(
     let free = (real.len() - u.len().min(real.len())).max(1) as f64;
     let chi_squared = real.iter().map(|r| (r / scale).powi(2)).sum::<f64>() / free;
     let known_noise = !from_residuals && !branches.noise.assumed[1];
-    let warnings = doubts(&problem, &solved, &found, &fitted, (chi_squared, known_noise));
+    let warnings = doubts(&problem, &solved, &found, &fitted, known_noise);
     let residuals = beside(&problem, &solved);
     let snaps = problem.paths(&u, None).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
     let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
     let mut noise = branches.noise;
     noise.sigma = problem.sigma;
-    // The path of the preset is its own; only the values are new.
-    let mut fitted_preset = preset.clone();
-    for parameter in &problem.parameters {
-        let key = match &parameter.target {
-            Target::Key(key) => key.as_str(),
-            Target::Adhesion(Segment::Retraction) => ADHESION,
-            _ => continue,
-        };
-        let value = found.get(key);
-        if value.is_some_and(|value| fitted_preset.set(key, value).is_err()) {
-            notes.push(format!("{key} could not be laid over the preset, whose path it forbids"));
-        }
-    }
+    let fitted_preset = laid(preset, &problem, &found, &mut notes);
     Ok(Fit {
         correlations: what
             .correlations
@@ -236,6 +208,33 @@ pub fn fit(
         residuals,
         parameters: fitted,
     })
+}
+
+/// The values with their errors.
+fn values(problem: &Problem, u: &[f64], errors: Option<&DVector<f64>>) -> Vec<Fitted> {
+    let of = |(j, parameter): (usize, &Parameter)| {
+        let value = parameter.value(u[j]);
+        let standard_error = errors.map(|errors| errors[j] * parameter.slope(value).abs());
+        let (key, start) = (parameter.key(), parameter.start);
+        Fitted { key, value, standard_error, start, profile: None, bootstrap: None }
+    };
+    problem.parameters.iter().enumerate().map(of).collect()
+}
+
+/// `preset` with the values of `found`; its path stays its own.
+fn laid(preset: &Preset, problem: &Problem, found: &Preset, notes: &mut Vec<String>) -> Preset {
+    let mut laid = preset.clone();
+    for parameter in &problem.parameters {
+        let key = match &parameter.target {
+            Target::Key(key) => key.as_str(),
+            Target::Adhesion(Segment::Retraction) => ADHESION,
+            _ => continue,
+        };
+        if found.get(key).is_some_and(|value| laid.set(key, value).is_err()) {
+            notes.push(format!("{key} could not be laid over the preset, whose path it forbids"));
+        }
+    }
+    laid
 }
 
 /// The points with their distances.

@@ -23,7 +23,7 @@ impl Problem {
     /// The residuals that are there: in space those of free points have no second part.
     pub(super) fn real(&self, residuals: &DVector<f64>) -> Vec<f64> {
         let per = self.per_point();
-        let is_real = |i: usize| per == 1 || i % per == 0 || !self.data[i / per].free;
+        let is_real = |i: usize| per == 1 || i.is_multiple_of(per) || !self.data[i / per].free;
         residuals.iter().enumerate().filter(|(i, _)| is_real(*i)).map(|(_, r)| *r).collect()
     }
 

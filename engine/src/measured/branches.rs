@@ -353,7 +353,7 @@ fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
             continue;
         }
         let end = &force[force.len() - (force.len() / END_SHARE).max(END_ROWS)..];
-        let limit = BEYOND * scatter(end).max(FLOOR * range(force.iter().copied()));
+        let limit = BEYOND * scatter(tenth(&force)).max(FLOOR * range(force.iter().copied()));
         let base = median(end.to_vec())?;
         let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
         let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
@@ -409,7 +409,7 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     let count = (points.len() / END_SHARE).max(END_ROWS);
     let end = &force[force.len() - count..];
     let whole = range(force.iter().copied());
-    let limit = BEYOND * scatter(end).max(FLOOR * whole);
+    let limit = BEYOND * scatter(tenth(&force)).max(FLOOR * whole);
     // Without single rows that are off: a median keeps the place of a step.
     let force = filtered(&force);
     let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap_or(0);
@@ -437,24 +437,21 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     Branch { segment, attached: points, free, dropped: 0 }
 }
 
-/// The running median of five.
+/// The running median of five, of fewer at the ends.
 fn filtered(values: &[f64]) -> Vec<f64> {
     let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
-    (0..values.len())
-        .map(|i| {
-            if i < 2 || i + 3 > values.len() {
-                values[i]
-            } else {
-                median(around(i).to_vec()).unwrap_or(values[i])
-            }
-        })
-        .collect()
+    (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
+}
+
+/// The last tenth of the rows.
+fn tenth(force: &[f64]) -> &[f64] {
+    &force[force.len() - (force.len() / 10).max(6).min(force.len())..]
 }
 
 /// Whether the force still goes on at the end, as it does where a file ends before the pull-off: the medians of the thirds of the
 /// last tenth differ by more than noise.
 fn trends(force: &[f64]) -> bool {
-    let end = &force[force.len() - (force.len() / 10).max(6).min(force.len())..];
+    let end = tenth(force);
     let thirds: Vec<f64> =
         end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
     range(thirds.iter().copied()) > 2.0 * scatter(end) + FLOOR * range(force.iter().copied())
@@ -529,7 +526,8 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     }
     let (below, at, _) = values.select_nth_unstable_by(count / 2, f64::total_cmp);
     let at = *at;
-    let other = if count % 2 == 0 { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) } else { at };
+    let other =
+        if count.is_multiple_of(2) { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) } else { at };
     Some(0.5 * (other + at))
 }
 

@@ -200,7 +200,9 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     let text = cells::text_of(bytes).map_err(ReadError::NotText)?;
     let mut faults = Faults::default();
     let mut measured = Measured::default();
-    let (mut header, mut candidate): (Option<(usize, &str)>, Option<(usize, &str)>) = (None, None);
+    // Lines with their numbers: the header, and a remark that may be one.
+    let mut header: Option<(usize, &str)> = None;
+    let mut candidate: Option<(usize, &str)> = None;
     let mut metadata = Metadata::default();
     let mut layout: Option<(Separator, usize, Vec<Wanted>)> = None;
     let mut rows = 0;
