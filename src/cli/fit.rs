@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Files with measured curves, and behind them a preset's name or file (ending in .toml); the wavy sphere when left out
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     paths: Vec<OsString>,
-    /// The keys to fit, dotted or by their letters: material.effective_modulus,material.work_of_adhesion or E*,w; also
+    /// The keys to fit, dotted or by their letters: material.effective_modulus,material.work_of_adhesion or E*,gamma; also
     /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt
     #[arg(long, value_name = "KEY,...", required = true, value_delimiter = ',')]
     free: Vec<String>,
@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     assignments: Vec<String>,
     /// Fit this key for approach and retraction apart
-    #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "w"])]
+    #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
     /// What the columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
     #[arg(long, value_name = "ROLE=COLUMN,...")]
@@ -134,10 +134,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
                 warn(&[failure.to_string()]);
                 worst = worst.max(Some(1));
                 if let Some(table) = &mut table {
-                    table.add(
-                        path,
-                        &[vec!["file".to_owned(), "state".to_owned()], vec![shown, failure.to_string()]],
-                    )?;
+                    table.add(path, None, &failed(shown, &failure))?;
                 }
                 continue;
             }
@@ -146,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let report = FitReport::new(&shown, &found.0, found.1, arguments.poisson);
         warn(&report.warnings);
         if let Some(table) = &mut table {
-            table.add(path, &report.row())?;
+            table.add(path, Some(table.fingerprint(path)), &report.row())?;
         }
         if let Some(file) = &arguments.residuals {
             output::write(&residuals(&found.0.residuals), Some(file))?;
@@ -180,6 +177,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             text: "stopped: the result has the best values so far".to_owned(),
         }),
     }
+}
+
+/// The header and the row of a file that could not be fitted.
+fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
+    let text = failure.to_string().replace('\n', "; ");
+    [["file", "state"].map(str::to_owned).to_vec(), vec![file, text]]
 }
 
 /// 1 where a fit did not converge, else 3 where it is not determined.
@@ -432,7 +435,13 @@ impl Table {
         self.rows.iter().any(|row| row.last() == Some(&fingerprint))
     }
 
-    fn add(&mut self, path: &Path, [header, row]: &[Vec<String>; 2]) -> Result<(), Failure> {
+    /// Puts a row in, in place of an older one of the same file; one without a fingerprint is tried again by a rerun.
+    fn add(
+        &mut self,
+        path: &Path,
+        fingerprint: Option<String>,
+        [header, row]: &[Vec<String>; 2],
+    ) -> Result<(), Failure> {
         let shown = show_path(path);
         self.rows.retain(|row| row.first() != Some(&shown));
         let mut header = header.clone();
@@ -443,7 +452,7 @@ impl Table {
         let mut row = row.clone();
         // A file that could not be fitted has its reason, and nothing else.
         row.resize(self.header.len().max(row.len() + 1) - 1, String::new());
-        row.push(self.fingerprint(path));
+        row.push(fingerprint.unwrap_or_default());
         self.rows.push(row);
         let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
         writer.write_record(&self.header)?;
