@@ -24,19 +24,23 @@ from ._toml import written
 from .errors import (
     Cancelled,
     ComputationError,
+    DataError,
     Error,
+    FitError,
     GapError,
     InternalError,
     MapError,
     NoLoop,
     NoState,
     NotCertified,
+    NotConverged,
+    NotDetermined,
     PresetError,
     SpecError,
     StartError,
     UnstableStart,
 )
-from .results import Cycle, Map, Sweep, Table, Trace, Unloading
+from .results import Cycle, Fit, Map, Sweep, Table, Trace, Unloading
 
 __version__ = _engine.__version__
 
@@ -44,7 +48,10 @@ __all__ = [
     "Cancelled",
     "ComputationError",
     "Cycle",
+    "DataError",
     "Error",
+    "Fit",
+    "FitError",
     "GapError",
     "InternalError",
     "Map",
@@ -52,6 +59,8 @@ __all__ = [
     "NoLoop",
     "NoState",
     "NotCertified",
+    "NotConverged",
+    "NotDetermined",
     "PresetError",
     "Problem",
     "Quantity",

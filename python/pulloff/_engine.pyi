@@ -47,6 +47,20 @@ class Problem:
     ) -> Tuple[float, NDArray[float64], NDArray[float64]]: ...
 
 def presets() -> Dict[str, str]: ...
+def fitted(
+    problem: Problem,
+    name: str,
+    data: bytes,
+    columns: Optional[str],
+    free: List[str],
+    separate: bool,
+    robust: bool,
+    sigma: Tuple[Optional[float], Optional[float]],
+    scan: bool,
+    profile: bool,
+    bootstrap: Optional[Tuple[int, int]],
+    progress: _Tell,
+) -> Tuple[Document, Problem, str, Optional[str]]: ...
 def between(r: NDArray[float64], h: NDArray[float64], at: NDArray[float64]) -> List[float]: ...
 def quantities() -> List[Tuple[str, str, str, bool]]: ...
 def sweep(

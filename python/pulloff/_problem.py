@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _engine
 from ._progress import Progress, told
-from .errors import MapError, NotCertified, PresetError
-from .results import Cycle, Map, Trace, Unloading
+from .errors import DataError, MapError, NotCertified, NotConverged, NotDetermined, PresetError
+from .results import Cycle, Fit, Map, Trace, Unloading
 
 Value = Union[float, int, str]
 Control = Union[str, float]
@@ -258,6 +258,95 @@ class Problem:
         with told(progress, "map") as tell:
             return Map(problem.map(_axis(x), other, ordinate, columns, rows, tell))
 
+    def fit(
+        self,
+        data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike]],
+        free: Sequence[str],
+        *,
+        columns: Optional[str] = None,
+        separate: bool = False,
+        robust: bool = True,
+        sigma_x: Optional[float] = None,
+        sigma_force: Optional[float] = None,
+        scan: bool = True,
+        profile: bool = False,
+        bootstrap: Optional[int] = None,
+        seed: int = 1,
+        progress: Progress = None,
+    ) -> Fit:
+        """The values of some keys that a measured curve gives, with their standard errors.
+
+        Parameters
+        ----------
+        data : path or dict of arrays, shape (points,)
+            A file that the program's ``fit`` reads; or columns by their names, ``"force"`` with ``"approach"``,
+            ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` where it is known; in SI or,
+            where the problem is in reduced units, in those.
+        free : sequence of str
+            The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument.
+        columns : str, optional
+            What the columns of a file are where its header does not say it, as ``"x=1,force=2"``.
+        separate : bool
+            Whether approach and retraction have a work of adhesion each.
+        robust : bool
+            Whether points far away count linearly, not squared.
+        sigma_x, sigma_force : float, optional
+            Standard deviations; found where they are not given.
+        scan : bool
+            Whether starts other than the problem's own values are tried.
+        profile : bool
+            Whether 95 % intervals are found by the profile of χ²; ``to_dict()`` has them.
+        bootstrap, seed : int, optional
+            Fits to so many sets of blocks of rows drawn at random, 10 to 100000.
+
+        Raises
+        ------
+        NotDetermined
+            The points do not determine the values; the sentence says which, and ``result`` is the fit.
+        NotConverged, FitError
+            It did not come to its end, or to nothing.
+        DataError
+            The points, or what is asked of them, are refused.
+        """
+        if isinstance(data, Mapping):
+            name, text = "data", _points(data, self._native.values().get("units") == "SI")
+        else:
+            name = os.fspath(data)
+            try:
+                with open(data, "rb") as file:
+                    text = file.read()
+            except (OSError, ValueError) as error:
+                raise DataError(f"{name}: {error}") from error
+        if bootstrap is not None and not 10 <= bootstrap <= 100_000:
+            raise DataError(f"bootstrap = {bootstrap} is out of range: it must be from 10 to 100000")
+        for what, sigma in (("sigma_x", sigma_x), ("sigma_force", sigma_force)):
+            if sigma is not None and not 0.0 < sigma < float("inf"):
+                raise DataError(f"{what} = {sigma!r} is out of range: a standard deviation is above 0")
+        if isinstance(free, str):
+            free = [free]
+        drawn = None if bootstrap is None else (int(bootstrap), int(seed))
+        with told(progress, "fit") as tell:
+            document, problem, ended, direction = _engine.fitted(
+                self._native,
+                name,
+                text,
+                columns,
+                list(free),
+                separate,
+                robust,
+                (sigma_x, sigma_force),
+                scan,
+                profile,
+                drawn,
+                tell,
+            )
+        result = Fit(document, self._of(problem))
+        if ended != "converged":
+            raise NotConverged("the fit did not converge; result has the best values so far", result=result)
+        if direction is not None:
+            raise NotDetermined(direction, result=result)
+        return result
+
     def pressure(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.
 
@@ -285,6 +374,20 @@ class Problem:
             return self._native
         given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
         return self._native.replace({"path.control": given})
+
+
+def _points(data: Mapping[str, ArrayLike], in_si: bool) -> bytes:
+    """Columns as the table that the engine reads."""
+    units = {"force": " [N]", "segment": ""} if in_si else {}
+    columns = {str(name).replace("_", " "): np.asarray(values) for name, values in data.items()}
+    lengths = {column.size for column in columns.values() if column.ndim == 1}
+    if len(lengths) != 1 or any(column.ndim != 1 for column in columns.values()):
+        shapes = ", ".join(f"{name} {column.shape}" for name, column in columns.items())
+        raise DataError(f"the columns must have one dimension and one length: {shapes or 'there are none'}")
+    header = ",".join(name + units.get(name, " [m]" if in_si else "") for name in columns)
+    lists = [column.tolist() for column in columns.values()]
+    rows = (",".join(x if isinstance(x, str) else repr(x) for x in row) for row in zip(*lists))
+    return "\n".join([header, *rows, ""]).encode()
 
 
 def _axis(axis: Axis) -> Tuple[str, float, float, bool]:

@@ -5,7 +5,7 @@ Every exception of the package is a :class:`Error`. Values that are refused are 
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Tuple
+from typing import Any, Optional, Sequence, Tuple
 
 
 class Error(Exception):
@@ -69,6 +69,31 @@ class NoLoop(ComputationError):
 
 class MapError(ComputationError, ValueError):
     """There is no map over these axes."""
+
+
+class DataError(Error, ValueError):
+    """Measured points, or what is asked of them, that are refused."""
+
+
+class FitError(ComputationError):
+    """A fit that comes to nothing."""
+
+
+class _Unfinished(FitError):
+    def __init__(self, sentence: str = "", *, result: Any = None) -> None:
+        super().__init__(sentence)
+        self.result = result
+
+
+class NotDetermined(_Unfinished):
+    """The points do not determine the values that were asked for; the sentence says which can only be had together.
+
+    ``result`` is the fit all the same: its values are one choice of many.
+    """
+
+
+class NotConverged(_Unfinished):
+    """A fit that did not come to its end; ``result`` has the best values so far."""
 
 
 class NoState(ComputationError, ValueError):

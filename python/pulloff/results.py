@@ -352,6 +352,44 @@ class Map(Result):
         return ax
 
 
+class Fit(Result):
+    """A problem fitted to a measured curve; each column has the shape (values,)."""
+
+    key: Texts
+    value: Floats
+    """In SI or, where the problem is in reduced units, in those."""
+    standard_error: Floats
+    """NaN where it is not determined."""
+    start: Floats
+    unit: Texts
+
+    problem: Any
+    """The :class:`pulloff.Problem` with the fitted values."""
+
+    def __init__(self, document: _engine.Document, problem: Any) -> None:
+        super().__init__(document)
+        self.problem = problem
+
+    @property
+    def values(self) -> Dict[str, float]:
+        """The fitted values by their keys."""
+        return dict(zip(self.key.tolist(), self.value.tolist()))
+
+    @property
+    def errors(self) -> Dict[str, float]:
+        """Their standard errors."""
+        return dict(zip(self.key.tolist(), self.standard_error.tolist()))
+
+    @property
+    def notes(self) -> List[str]:
+        """What was found, assumed and held, in sentences."""
+        return list(self._said()["notes"])
+
+    def _title(self) -> str:
+        said = self._said()
+        return f"{said['points']} points, chi squared per point {said['chi_squared']:.4g}, {said['ended']}"
+
+
 class Sweep(Table):
     """Many problems: the axes' values, the quantities and the error of each row; each column has the shape (rows,)."""
 

@@ -91,7 +91,7 @@ const FLAGS: [&str; 5] = ["stable_displacement", "stable_force", "stable_chosen"
 /// Columns of whole numbers.
 const WHOLE: [&str; 5] = ["step", "newton_iterations", "state", "piece", "contact"];
 /// Columns of texts.
-const TEXTS: [&str; 4] = ["kind", "reason", "direction", "stable"];
+const TEXTS: [&str; 6] = ["kind", "reason", "direction", "stable", "key", "unit"];
 
 /// The cells of a column by its name, whatever rows there are: true or false, whole numbers, texts, else numbers with NaN
 /// for nothing. Texts, and flags that are not known, are a list with None for nothing.

@@ -108,6 +108,16 @@ pub fn of_axis(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "MapError", sentence)
 }
 
+/// Measured points, or what is asked of them, that are refused.
+pub fn of_data(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "DataError", sentence)
+}
+
+/// A fit that comes to nothing.
+pub fn of_fit(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "FitError", sentence)
+}
+
 /// A state that is asked for and is not there.
 pub fn of_state(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "NoState", sentence)

@@ -10,11 +10,13 @@
 //! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is told |
 //! | `document` | a result: its JSON, its columns as arrays |
 //! | `problem` | a problem, and all that is computed of it |
+//! | `fit` | a problem fitted to a measured curve |
 //! | `sweep` | many problems on all cores |
 
 mod document;
 mod errors;
 mod files;
+mod fit;
 mod problem;
 mod running;
 mod sweep;
@@ -28,6 +30,7 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<document::Document>()?;
     module.add_class::<problem::Problem>()?;
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::fitted, module)?)?;
     module.add_function(wrap_pyfunction!(problem::between, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::quantities, module)?)?;

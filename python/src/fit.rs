@@ -1,0 +1,97 @@
+//! A problem fitted to a measured curve.
+
+use crate::document::{Document, Report};
+use crate::errors;
+use crate::problem::Problem;
+use crate::running::long;
+use pulloff_engine::fit::{FitError, Options, fit};
+use pulloff_engine::measured::points::stiffness;
+use pulloff_engine::measured::{Asked, Spec, parse};
+use pulloff_engine::preset::Value as PresetValue;
+use pulloff_engine::report;
+use pulloff_engine::report::fit::FitReport;
+use pulloff_engine::report::rows::{RowsError, Table};
+use pyo3::prelude::*;
+use serde_json::Value;
+
+/// The columns of a fit: a row for each value.
+const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
+
+impl Report for FitReport {
+    fn json(&self) -> Result<String, serde_json::Error> {
+        report::json(self)
+    }
+
+    fn table(&self) -> Result<Table, RowsError> {
+        let rows = self.parameters.iter().map(|parameter| {
+            let error = parameter.standard_error.map_or(Value::Null, Value::from);
+            vec![
+                parameter.key.clone().into(),
+                parameter.value.into(),
+                error,
+                parameter.start.into(),
+                parameter.unit.into(),
+            ]
+        });
+        Ok(Table { columns: COLUMNS.map(str::to_owned).to_vec(), rows: rows.collect() })
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+}
+
+/// The fit of `problem` to the table `data`, the text of the file `name`; the document, the fitted problem, how it ended, and
+/// what is not determined.
+#[pyfunction]
+#[expect(
+    clippy::too_many_arguments,
+    clippy::fn_params_excessive_bools,
+    reason = "what Python asks for, by name there"
+)]
+pub fn fitted(
+    py: Python<'_>,
+    problem: &Bound<'_, Problem>,
+    name: &str,
+    data: &[u8],
+    columns: Option<&str>,
+    free: Vec<String>,
+    separate: bool,
+    robust: bool,
+    sigma: [Option<f64>; 2],
+    scan: bool,
+    profile: bool,
+    bootstrap: Option<(usize, u64)>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Document, Problem, &'static str, Option<String>)> {
+    let mut preset = problem.get().preset.clone();
+    let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
+    let spec = columns.map_or_else(|| Ok(Spec::default()), Spec::parse).map_err(|error| refused(&error))?;
+    let measured = parse(data, &spec).map_err(|error| refused(&error))?;
+    let spring = stiffness(measured.stiffness, preset.path.control, &preset.units);
+    let spring = spring.map_err(|error| refused(&error))?;
+    if let Some(k) = measured.stiffness {
+        let laid = preset.set("path.control.stiffness", PresetValue::Number(k));
+        laid.map_err(|invalid| errors::of_value(py, &invalid))?;
+    }
+    let points = measured.points(&preset.units, spring).map_err(|error| refused(&error))?;
+    let options = Options {
+        free,
+        separate,
+        robust,
+        asked: Asked { sigma: [sigma[0], sigma[1], None], ..Asked::default() },
+        scan,
+        profile,
+        bootstrap,
+        ..Options::default()
+    };
+    let made = long(py, progress, |go_on| fit(&preset, &points, &options, &mut |share| go_on(share)))?;
+    let mut made = made.map_err(|error| match error {
+        FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
+        error => refused(&error),
+    })?;
+    made.notes = measured.notes.into_iter().chain(std::mem::take(&mut made.notes)).collect();
+    let report = FitReport::new(name, &made, points.abscissa, None);
+    let (ended, direction) = (report.ended, report.direction.clone());
+    Ok((Document::new(report), Problem { preset: made.preset }, ended, direction))
+}
