@@ -34,7 +34,7 @@ fn frame(bencher: Bencher, app: &App, width: u16, height: u16) {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
     bencher.bench_local(|| {
         let draw = |frame: &mut ratatui::Frame<'_>| {
-            view::draw(frame, app, &mut view::Pictures::default());
+            view::draw(frame, app);
         };
         terminal.draw(draw).unwrap();
     });

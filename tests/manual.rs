@@ -110,7 +110,7 @@ fn screen() -> String {
     let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
     terminal
         .draw(|frame| {
-            view::draw(frame, &app, &mut view::Pictures::default());
+            view::draw(frame, &app);
         })
         .unwrap();
     let buffer = terminal.backend().buffer();

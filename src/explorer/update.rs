@@ -262,6 +262,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Pins
         | Id::Branches
         | Id::Copy
+        | Id::Enlarge
         | Id::Mouse
         | Id::Help
         | Id::Assign

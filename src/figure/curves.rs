@@ -151,8 +151,12 @@ fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(figure.view, place(point))).collect();
-        all.extend(points.iter().copied());
-        figure.lines.push(Line::new(Role::Pin(pin.number), pin.name(subject.preset), points));
+        let name = pin.name(subject.preset);
+        let parts = pieces(&pin.curve.points, &points).into_iter();
+        figure.lines.extend(parts.map(|part| {
+            Line::new(Role::Pin(pin.number), name.clone(), part.points).broken(part.role == Role::Unstable)
+        }));
+        all.extend(points);
     }
     all
 }
@@ -169,6 +173,17 @@ fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
     );
     let own = curve.shown_limits().into_iter();
     figure.marks.extend(own.map(|at| Mark { sign: Sign::Limit, at: scale.place(view, at) }));
-    let pull_off = events_before(subject, scale, view).filter(|mark| mark.sign == Sign::PullOff);
-    figure.marks.extend(pull_off.collect::<Vec<_>>());
+    // Over the others: the same points, where an event begins.
+    let events: Vec<Mark> = events_before(subject, scale, view).collect();
+    let is_off =
+        |mark: &Mark| mark.sign != Sign::Limit || !events.iter().any(|event| is_near(mark.at, event.at));
+    figure.marks.retain(is_off);
+    figure.marks.extend(events);
+}
+
+/// Whether two places are the same limit point, found in two ways.
+fn is_near(a: (f64, f64), b: (f64, f64)) -> bool {
+    const SAME: f64 = 1e-6;
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    near(a.0, b.0) && near(a.1, b.1)
 }

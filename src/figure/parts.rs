@@ -57,6 +57,8 @@ pub struct Line {
     pub name: String,
     /// Its points; a number that is not finite is a break.
     pub points: Vec<(f64, f64)>,
+    /// Whether it is drawn broken although its role is not: an unstable part of a curve kept for comparison.
+    pub is_broken: bool,
 }
 
 /// What stands at a point. A renderer gives each a letter of its own.
@@ -64,8 +66,10 @@ pub struct Line {
 pub enum Sign {
     /// A limit point of another control.
     OtherLimit(Control),
-    /// A limit point of the control.
+    /// A limit point of the control, on no path.
     Limit,
+    /// The limit point where an event of the path begins, by its number from 1.
+    Event(usize),
     /// The last limit point of a path: the bodies come apart.
     PullOff,
     Landing,
@@ -205,6 +209,12 @@ impl Figure {
 impl Line {
     /// A line with a name.
     pub fn new(role: Role, name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { role, name: name.into(), points }
+        Self { role, name: name.into(), points, is_broken: false }
+    }
+
+    /// The same line broken, or not.
+    #[must_use]
+    pub fn broken(self, is_broken: bool) -> Self {
+        Self { is_broken, ..self }
     }
 }

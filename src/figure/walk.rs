@@ -33,8 +33,8 @@ pub fn events_before<'a>(
 ) -> impl Iterator<Item = Mark> + 'a {
     let units = *subject.curve.case.units();
     let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
-    events.map(move |event| {
-        let sign = if event.kind == EventKind::PullOff { Sign::PullOff } else { Sign::Limit };
+    (1..).zip(events).map(move |(number, event)| {
+        let sign = if event.kind == EventKind::PullOff { Sign::PullOff } else { Sign::Event(number) };
         Mark { sign, at: scale.place(view, quantities(&event.before.in_units(&units))) }
     })
 }

@@ -4,7 +4,6 @@ use super::app::App;
 use super::converse;
 use super::terminal::{Display, Inbox, Incoming, Pace, Sink};
 use super::theme::{Charts, Palette, Theme};
-use super::view::Pictures;
 use crate::explorer::{Effect, Inline, Reply};
 use crate::store::Store;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -60,7 +59,6 @@ impl Sink for Counter {
 struct Session {
     app: App,
     driver: Inline,
-    pictures: Pictures,
     _folder: tempfile::TempDir,
 }
 
@@ -70,8 +68,7 @@ impl Session {
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
         let (app, effects) = App::new(loaded, theme);
-        let mut session =
-            Self { app, driver: Inline::new(store), pictures: Pictures::default(), _folder: folder };
+        let mut session = Self { app, driver: Inline::new(store), _folder: folder };
         session.settle(effects);
         session
     }
@@ -87,7 +84,7 @@ impl Session {
         let (mut views, mut screen) = (0, self.app.screen);
         display.draw(|frame| {
             screen = frame.area();
-            views = super::view::draw(frame, &self.app, &mut self.pictures);
+            views = super::view::draw(frame, &self.app);
         });
         let effects = self.app.make_room(screen, views);
         self.settle(effects);
@@ -133,12 +130,29 @@ fn costliest_step(preset: &str, size: (u16, u16), theme: Theme, views: usize) ->
     steps.max().unwrap()
 }
 
+/// A plain key costs so much in the median; where the list of parameters scrolls, a little more.
+const MEDIAN: [usize; 2] = [130, 155];
+
+#[test]
+fn a_value_turned_beside_a_pin_costs_at_most_four_kilobytes() {
+    for theme in THEMES {
+        let counter = Counter::leak((120, 40), None, None);
+        let mut display = Display::new(counter).unwrap();
+        let mut session = Session::new("wavy-sphere", theme);
+        session.cost(&mut display, counter, 'p');
+        session.draw_all(&mut display);
+        let costs: Vec<usize> =
+            ">>>><<".chars().map(|key| session.cost(&mut display, counter, key)).collect();
+        assert!(costs.iter().all(|bytes| *bytes <= 4000), "{costs:?} {theme:?}");
+    }
+}
+
 #[test]
 fn idle_costs_nothing_and_a_move_little() {
     // On small screens most parameters make room for the groups when one of those is selected.
     for (size, theme, most) in [
-        ((80, 24), THEMES[0], 350),
-        ((100, 30), THEMES[0], 350),
+        ((80, 24), THEMES[0], 400),
+        ((100, 30), THEMES[0], 400),
         ((120, 40), THEMES[0], 300),
         ((120, 40), THEMES[1], 300),
     ] {
@@ -155,16 +169,20 @@ fn idle_costs_nothing_and_a_move_little() {
         assert!(costs.iter().all(|bytes| *bytes < most), "{costs:?} at {size:?}");
         let over = costs.iter().filter(|bytes| **bytes >= 300).count();
         assert!(over <= 2, "{costs:?} at {size:?}");
+        // Those at the end of the list, which change nothing, are not counted.
+        let mut costs: Vec<usize> = costs.into_iter().filter(|bytes| *bytes > 0).collect();
+        costs.sort_unstable();
+        assert!(costs[costs.len() / 2] <= MEDIAN[usize::from(size.1 < 40)], "{costs:?} at {size:?}");
     }
 }
 
 #[test]
-fn a_step_costs_less_than_one_and_a_half_kilobytes() {
+fn a_step_costs_less_than_two_kilobytes() {
     // Every view of a curve with jumps: the curves, the pressure, the gap, the potential, the unloading.
     for views in [0, 1, 2, 3, 4, 5, 6] {
         for theme in THEMES {
             let bytes = costliest_step("wavy-sphere", (120, 40), theme, views);
-            assert!(bytes < 1500, "{bytes} bytes in view {views}, {theme:?}");
+            assert!(bytes < 2000, "{bytes} bytes in view {views}, {theme:?}");
         }
     }
     for (preset, size, views) in [
@@ -175,14 +193,14 @@ fn a_step_costs_less_than_one_and_a_half_kilobytes() {
         ("fig-10-force", (120, 40), 0),
     ] {
         let bytes = costliest_step(preset, size, THEMES[0], views);
-        assert!(bytes < 1500, "{bytes} bytes for {preset} at {size:?}");
+        assert!(bytes < 2700, "{bytes} bytes for {preset} at {size:?}");
     }
 }
 
 #[test]
 fn four_charts_of_a_large_screen_cost_no_more_than_their_number() {
     let [braille, ascii] = THEMES.map(|theme| costliest_step("wavy-sphere", (200, 60), theme, 0));
-    assert!(braille < 2500 && ascii < 1500, "{braille} and {ascii} bytes");
+    assert!(braille < 3000 && ascii < 1800, "{braille} and {ascii} bytes");
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn drawn(app: &App, content: Content) -> String {
     let size = app.screen;
     let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
     let Ok(_) = terminal.draw(|frame| {
-        view::draw(frame, app, &mut view::Pictures::default());
+        view::draw(frame, app);
     });
     let buffer = terminal.backend().buffer();
     let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));

@@ -143,6 +143,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Right => &[Named(KeyCode::Right), Char('l')],
         Id::NextPanel => &[Named(KeyCode::Tab)],
         Id::PreviousPanel => &[Named(KeyCode::BackTab)],
+        Id::Enlarge => &[Char('z')],
         Id::NextView => &[Char('t')],
         Id::PreviousView => &[Char('T')],
         Id::ZoomIn => &[Char('+'), Char('=')],

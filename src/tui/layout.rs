@@ -1,7 +1,18 @@
-//! Which region goes where at which size.
+//! Which region goes where at which size. Neighbours share a wall.
+//!
+//! | size | left | charts | events |
+//! |---|---|---|---|
+//! | below 60 wide | nothing | one | below, from 18 rows on |
+//! | 60-99 | 26 | one | below |
+//! | 100-159 | 31 | one | below |
+//! | from 160x45 | 36 | two, side by side | below |
+//! | from 200x60 | 36 | four, of at least 14 rows of plot each; the lower two over the whole width where the left has room | below |
+//! | from 240 wide, below 30 rows | 36 | two, side by side | a column of their own |
+//!
+//! Events take the rows they need, as many as leave the charts theirs. The panel that `z` chose has the whole screen.
 
-use crate::explorer::View;
-use ratatui::layout::{Constraint, Layout, Rect};
+use crate::explorer::{Panel, View};
+use ratatui::layout::Rect;
 
 /// The smallest screen on which anything is shown.
 pub const SMALLEST: (u16, u16) = (40, 10);
@@ -19,90 +30,152 @@ pub struct Regions {
     pub footer: Rect,
 }
 
-/// The regions of a screen that shows `view` and so many `events`; `None` below the smallest size.
-pub fn regions(area: Rect, view: View, events: usize) -> Option<Regions> {
+/// What the panels want.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wants {
+    /// The first view.
+    pub view: View,
+    /// Rows of events.
+    pub events: usize,
+    /// Rows of the problem.
+    pub problem: usize,
+    /// The panel that has the whole screen.
+    pub whole: Option<Panel>,
+}
+
+/// Width of the column of the events where they have one.
+const EVENTS_COLUMN: u16 = 88;
+/// Rows of a chart that has a plot of 14: its walls, its legend, its labels.
+const CHART_ROWS: u16 = 18;
+
+/// The regions of a screen; `None` below the smallest size.
+pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
     let (width, height) = (area.width, area.height);
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;
     }
-    let most = match height {
-        ..=17 => 0,
-        18..=23 => 5,
-        24..=29 => 6,
-        30..=39 => 9,
-        40..=49 => 12,
-        _ => 16,
+    let line = |y: u16| Rect { y, height: 1, ..area };
+    let body = Rect { y: area.y + 1, height: height - 3, ..area };
+    let mut regions = Regions {
+        header: line(area.y),
+        problem: None,
+        walker: None,
+        charts: Vec::new(),
+        events: None,
+        status: line(body.bottom()),
+        footer: line(body.bottom() + 1),
     };
-    // Frame and heads take three lines; two lines of events are kept free, so that the charts do not jump.
-    let events_height = u16::try_from(events.max(2) + 3).unwrap_or(u16::MAX).min(most);
-    let [header, main, events, status, footer] = Layout::vertical([
-        Constraint::Length(1),
-        Constraint::Fill(1),
-        Constraint::Length(events_height),
-        Constraint::Length(1),
-        Constraint::Length(1),
-    ])
-    .areas(area);
-    let side_width = match width {
-        ..=59 => 0,
-        60..=99 => 26,
-        100..=159 => 31,
-        _ => 36,
-    };
-    let [side, charts] =
-        Layout::horizontal([Constraint::Length(side_width), Constraint::Fill(1)]).areas(main);
-    // The walker needs six lines and its title, and the parameters more than that, as far as there are lines.
-    let walker_height = if main.height >= 25 {
-        11
-    } else if main.height >= 24 {
-        9
-    } else {
-        7.min(main.height / 2 + 1)
-    };
-    let [problem, walker] =
-        Layout::vertical([Constraint::Fill(1), Constraint::Length(walker_height)]).areas(side);
-    let views = std::iter::once(view).chain(view.companions());
-    let charts = views.zip(places(charts, width, height)).collect();
-    let shown = |rect: Rect| (rect.width > 0 && rect.height > 2).then_some(rect);
-    Some(Regions {
-        header,
-        problem: shown(problem),
-        walker: shown(walker),
-        charts,
-        events: shown(events),
-        status,
-        footer,
-    })
+    match wants.whole {
+        Some(Panel::Problem) => regions.problem = Some(body),
+        Some(Panel::Walker) => regions.walker = Some(body),
+        Some(Panel::Events) => regions.events = Some(body),
+        Some(Panel::Charts) => regions.charts = vec![(wants.view, body)],
+        None => fill(&mut regions, body, (width, height), wants),
+    }
+    Some(regions)
 }
 
-/// The places of the charts on a screen of this size: one, two, or four where they stay as large as on a small screen.
-fn places(charts: Rect, width: u16, height: u16) -> Vec<Rect> {
-    let half = [Constraint::Fill(1), Constraint::Fill(1)];
-    if width < 100 || height < 30 {
-        return vec![charts];
+/// The first `count` columns, and the rest from the wall that both share.
+fn split_left(area: Rect, count: u16) -> (Rect, Rect) {
+    let first = Rect { width: count, ..area };
+    let shared = count.saturating_sub(1);
+    (first, Rect { x: area.x + shared, width: area.width - shared, ..area })
+}
+
+/// The first `count` rows, and the rest from the wall that both share.
+fn split_top(area: Rect, count: u16) -> (Rect, Rect) {
+    let first = Rect { height: count, ..area };
+    let shared = count.saturating_sub(1);
+    (first, Rect { y: area.y + shared, height: area.height - shared, ..area })
+}
+
+fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: Wants) {
+    let side_width = match width {
+        ..=59 => 0,
+        60..=99 => 27,
+        100..=159 => 32,
+        _ => 37,
+    };
+    let is_flat = width >= 240 && height < 30;
+    let main = if is_flat {
+        let (main, events) = split_left(body, body.width + 1 - EVENTS_COLUMN);
+        regions.events = Some(events);
+        main
+    } else {
+        let most = match height {
+            ..=17 => 0,
+            18..=23 => 5,
+            24..=29 => 6,
+            30..=39 => 9,
+            40..=49 => 12,
+            _ => 19,
+        };
+        // The walls and the heads take three lines; what there is to say instead of events takes one.
+        let rows = u16::try_from(wants.events.max(1) + 3).unwrap_or(u16::MAX).min(most);
+        if rows == 0 {
+            body
+        } else {
+            let (main, events) = split_top(body, body.height + 1 - rows);
+            regions.events = Some(events);
+            main
+        }
+    };
+    let mut charts = main;
+    // The walker needs six lines, and the parameters more than that, as far as there are lines.
+    let walker_rows = match main.height {
+        26.. => 12,
+        25 => 10,
+        rows => 8.min(rows / 2 + 2),
+    };
+    let wanted = u16::try_from(wants.problem + 2).unwrap_or(u16::MAX).saturating_add(walker_rows - 1);
+    if side_width > 0 {
+        let (side, right) = split_left(main, side_width);
+        charts = right;
+        let (problem, walker) = split_top(side, side.height + 1 - walker_rows);
+        (regions.problem, regions.walker) = (Some(problem), Some(walker));
     }
-    if width < 160 {
-        let rows: [Rect; 2] = Layout::vertical(half).areas(charts);
-        return rows.to_vec();
-    }
-    let columns: [Rect; 2] = Layout::horizontal(half).areas(charts);
-    if height < 45 {
-        return columns.to_vec();
-    }
-    let [left, right] = columns.map(|column| Layout::vertical(half).areas::<2>(column));
-    vec![left[0], right[0], left[1], right[1]]
+    let views = std::iter::once(wants.view).chain(wants.view.companions());
+    let half = |area: Rect| split_left(area, area.width / 2 + 1);
+    let places = if is_flat || (width >= 160 && height >= 45 && (width < 200 || height < 60)) {
+        let (left, right) = half(charts);
+        vec![left, right]
+    } else if width >= 200 && height >= 60 && charts.height >= 2 * CHART_ROWS {
+        let middle = charts.height / 2 + 1;
+        let top = middle.max(wanted);
+        let is_wide = charts.height + 1 >= top + CHART_ROWS;
+        let (above, below) = split_top(charts, if is_wide { top } else { middle });
+        let below = if is_wide { Rect { x: main.x, width: main.width, ..below } } else { below };
+        if is_wide {
+            // The left column ends with the upper charts.
+            let side = Rect { width: side_width, height: top, ..main };
+            let (problem, walker) = split_top(side, side.height + 1 - walker_rows);
+            (regions.problem, regions.walker) = (Some(problem), Some(walker));
+        }
+        let [(a, b), (c, d)] = [half(above), half(below)];
+        vec![a, b, c, d]
+    } else {
+        vec![charts]
+    };
+    regions.charts = views.zip(places).collect();
+    let is_seen = |rect: &Rect| rect.width > 2 && rect.height > 2;
+    regions.problem = regions.problem.filter(is_seen);
+    regions.walker = regions.walker.filter(is_seen);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn wants(events: usize) -> Wants {
+        Wants { view: View::ForceApproach, events, problem: 14, whole: None }
+    }
+
     #[test]
-    fn regions_fill_the_screen_without_overlap_at_every_size() {
-        for width in 0..220 {
+    fn regions_fill_the_screen_and_share_walls_only_at_every_size() {
+        for width in 0..310 {
             for height in 0..70 {
                 let area = Rect::new(0, 0, width, height);
-                let Some(regions) = regions(area, View::ForceApproach, usize::from(width % 20)) else {
+                let Some(regions) = regions(area, wants(usize::from(width % 20))) else {
                     assert!(width < SMALLEST.0 || height < SMALLEST.1);
                     continue;
                 };
@@ -111,15 +184,39 @@ mod tests {
                 all.extend(regions.charts.iter().map(|(_, rect)| *rect));
                 for (i, a) in all.iter().enumerate() {
                     assert_eq!(a.intersection(area), *a);
-                    assert!(all[i + 1..].iter().all(|b| a.intersection(*b).is_empty()), "{width}x{height}");
+                    for b in &all[i + 1..] {
+                        // At most a wall, which is one cell wide.
+                        let shared = a.intersection(*b);
+                        assert!(
+                            shared.is_empty() || shared.width.min(shared.height) == 1,
+                            "{width}x{height}"
+                        );
+                    }
+                }
+                for cell in area.positions() {
+                    assert!(all.iter().any(|rect| rect.contains(cell)), "{width}x{height} {cell:?}");
                 }
                 let views = match (width, height) {
-                    (160.., 45..) => 4,
-                    (100.., 30..) => 2,
+                    (200.., 60..) => 4,
+                    (160.., 45..) | (240.., ..30) => 2,
                     _ => 1,
                 };
                 assert_eq!(regions.charts.len(), views, "{width}x{height}");
+                for (_, chart) in &regions.charts {
+                    assert!(views == 1 || height < 30 || chart.height >= CHART_ROWS, "{width}x{height}");
+                }
             }
+        }
+    }
+
+    #[test]
+    fn one_panel_can_have_the_whole_screen() {
+        for whole in Panel::ALL {
+            let area = Rect::new(0, 0, 80, 24);
+            let regions = regions(area, Wants { whole: Some(whole), ..wants(6) }).unwrap();
+            let shown = [regions.problem, regions.walker, regions.events].into_iter().flatten();
+            let all: Vec<Rect> = shown.chain(regions.charts.iter().map(|(_, rect)| *rect)).collect();
+            assert_eq!(all, [Rect::new(0, 1, 80, 21)]);
         }
     }
 }

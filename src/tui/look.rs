@@ -9,6 +9,8 @@
 //! | TERM `ansi`, `cygwin`, `ms`: an 8-bit code page | | `ascii` | yes |
 //! | TERM `linux`: its font has half blocks and no braille | | `block` | |
 //! | any other | `dark` | `braille` | |
+//!
+//! Where neither TERM nor `COLORTERM` tells of 256 colours, a theme uses the six normal ones and letters.
 
 use super::terminal::utf8_locale;
 use super::theme::{Charts, Palette, Theme};
@@ -43,6 +45,8 @@ impl LookFile {
 pub struct Environment {
     /// `NO_COLOR` is set and not empty.
     pub no_color: bool,
+    /// `COLORTERM` says that there are many colours.
+    pub many_colors: bool,
     /// The locale's characters are UTF-8.
     pub utf8: bool,
     pub term: String,
@@ -70,9 +74,19 @@ impl Environment {
     pub fn of_process() -> Self {
         Self {
             no_color: std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty()),
+            many_colors: std::env::var_os("COLORTERM").is_some_and(|value| !value.is_empty()),
             utf8: utf8_locale(),
             term: std::env::var_os("TERM").unwrap_or_default().to_string_lossy().into_owned(),
         }
+    }
+}
+
+impl Environment {
+    /// Whether the terminal's own name says that it has 256 colours.
+    fn has_256(&self) -> bool {
+        const NAMES: [&str; 8] =
+            ["256", "direct", "kitty", "alacritty", "ghostty", "foot", "wezterm", "konsole"];
+        NAMES.iter().any(|name| self.term.contains(name))
     }
 }
 
@@ -88,8 +102,14 @@ impl Look {
         let usual = if family == "linux" { Charts::Block } else { Charts::Braille };
         let no_color = environment.no_color.then_some(Palette::Mono);
         let palette = flags.theme.or(no_color).or(file.theme);
+        let palette = palette.unwrap_or(if is_video { Palette::Mono } else { Palette::Dark });
+        let has_many = environment.many_colors || environment.has_256();
         let theme = Theme::new(
-            palette.unwrap_or(if is_video { Palette::Mono } else { Palette::Dark }),
+            match palette {
+                Palette::Dark if !has_many => Palette::FewDark,
+                Palette::Light if !has_many => Palette::FewLight,
+                palette => palette,
+            },
             charts.unwrap_or(usual),
             ascii,
         );
@@ -112,7 +132,7 @@ mod tests {
     use super::*;
 
     fn on(term: &str) -> Environment {
-        Environment { no_color: false, utf8: true, term: term.to_owned() }
+        Environment { no_color: false, many_colors: true, utf8: true, term: term.to_owned() }
     }
 
     fn resolved(environment: &Environment) -> (Palette, Charts, bool) {

@@ -11,21 +11,19 @@
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
 //! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
-//! | [`stroke`] | how a curve is drawn: dots, dashes, letters along it |
+//! | [`raster`] | curves as dots in cells, and whose colour each cell has |
 //! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
-//! | [`hatch`] | areas filled with slanting lines |
 //! | [`view`] | one file per screen region |
 
 pub mod app;
 pub mod chart;
 pub mod copy;
-pub mod hatch;
 pub mod keymap;
 pub mod layout;
 pub mod look;
 pub mod overlay;
+pub mod raster;
 mod slow_notice;
-pub mod stroke;
 pub mod terminal;
 pub mod theme;
 pub mod view;
@@ -51,7 +49,6 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use terminal::{Display, Inbox, Incoming, Sink};
 use theme::Theme;
-use view::Pictures;
 
 /// What a person has set, ready to be used.
 #[derive(Debug, Clone, Default)]
@@ -181,7 +178,7 @@ fn converse<S: Sink>(
     submit: &dyn Fn(Vec<Effect>),
     keep: &mut dyn FnMut(&App),
 ) {
-    let (mut pictures, mut notice) = (Pictures::default(), SlowNotice::default());
+    let mut notice = SlowNotice::default();
     let mut dirty = true;
     // Whether the first curve is still to come; its frame does not wait for the pace of a slow line.
     let mut awaits_curve = true;
@@ -227,7 +224,7 @@ fn converse<S: Sink>(
             let (mut views, mut screen) = (0, app.screen);
             display.draw(|frame| {
                 screen = frame.area();
-                views = view::draw(frame, app, &mut pictures);
+                views = view::draw(frame, app);
             });
             (dirty, grace) = (false, None);
             awaits_curve &= app.model.curve.is_none();

@@ -2,14 +2,13 @@
 
 use clap::ValueEnum;
 use pulloff_engine::text::greek;
-use ratatui::style::Color::{
-    Black, Blue, Cyan, DarkGray, Gray, Green, LightBlue, LightCyan, LightGreen, LightMagenta, LightRed,
-    LightYellow, Magenta, Red, White, Yellow,
-};
+use ratatui::style::Color::{Blue, Cyan, Green, Magenta, Red, Yellow};
 use ratatui::style::{Color, Modifier, Style};
-use ratatui::symbols::{Marker, border};
+use ratatui::symbols::border;
+use ratatui::symbols::merge::MergeStrategy;
+use ratatui::widgets::Block;
 
-/// Which colours, of the sixteen every terminal has.
+/// Which colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Palette {
     /// For a dark background.
@@ -19,6 +18,12 @@ pub enum Palette {
     Light,
     /// No colour: bold, reverse, underlined.
     Mono,
+    /// For a dark background, where the terminal has fewer than 256 colours.
+    #[value(skip)]
+    FewDark,
+    /// The same for a light background.
+    #[value(skip)]
+    FewLight,
 }
 
 /// What the curves are drawn with.
@@ -55,7 +60,7 @@ pub struct Styles {
     pub selected_title: Style,
     /// Headlines.
     pub strong: Style,
-    /// Secondary text.
+    /// Secondary text, axes.
     pub dim: Style,
     /// The selected line.
     pub selection: Style,
@@ -63,11 +68,9 @@ pub struct Styles {
     pub error: Style,
     /// Keys in the footer and the help.
     pub key: Style,
-    /// The stable parts of the curve; pressures, gaps and potentials.
-    pub stable: Style,
-    /// The unstable parts.
-    pub unstable: Style,
-    /// The smooth sphere, axes, crests.
+    /// The curve of the problem; pressures, gaps and potentials.
+    pub curve: Style,
+    /// The smooth sphere, crests, other branches.
     pub smooth: Style,
     /// The walk.
     pub walk: Style,
@@ -77,9 +80,11 @@ pub struct Styles {
     pub landing: Style,
     /// Energy lost.
     pub lost: Style,
-    /// Lines that are no curve: the device, a barrier, what is inadmissible.
+    /// Lines that are no curve: the device, a barrier.
     pub aid: Style,
-    /// Limit points and other marks.
+    /// States that cannot be.
+    pub warning: Style,
+    /// Events and other marks.
     pub mark: Style,
     /// The walker.
     pub walker: Style,
@@ -87,8 +92,12 @@ pub struct Styles {
     pub stray: Style,
     /// The state nearest to the cross-hair.
     pub nearest: Style,
-    /// The exact solution and its envelope.
+    /// The exact solution,
     pub exact: Style,
+    /// and the envelope of small waves.
+    pub envelope: Style,
+    /// The loop of loading and unloading.
+    pub loops: Style,
     /// The pinned curves, by number.
     pub pins: [Style; 6],
 }
@@ -97,60 +106,119 @@ const fn ink(color: Color) -> Style {
     Style::new().fg(color)
 }
 
+/// One of the 240 colours that are the same on every terminal that has them.
+const fn hue(index: u8) -> Style {
+    Style::new().fg(Color::Indexed(index))
+}
+
 const PLAIN: Style = Style::new();
 const BOLD: Style = Style::new().add_modifier(Modifier::BOLD);
 const REVERSED: Style = Style::new().add_modifier(Modifier::REVERSED);
 const REVERSED_BOLD: Style = REVERSED.add_modifier(Modifier::BOLD);
 const UNDERLINED: Style = Style::new().add_modifier(Modifier::UNDERLINED);
 
+/// On black and on dark blue-green every colour has a contrast of at least 3 : 1. The hues are those of the figures on
+/// paper: no two that are compared are a red and a green.
 static DARK: Styles = Styles {
-    frame: ink(DarkGray),
+    frame: hue(244),
+    selected_frame: hue(81).add_modifier(Modifier::BOLD),
+    selected_title: BOLD,
+    strong: BOLD,
+    dim: hue(246),
+    selection: REVERSED,
+    error: hue(209).add_modifier(Modifier::BOLD),
+    key: hue(81),
+    curve: hue(75),
+    smooth: hue(249),
+    walk: hue(231).add_modifier(Modifier::BOLD),
+    jump: hue(182),
+    landing: hue(182).add_modifier(Modifier::BOLD),
+    lost: hue(139),
+    aid: hue(174),
+    warning: hue(209),
+    mark: hue(215).add_modifier(Modifier::BOLD),
+    walker: hue(87).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
+    stray: hue(246).add_modifier(Modifier::REVERSED),
+    nearest: hue(87).add_modifier(Modifier::BOLD),
+    exact: hue(223),
+    envelope: hue(79),
+    loops: hue(110),
+    pins: [hue(214), hue(176), hue(228), hue(43), hue(203), hue(159)],
+};
+
+/// The same on white and on pale yellow.
+static LIGHT: Styles = Styles {
+    frame: hue(243),
+    selected_frame: hue(25).add_modifier(Modifier::BOLD),
+    selected_title: BOLD,
+    strong: BOLD,
+    dim: hue(242),
+    selection: REVERSED,
+    error: hue(124).add_modifier(Modifier::BOLD),
+    key: hue(25),
+    curve: hue(25),
+    smooth: hue(243),
+    walk: hue(16).add_modifier(Modifier::BOLD),
+    jump: hue(90),
+    landing: hue(90).add_modifier(Modifier::BOLD),
+    lost: hue(133),
+    aid: hue(131),
+    warning: hue(160),
+    mark: hue(130).add_modifier(Modifier::BOLD),
+    walker: hue(18).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
+    stray: hue(242).add_modifier(Modifier::REVERSED),
+    nearest: hue(18).add_modifier(Modifier::BOLD),
+    exact: hue(94),
+    envelope: hue(23),
+    loops: hue(61),
+    pins: [hue(166), hue(126), hue(58), hue(29), hue(88), hue(30)],
+};
+
+/// With the normal colours of any terminal; what they look like is the terminal's business, so letters tell curves too.
+static FEW_DARK: Styles = Styles {
+    frame: PLAIN,
     selected_frame: ink(Cyan).add_modifier(Modifier::BOLD),
     selected_title: BOLD,
     strong: BOLD,
-    dim: ink(DarkGray),
+    dim: PLAIN,
     selection: REVERSED,
     error: ink(Red).add_modifier(Modifier::BOLD),
     key: ink(Cyan),
-    stable: ink(Green),
-    unstable: ink(Yellow),
-    smooth: ink(DarkGray),
-    walk: ink(White),
+    curve: ink(Cyan),
+    smooth: PLAIN,
+    walk: BOLD,
     jump: ink(Magenta),
     landing: ink(Magenta).add_modifier(Modifier::BOLD),
     lost: ink(Magenta),
     aid: ink(Red),
-    mark: ink(Red).add_modifier(Modifier::BOLD),
+    warning: ink(Red).add_modifier(Modifier::BOLD),
+    mark: ink(Yellow).add_modifier(Modifier::BOLD),
     walker: ink(Cyan).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: ink(DarkGray).add_modifier(Modifier::REVERSED),
+    stray: REVERSED,
     nearest: ink(Cyan).add_modifier(Modifier::BOLD),
-    exact: ink(LightBlue),
-    pins: [ink(LightYellow), ink(LightCyan), ink(LightMagenta), ink(LightGreen), ink(LightRed), ink(Gray)],
+    exact: ink(Blue),
+    envelope: ink(Blue).add_modifier(Modifier::BOLD),
+    loops: PLAIN,
+    pins: [
+        ink(Yellow),
+        ink(Magenta),
+        ink(Green),
+        ink(Yellow).add_modifier(Modifier::BOLD),
+        ink(Magenta).add_modifier(Modifier::BOLD),
+        ink(Green).add_modifier(Modifier::BOLD),
+    ],
 };
 
-static LIGHT: Styles = Styles {
-    frame: ink(DarkGray),
+static FEW_LIGHT: Styles = Styles {
     selected_frame: ink(Blue).add_modifier(Modifier::BOLD),
-    selected_title: BOLD,
-    strong: BOLD,
-    dim: ink(DarkGray),
-    selection: REVERSED,
-    error: ink(Red).add_modifier(Modifier::BOLD),
     key: ink(Blue),
-    stable: ink(Green),
-    unstable: ink(Magenta),
-    smooth: ink(DarkGray),
-    walk: ink(Black),
-    jump: ink(Blue),
-    landing: ink(Blue).add_modifier(Modifier::BOLD),
-    lost: ink(Magenta),
-    aid: ink(Red),
+    curve: ink(Blue),
     mark: ink(Red).add_modifier(Modifier::BOLD),
     walker: ink(Blue).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: ink(DarkGray).add_modifier(Modifier::REVERSED),
     nearest: ink(Blue).add_modifier(Modifier::BOLD),
-    exact: ink(Blue),
-    pins: [ink(Cyan), ink(Black), ink(Magenta), ink(Green), ink(Red), ink(DarkGray)],
+    exact: ink(Cyan),
+    envelope: ink(Cyan).add_modifier(Modifier::BOLD),
+    ..FEW_DARK
 };
 
 static MONO: Styles = Styles {
@@ -162,19 +230,21 @@ static MONO: Styles = Styles {
     selection: REVERSED,
     error: UNDERLINED.add_modifier(Modifier::BOLD),
     key: UNDERLINED,
-    stable: PLAIN,
-    unstable: PLAIN,
+    curve: PLAIN,
     smooth: PLAIN,
     walk: BOLD,
     jump: PLAIN,
     landing: BOLD,
     lost: PLAIN,
     aid: PLAIN,
+    warning: BOLD,
     mark: BOLD,
     walker: REVERSED_BOLD,
     stray: REVERSED,
     nearest: BOLD,
     exact: PLAIN,
+    envelope: PLAIN,
+    loops: PLAIN,
     pins: [PLAIN; 6],
 };
 
@@ -201,6 +271,8 @@ impl Theme {
             Palette::Dark => &DARK,
             Palette::Light => &LIGHT,
             Palette::Mono => &MONO,
+            Palette::FewDark => &FEW_DARK,
+            Palette::FewLight => &FEW_LIGHT,
         }
     }
 
@@ -217,12 +289,22 @@ impl Theme {
         text.chars().map(|c| if c.is_ascii() { c.to_string() } else { transliterate(c).to_owned() }).collect()
     }
 
-    /// The dots of a hatched area.
-    pub fn hatch_marker(self) -> Marker {
-        match self.charts {
-            Charts::Braille => Marker::Braille,
-            Charts::Block | Charts::Ascii => Marker::Custom('/'),
-        }
+    /// Whether colours alone cannot tell curves apart.
+    pub fn has_few_colours(self) -> bool {
+        !matches!(self.palette, Palette::Dark | Palette::Light)
+    }
+
+    /// What an area is filled with: block elements where charts have more than one character.
+    pub fn shade<'a>(self, unicode: &'a str, ascii: &'a str) -> &'a str {
+        if self.charts == Charts::Ascii { ascii } else { unicode }
+    }
+
+    /// The frame of a panel, which shares its walls with its neighbours.
+    pub fn block<'a>(self, selected: bool) -> Block<'a> {
+        Block::bordered()
+            .border_set(self.border())
+            .border_style(self.frame(selected))
+            .merge_borders(MergeStrategy::Exact)
     }
 
     /// A label of the parameter table with its Greek letters, where the terminal can show them.
@@ -283,10 +365,107 @@ fn transliterate(c: char) -> &'static str {
         '′' => "'",
         '→' | '▸' => ">",
         '←' => "<",
-        '·' | '…' => ".",
+        '·' | '…' | '┈' => ".",
+        '×' => "X",
+        '○' => "O",
         '–' | '—' | '−' => "-",
         '√' => "sqrt",
         'π' => "pi",
         _ => "?",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The relative luminance of one of the colours from 16 on, as WCAG defines it.
+    fn luminance([r, g, b]: [u8; 3]) -> f64 {
+        let linear = |x: u8| {
+            let x = f64::from(x) / 255.0;
+            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+    }
+
+    fn rgb(index: u8) -> [u8; 3] {
+        assert!(index >= 16, "{index} is the terminal's own");
+        if index >= 232 {
+            return [8 + 10 * (index - 232); 3];
+        }
+        let level = |n: u8| if n == 0 { 0 } else { 55 + 40 * n };
+        let at = index - 16;
+        [level(at / 36), level(at / 6 % 6), level(at % 6)]
+    }
+
+    fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
+        let [a, b] = [a, b].map(luminance);
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    /// The styles that have a colour, with what they are.
+    fn coloured(styles: &Styles) -> Vec<(Color, &'static str)> {
+        let Styles { frame, selected_frame, dim, error, key, curve, smooth, walk, jump, .. } = *styles;
+        let Styles { landing, lost, aid, warning, mark, walker, stray, nearest, .. } = *styles;
+        let lines = [(styles.exact, "exact"), (styles.envelope, "envelope"), (styles.loops, "loops")];
+        let named = [
+            (frame, "frame"),
+            (selected_frame, "selected frame"),
+            (dim, "dim"),
+            (error, "error"),
+            (key, "key"),
+            (curve, "curve"),
+            (smooth, "smooth"),
+            (walk, "walk"),
+            (jump, "jump"),
+            (landing, "landing"),
+            (lost, "lost"),
+            (aid, "aid"),
+            (warning, "warning"),
+            (mark, "mark"),
+            (walker, "walker"),
+            (stray, "stray"),
+            (nearest, "nearest"),
+        ];
+        let pins = styles.pins.into_iter().map(|style| (style, "pin"));
+        named
+            .into_iter()
+            .chain(lines)
+            .chain(pins)
+            .filter_map(|(style, name)| Some((style.fg?, name)))
+            .collect()
+    }
+
+    #[test]
+    fn every_colour_stands_out_from_the_backgrounds_it_is_for() {
+        let dark = [[0, 0, 0], [0x00, 0x2b, 0x36]];
+        let light = [[0xff, 0xff, 0xff], [0xfd, 0xf6, 0xe3]];
+        for (styles, backgrounds) in [(&DARK, dark), (&LIGHT, light)] {
+            for (color, name) in coloured(styles) {
+                let Color::Indexed(index) = color else { panic!("{name}: {color:?}") };
+                for background in backgrounds {
+                    let contrast = contrast(rgb(index), background);
+                    assert!(contrast >= 3.0, "{name} {index} on {background:?}: {contrast:.2}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn curves_that_are_compared_have_colours_of_their_own() {
+        for styles in [&DARK, &LIGHT] {
+            let own = [styles.curve, styles.smooth, styles.exact, styles.envelope];
+            let all: Vec<Option<Color>> = own.iter().chain(&styles.pins).map(|style| style.fg).collect();
+            for (at, color) in all.iter().enumerate() {
+                assert!(!all[at + 1..].contains(color), "{color:?}");
+            }
+        }
+        // With fewer colours only the six normal ones, and none of the bright ones.
+        for styles in [&FEW_DARK, &FEW_LIGHT] {
+            for (color, name) in coloured(styles) {
+                assert!([Red, Green, Yellow, Blue, Magenta, Cyan].contains(&color), "{name}: {color:?}");
+            }
+        }
+        assert!(coloured(&MONO).is_empty());
     }
 }

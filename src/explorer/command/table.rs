@@ -98,6 +98,7 @@ commands! {
         Right "right" Nothing "right": "the next panel; in Charts: move right";
         NextPanel "next-panel" Nothing "panel": "next panel";
         PreviousPanel "previous-panel" Nothing "panel back": "previous panel";
+        Enlarge "enlarge" Nothing "whole": "the selected panel on the whole screen, and back";
         NextView "next-view" Nothing "view": "the next view of the chart";
         PreviousView "previous-view" Nothing "view back": "the view before";
         ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";

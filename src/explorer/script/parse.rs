@@ -68,6 +68,7 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Right
             | Id::NextPanel
             | Id::PreviousPanel
+            | Id::Enlarge
             | Id::NextView
             | Id::PreviousView
             | Id::ZoomIn

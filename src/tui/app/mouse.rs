@@ -84,19 +84,20 @@ impl App {
     fn click(&mut self, at: Position) -> Vec<Effect> {
         let Some(regions) = places(self, self.screen) else { return Vec::new() };
         let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
-        if let Some(area) = inside(regions.problem) {
-            let line = problem::line_at(self, area, at.y);
-            return self.pick(Panel::Problem, line);
-        }
-        if inside(regions.walker).is_some() {
-            return self.pick(Panel::Walker, None);
-        }
+        // An upper wall has the title of what is below it.
         if let Some(area) = inside(regions.events) {
             let line = events::line_at(&self.model, area, at.y);
             if line == Some(self.model.event) && self.model.panel == Panel::Events {
                 return self.run(Id::Edit.into());
             }
             return self.pick(Panel::Events, line);
+        }
+        if inside(regions.walker).is_some() {
+            return self.pick(Panel::Walker, None);
+        }
+        if let Some(area) = inside(regions.problem) {
+            let line = problem::line_at(self, area, at.y);
+            return self.pick(Panel::Problem, line);
         }
         let Some((view, place)) = self.place(&regions, at) else { return Vec::new() };
         let mut effects = self.pick(Panel::Charts, None);

@@ -46,6 +46,8 @@ pub struct App {
     pub typed: Typed,
     /// Whether the mouse is taken from the terminal.
     pub mouse: bool,
+    /// Whether the selected panel has the whole screen.
+    pub enlarged: bool,
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
@@ -69,6 +71,7 @@ impl App {
             keymap: Keymap::default(),
             typed: Typed::default(),
             mouse: false,
+            enlarged: false,
             clipboard: None,
             screen: Rect::ZERO,
             late: None,
@@ -276,6 +279,10 @@ impl App {
             Id::ZoomIn | Id::ZoomOut => {
                 let about = self.walker_place();
                 self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
+            }
+            Id::Enlarge => {
+                self.enlarged = !self.enlarged;
+                Vec::new()
             }
             Id::Mouse => {
                 self.switch_mouse();

@@ -1,17 +1,18 @@
 //! The views: figures given their strokes, letters and colours.
 
 use super::legend::legend;
-use super::marks::{letter, look};
+use super::marks::{letter, look, style};
 use super::parts::is_selected;
-use crate::explorer::{Id, Panel, View, Window};
-use crate::figure::{Area, Bounds, Figure, Mark as Placed, Meaning, Sign, Subject, nearest};
+use crate::explorer::{EventSource, Id, Panel, View, Window};
+use crate::figure::{Area, Bounds, Figure, Mark as Placed, Meaning, Role, Sign, Subject, nearest};
 use crate::tui::app::App;
-use crate::tui::chart::{Chart, Mark, Region, Series};
-use crate::tui::hatch::Texture;
-use crate::tui::theme::{Styles, Theme};
+use crate::tui::chart::{Chart, Entry, Mark, Region, Series};
+use crate::tui::raster::Meets;
+use crate::tui::theme::Theme;
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 
 /// Draws one view; the first one has the cross-hair and the keys.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
@@ -31,6 +32,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
                     chart.title.push_str(&hint);
                 }
                 cross_hair(&subject, view, app, &mut chart);
+            }
+            if view.is_curve() || view == View::Unloading {
+                select_event(app, &figure, &mut chart);
             }
             chart
         },
@@ -67,60 +71,97 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
     } else {
         format!(", zoom {}x", short(window.magnification(), 3))
     };
+    let bounds = figure.bounds.part(window);
     Chart {
         title: format!("{}{zoom}", figure.title),
         note: figure.notes.join(", "),
         x_title: figure.x.title(),
-        areas: figure.areas.iter().map(|area| region(area, theme.styles())).collect(),
-        series: figure
-            .lines
-            .iter()
-            .map(|line| {
-                let (stroke, style) = look(line.role, theme.styles());
-                Series { points: line.points.clone(), style, stroke }
-            })
-            .collect(),
-        marks: figure.marks.iter().map(|placed| mark(placed, theme.styles())).collect(),
+        areas: figure.areas.iter().enumerate().map(|(at, area)| region(at, area, theme)).collect(),
+        series: series(figure, theme),
+        marks: figure.marks.iter().map(|placed| mark(placed, theme)).collect(),
         cross: None,
-        bounds: figure.bounds.part(window),
-        legend: legend(figure, theme),
+        bounds,
+        legend: legend(figure, &bounds, theme),
         missing: figure.missing.clone(),
     }
 }
 
-fn region(area: &Area, styles: &Styles) -> Region {
-    let (style, texture) = match area.meaning {
-        Meaning::Lost => (styles.lost, Texture::Slanting),
-        Meaning::Contact => (styles.stable, Texture::Dotted),
+/// The curve that a line is a part of: its stable and unstable parts are one.
+fn curve_of(role: Role) -> Role {
+    if role == Role::Unstable { Role::Stable } else { role }
+}
+
+/// The curves, each with all its parts, the curve of the problem last of those that share cells.
+fn series(figure: &Figure, theme: Theme) -> Vec<Series> {
+    let mut all: Vec<(Role, Series)> = Vec::new();
+    for line in &figure.lines {
+        let (curve, stroke) = (curve_of(line.role), look(line.role, theme));
+        let part = (line.points.clone(), line.is_broken || stroke.is_broken);
+        match all.iter_mut().find(|(other, _)| *other == curve) {
+            Some((_, series)) => series.parts.push(part),
+            None => all.push((curve, Series { parts: vec![part], stroke: look(curve, theme) })),
+        }
+    }
+    all.sort_by_key(|(role, _)| (*role == Role::Stable, *role));
+    if !figure.view.is_curve() {
+        // Curves of states are not compared: the computed one is seen where others agree with it.
+        for (role, series) in &mut all {
+            if !matches!(role, Role::Stable | Role::Body | Role::Edges)
+                && series.stroke.meets == Meets::Shares
+            {
+                series.stroke.meets = Meets::Beneath;
+            }
+        }
+    }
+    all.into_iter().map(|(_, series)| series).collect()
+}
+
+fn region(at: usize, area: &Area, theme: Theme) -> Region {
+    let styles = theme.styles();
+    let (style, shade) = match area.meaning {
+        // Neighbours differ.
+        Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
+        Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
+        Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
     };
-    Region { outline: area.outline.clone(), style, texture }
+    Region { outline: area.outline.clone(), style, shade }
 }
 
 /// The cross-hair, and the state of the curve nearest to it.
 fn cross_hair(subject: &Subject<'_>, view: View, app: &App, chart: &mut Chart) {
     chart.cross = app.model.cross.map(|share| chart.bounds.at(share));
     if let Some(nearest) = chart.cross.and_then(|at| nearest(subject, view, &chart.bounds, at)) {
-        chart.marks.push(Mark { at: nearest.at, letter: "*", style: app.theme.styles().nearest });
+        let style = app.theme.styles().nearest;
+        chart.marks.push(Mark { at: nearest.at, letter: "*".to_owned(), style, is_beside: false });
     }
 }
 
-fn mark(mark: &Placed, styles: &Styles) -> Mark {
-    let style = match mark.sign {
-        Sign::OtherLimit(_) => styles.aid,
-        Sign::Landing => styles.landing,
-        Sign::Crest | Sign::Edge | Sign::Snaps(_) | Sign::Measured { .. } => styles.smooth,
-        Sign::Touch
-        | Sign::Turn
-        | Sign::Limit
-        | Sign::PullOff
-        | Sign::Minimum
-        | Sign::Maximum
-        | Sign::Barrier
-        | Sign::Cusp
-        | Sign::Swallowtail
-        | Sign::Value => styles.mark,
-        Sign::Stray => styles.stray,
-        Sign::Walker | Sign::Preset => styles.walker,
-    };
-    Mark { at: mark.at, letter: letter(mark.sign), style }
+fn mark(mark: &Placed, theme: Theme) -> Mark {
+    let is_beside = matches!(mark.sign, Sign::OtherLimit(_) | Sign::Limit | Sign::Event(_));
+    Mark { at: mark.at, letter: letter(mark.sign, theme), style: style(mark.sign, theme), is_beside }
+}
+
+/// The mark of the selected event stands out, and has its number where the letter has none.
+fn select_event(app: &App, figure: &Figure, chart: &mut Chart) {
+    let model = &app.model;
+    if model.events != EventSource::Curve {
+        return;
+    }
+    let number = model.event + 1;
+    let count = model.shown_events().len();
+    for (placed, mark) in figure.marks.iter().zip(&mut chart.marks) {
+        let is_it = match placed.sign {
+            Sign::Event(other) => other == number,
+            Sign::PullOff => number == count,
+            _ => false,
+        };
+        if is_it {
+            mark.style = mark.style.add_modifier(Modifier::REVERSED);
+            if number > 9 && placed.sign != Sign::PullOff {
+                let entry =
+                    Entry { glyph: "v".to_owned(), style: mark.style, meaning: format!("event {number}") };
+                chart.legend.insert(0, entry);
+            }
+        }
+    }
 }

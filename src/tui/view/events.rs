@@ -1,12 +1,13 @@
 //! The instabilities, one line each, and behind those of the curve its inadmissible parts.
 
-use super::parts::{is_selected, panel};
+use super::parts::{is_selected, panel, whole_words};
 use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
+use pulloff_engine::problem::Control;
 use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
-use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::report::unload::{EventReport, StateReport};
 use pulloff_engine::report::{OverlapReport, cycle_table};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
@@ -33,8 +34,10 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
     let wide = inner.width >= WIDE;
     let critical = critical(model, wide);
-    let (heads, texts) = table(&model.preset.units, &events, critical, wide);
-    frame.render_widget(Line::styled(theme.text(&heads), theme.dim()), head);
+    let held = model.control().is_some_and(|control| control == Control::Force);
+    let room = usize::from(inner.width);
+    let (heads, texts) = table(&model.preset.units, &events, critical, (wide, held), room.saturating_sub(3));
+    frame.render_widget(Line::styled(whole_words(theme, &theme.text(&heads), room), theme.dim()), head);
     let parts = model.shown_inadmissible();
     if events.is_empty() && parts.is_empty() {
         frame.render_widget(Line::styled(theme.text(&empty(model, &app.keymap)), theme.dim()), body);
@@ -79,7 +82,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);
     let notes = notes.flat_map(|curve| &curve.base.notes);
     lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
-    frame.render_widget(Paragraph::new(lines), body);
+    let fitted = lines.into_iter().map(|line| {
+        let style = line.style;
+        Line::styled(whole_words(theme, &line.to_string(), room), style)
+    });
+    frame.render_widget(Paragraph::new(fitted.collect::<Vec<_>>()), body);
 }
 
 /// The first line shown, so that the selected one is.
@@ -222,56 +229,98 @@ fn empty(model: &Model, keymap: &Keymap) -> String {
     }
 }
 
-/// A column: its head, its least width, and whether its cells begin at its left.
-type Column = (&'static str, usize, bool);
+/// A column: its head, its least width, whether its cells begin at its left, and how soon it is left out.
+type Column = (&'static str, usize, bool, u8);
 
 /// The columns on a wide screen.
 const LONG: &[Column] = &[
-    ("#", 2, false),
-    ("event", 8, true),
-    ("δ", 9, false),
-    ("after", 9, false),
-    ("P", 9, false),
-    ("after", 9, false),
-    ("P/Pc", 6, false),
-    ("after", 6, false),
-    ("s", 9, false),
-    ("after", 9, false),
-    ("crest", 6, false),
-    ("lost", 9, true),
-    ("by area", 0, true),
+    ("#", 2, false, 0),
+    ("event", 8, true, 5),
+    ("δ", 9, false, 0),
+    ("after", 9, false, 2),
+    ("P", 9, false, 1),
+    ("after", 9, false, 2),
+    ("P/Pc", 6, false, 3),
+    ("after", 6, false, 3),
+    ("s", 9, false, 1),
+    ("after", 9, false, 4),
+    ("crest", 6, false, 2),
+    ("lost", 9, true, 0),
+    ("by area", 0, true, 6),
 ];
 
 /// The columns on a narrow one.
 const SHORT: &[Column] = &[
-    ("#", 3, false),
-    ("δ", 10, false),
-    ("P/Pc", 6, false),
-    ("after", 6, false),
-    ("s", 9, false),
-    ("after", 9, false),
-    ("crest", 6, false),
-    ("lost", 9, true),
-    ("event", 0, true),
+    ("#", 3, false, 0),
+    ("δ", 10, false, 0),
+    ("P/Pc", 6, false, 1),
+    ("after", 6, false, 3),
+    ("s", 9, false, 2),
+    ("after", 9, false, 4),
+    ("crest", 6, false, 2),
+    ("lost", 9, true, 0),
+    ("event", 0, true, 5),
 ];
 
-/// The heads and the rows of the events; without a `P_c` forces are shown in their unit.
-fn table(units: &UnitSystem, events: &[EventReport], critical: f64, wide: bool) -> (String, Vec<String>) {
-    let columns = if wide { LONG } else { SHORT };
-    let cells =
-        |(i, event)| if wide { long(units, i, event, critical) } else { row(units, i, event, critical) };
+/// The same under a dead load: the load once, the approach before and after.
+const SHORT_HELD: &[Column] = &[
+    ("#", 3, false, 0),
+    ("P/Pc", 6, false, 0),
+    ("δ", 10, false, 0),
+    ("after", 10, false, 1),
+    ("s", 9, false, 2),
+    ("after", 9, false, 4),
+    ("crest", 6, false, 2),
+    ("lost", 9, true, 0),
+    ("event", 0, true, 5),
+];
+
+/// The heads and the rows of the events, with as many columns as there is room for; without a `P_c` forces are shown in
+/// their unit.
+fn table(
+    units: &UnitSystem,
+    events: &[EventReport],
+    critical: f64,
+    (wide, held): (bool, bool),
+    room: usize,
+) -> (String, Vec<String>) {
+    let columns = match (wide, held) {
+        (true, _) => LONG,
+        (false, true) => SHORT_HELD,
+        (false, false) => SHORT,
+    };
+    let cells = |(i, event)| match (wide, held) {
+        (true, _) => long(units, i, event, critical),
+        (false, true) => held_row(units, i, event, critical),
+        (false, false) => row(units, i, event, critical),
+    };
     let rows: Vec<Vec<String>> = (1..).zip(events).map(cells).collect();
     let heads: Vec<String> = columns
         .iter()
         .map(|(head, ..)| if *head == "P/Pc" && critical <= 0.0 { "P" } else { head }.to_owned())
         .collect();
-    let width = |at: usize| rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.chars().count()).max();
-    let widths: Vec<usize> =
-        columns.iter().enumerate().map(|(at, (_, least, _))| width(at).unwrap_or(0).max(*least)).collect();
+    // Under a dead load the force is held: after an event it is what it was.
+    let is_said = |at: usize| !(wide && held && matches!(at, 5 | 7));
+    let width = |at: usize| {
+        let widest = rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.chars().count()).max();
+        widest.unwrap_or(0).max(columns[at].1).max(heads[at].chars().count())
+    };
+    let mut kept: Vec<usize> = (0..columns.len()).filter(|at| is_said(*at)).collect();
+    while kept.iter().map(|at| width(*at) + 1).sum::<usize>() > room + 1 {
+        let Some(worst) =
+            kept.iter().copied().max_by_key(|at| columns[*at].3).filter(|at| columns[*at].3 > 0)
+        else {
+            break;
+        };
+        kept.retain(|at| *at != worst);
+    }
     let join = |cells: &[String]| {
-        let padded = cells.iter().zip(columns).zip(&widths).map(|((cell, (_, _, left)), width)| {
-            if *left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
+        let padded = kept.iter().filter_map(|at| Some((cells.get(*at)?, columns[*at].2, width(*at))));
+        let padded = padded.map(
+            |(cell, left, width)| {
+                if left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            },
+        );
         padded.collect::<Vec<_>>().join(" ").trim_end().to_owned()
     };
     (format!(" {}", join(&heads)), rows.iter().map(|row| join(row)).collect())
@@ -317,6 +366,25 @@ fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) ->
         after,
         length(event.before.contact_radius),
         event.after.as_ref().map_or_else(dash, |after| length(after.contact_radius)),
+        crests(event),
+        lost(units, event),
+        event.kind.to_owned(),
+    ]
+}
+
+/// Under a dead load.
+fn held_row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let after =
+        |of: fn(&StateReport) -> f64| event.after.as_ref().map_or_else(dash, |after| length(of(after)));
+    let [force, _] = forces(units, event, critical);
+    vec![
+        number.to_string(),
+        force,
+        length(event.before.approach),
+        after(|state| state.approach),
+        length(event.before.contact_radius),
+        after(|state| state.contact_radius),
         crests(event),
         lost(units, event),
         event.kind.to_owned(),

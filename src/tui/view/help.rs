@@ -53,7 +53,7 @@ const SHORT: &[(&str, &str)] = &[
     ("μ", "Tabor's number: from 5 on the adhesion acts at the edge alone, as computed here"),
     ("crest 8", "the crest nearest to the edge, counted from the axis; 8>7: from one to the next"),
     ("digits 13", "of force and contact radius, how many can be trusted, by the state's own check"),
-    ("P off the exact", "the force less that of the exact solution at this radius, as a share of it"),
+    ("off exact", "the force less that of the exact solution at this radius, as a share of it"),
     ("stable δ yes", "whether the state stays with the displacement (δ), the force (P), the spring (k) held"),
     ("step 0.02", "the longest step by hand, as a share of the range of δ, P and s of the curve"),
     ("dP/dδ", "the slope of the curve; with s held: that of a punch of this radius"),

@@ -1,85 +1,76 @@
-//! What the lines and letters of a figure mean, in as many words as there is room for; and the cross-hair in words.
+//! What the lines and letters of a figure mean; and the cross-hair in words.
 
-use super::marks::{letter, look};
+use super::marks::{glyph, letter, look, style};
 use crate::explorer::Model;
-use crate::figure::{Figure, Role, Sign, Subject, nearest, reading};
-use crate::tui::theme::{Palette, Theme};
-use pulloff_engine::problem::Control;
+use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading};
+use crate::tui::chart::Entry;
+use crate::tui::theme::Theme;
 
-/// The legends of a figure, each shorter than the one before: the least wanted words go first.
-pub fn legend(figure: &Figure, theme: Theme) -> Vec<String> {
-    let mut words: Vec<(u8, String)> = Vec::new();
-    let mut add = |rank: u8, word: String| {
-        if !words.iter().any(|(_, other)| *other == word) {
-            words.push((rank, word));
+/// What is in the window of a figure, the most important first: the curve, the walk, the marks, pins, theory, the rest.
+pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
+    let mut words: Vec<(u8, Entry)> = Vec::new();
+    let mut add = |rank: u8, entry: Entry| {
+        if !words.iter().any(|(_, other)| other.meaning == entry.meaning) {
+            words.push((rank, entry));
         }
     };
-    let mut lines: Vec<_> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
-    // Stable first, overlays behind, pins last.
-    lines.sort_by_key(|line| std::cmp::Reverse(line.role));
-    lines.sort_by_key(|line| rank(line.role, theme) == 0);
-    for line in lines {
-        let (stroke, _) = look(line.role, theme.styles());
-        add(rank(line.role, theme), format!("{} {}", stroke.glyph(theme), theme.symbols(&line.name)));
+    let is_seen = |points: &[(f64, f64)]| points.iter().any(|at| bounds.share(*at).is_some());
+    for line in figure.lines.iter().filter(|line| !line.name.is_empty() && is_seen(&line.points)) {
+        let style = look(line.role, theme).style;
+        let meaning = theme.symbols(&line.name);
+        add(rank(line.role), Entry { glyph: glyph(line.role, theme), style, meaning });
     }
-    for mark in &figure.marks {
+    for mark in figure.marks.iter().filter(|mark| bounds.share(mark.at).is_some()) {
         if let Some((rank, word)) = meaning(mark.sign) {
-            add(rank, format!("{} {word}", letter(mark.sign)));
+            let glyph = match mark.sign {
+                Sign::Event(_) => "1-9".to_owned(),
+                Sign::Snaps(_) => "0-9".to_owned(),
+                sign => letter(sign, theme),
+            };
+            add(rank, Entry { glyph, style: style(mark.sign, theme), meaning: word.to_owned() });
         }
     }
-    let worst = words.iter().map(|(rank, _)| *rank).max().unwrap_or(0);
-    let up_to = |limit: u8| {
-        let kept: Vec<&str> =
-            words.iter().filter(|(rank, _)| *rank <= limit).map(|(_, word)| word.as_str()).collect();
-        kept.join(", ")
-    };
-    (0..=worst).rev().map(up_to).collect()
+    // Of one rank in the order of the figure; pins by number.
+    words.sort_by_key(|(rank, _)| *rank);
+    words.into_iter().map(|(_, entry)| entry).collect()
 }
 
-/// How much a line's name is wanted, 0 the most.
-fn rank(role: Role, theme: Theme) -> u8 {
+/// The place of a line in the legend, the most important first.
+fn rank(role: Role) -> u8 {
     match role {
-        // What colour would tell needs a word without it.
-        Role::Stable | Role::Unstable if theme.palette == Palette::Mono => 1,
-        Role::Pin(_) => 0,
-        Role::Inadmissible
-        | Role::Exact
-        | Role::Loading
-        | Role::Unloading
-        | Role::Envelope
-        | Role::Undeformed
-        | Role::Barrier
-        | Role::Device => 1,
-        Role::Smooth | Role::Branch => 3,
-        Role::Law | Role::Level | Role::Cusps | Role::Landings => 1,
-        Role::Walk | Role::Jump => 5,
-        _ => 4,
+        Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
+        Role::Unstable | Role::Landings => 1,
+        Role::Inadmissible | Role::Level => 2,
+        Role::Walk => 3,
+        Role::Pin(_) => 6,
+        Role::Smooth | Role::Exact | Role::Envelope => 7,
+        Role::Loading | Role::Unloading | Role::Barrier | Role::Device | Role::Contact => 8,
+        _ => 9,
     }
 }
 
-/// What a sign means, and how much that is wanted.
+/// What a sign means, and its place in the legend.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
         Sign::Stray | Sign::Value => return None,
-        Sign::OtherLimit(Control::Force) => (3, "limit of P"),
-        Sign::OtherLimit(_) => (3, "limit of δ"),
-        Sign::Limit => (1, "limit"),
-        Sign::PullOff => (2, "pull-off"),
-        Sign::Landing => (2, "landing"),
-        Sign::Cusp => (1, "cusp"),
-        Sign::Swallowtail => (2, "swallowtail"),
-        Sign::Preset => (1, "preset"),
-        Sign::Snaps(_) => (3, "snaps"),
-        Sign::Touch => (2, "touch"),
-        Sign::Turn => (2, "turn"),
-        Sign::Crest => (3, "crest"),
-        Sign::Edge => (3, "edge"),
-        Sign::Minimum => (2, "minimum"),
-        Sign::Maximum => (2, "maximum"),
-        Sign::Barrier => (1, "barrier"),
-        Sign::Walker => (1, "here"),
-        Sign::Measured { loading: true } => (2, "measured approach"),
-        Sign::Measured { loading: false } => (2, "measured retraction"),
+        Sign::OtherLimit(_) | Sign::Limit => (9, "limit off the path"),
+        Sign::Event(_) => (4, "event"),
+        Sign::PullOff => (5, "pull-off"),
+        Sign::Landing => (5, "landing"),
+        Sign::Touch => (5, "touch"),
+        Sign::Turn => (5, "turn"),
+        Sign::Crest => (8, "crest"),
+        Sign::Edge => (8, "edge"),
+        Sign::Minimum => (5, "minimum"),
+        Sign::Maximum => (5, "maximum"),
+        Sign::Barrier => (5, "barrier"),
+        Sign::Walker => (3, "here"),
+        Sign::Preset => (3, "preset"),
+        Sign::Cusp => (5, "cusp"),
+        Sign::Swallowtail => (5, "swallowtail"),
+        Sign::Snaps(_) => (6, "snaps"),
+        Sign::Measured { loading: true } => (4, "measured approach"),
+        Sign::Measured { loading: false } => (4, "measured retraction"),
     })
 }
 

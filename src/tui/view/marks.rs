@@ -1,68 +1,112 @@
 //! How each line and sign of a figure is drawn: its stroke, letter and colour.
 
 use crate::figure::{Role, Sign};
-use crate::tui::stroke::Stroke;
-use crate::tui::theme::Styles;
-use pulloff_engine::problem::Control;
+use crate::tui::raster::{Meets, Stroke};
+use crate::tui::theme::{Charts, Palette, Theme};
 use ratatui::style::Style;
 
 /// The digits of the pinned curves, by number.
-const DIGITS: [&str; 6] = ["1", "2", "3", "4", "5", "6"];
+const DIGITS: [char; 6] = ['1', '2', '3', '4', '5', '6'];
 
 /// Numbers of snaps; from ten on there is a sign for many.
 const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
 
-/// The stroke and the style of a line.
-pub fn look(role: Role, styles: &Styles) -> (Stroke, Style) {
-    match role {
-        Role::Zero | Role::Undeformed | Role::Smooth => (Stroke::Sparse, styles.smooth),
-        Role::Branch => (Stroke::Lettered("b"), styles.smooth),
-        Role::Envelope => (Stroke::LongDashed, styles.exact),
-        Role::Exact => (Stroke::Dashed, styles.exact),
+/// The stroke of a line. Solid is stable, broken is not; the colour says which curve it is.
+pub fn look(role: Role, theme: Theme) -> Stroke {
+    use Meets::{Beneath, Shares, Tints};
+    let styles = theme.styles();
+    let of =
+        |style: Style, meets, is_broken, symbol| Stroke { style, meets, is_broken, symbol, letter: None };
+    let stroke = match role {
+        Role::Zero => of(styles.dim, Beneath, false, ','),
+        Role::Undeformed => of(styles.smooth, Beneath, true, ','),
+        Role::Smooth => of(styles.smooth, Shares, false, 's'),
+        Role::Branch => of(styles.smooth, Beneath, true, 'b'),
+        Role::Envelope => of(styles.envelope, Shares, false, 'k'),
+        Role::Exact => of(styles.exact, Shares, false, 'e'),
         Role::Pin(number) => {
             let at = number.saturating_sub(1) % DIGITS.len();
-            (Stroke::Lettered(DIGITS[at]), styles.pins[at])
+            of(styles.pins[at], Shares, false, DIGITS[at])
         }
-        Role::Unstable => (Stroke::Dotted, styles.unstable),
-        Role::Loading => (Stroke::Marked("l"), styles.exact),
-        Role::Unloading => (Stroke::Marked("u"), styles.stable),
-        Role::Stable | Role::Body | Role::Edges => (Stroke::Solid, styles.stable),
-        Role::Inadmissible => (Stroke::Repeated("!"), styles.aid),
-        Role::Contact => (Stroke::Marked("c"), styles.walk),
-        Role::Walk => (Stroke::Marked("w"), styles.walk),
-        Role::Barrier => (Stroke::DashDotted, styles.aid),
-        Role::Device => (Stroke::ShortDashed, styles.aid),
-        Role::Jump => (Stroke::Marked("j"), styles.jump),
-        Role::Unchanged | Role::Twin => (Stroke::Dotted, styles.smooth),
-        Role::Starts => (Stroke::Sparse, styles.smooth),
-        Role::Landings => (Stroke::Dashed, styles.unstable),
-        Role::Cusps | Role::Law => (Stroke::Solid, styles.stable),
-        Role::Level => (Stroke::LongDashed, styles.aid),
+        Role::Unstable => of(styles.curve, Shares, true, '.'),
+        Role::Stable | Role::Body | Role::Edges => of(styles.curve, Shares, false, 'o'),
+        Role::Loading => of(styles.exact, Beneath, false, 'l'),
+        Role::Unloading => of(styles.loops, Beneath, false, 'u'),
+        Role::Inadmissible => of(styles.warning, Tints, false, '!'),
+        Role::Contact => of(styles.walk, Shares, false, 'c'),
+        Role::Walk => of(styles.walk, Tints, false, 'w'),
+        Role::Barrier => of(styles.aid, Beneath, true, '='),
+        Role::Device => of(styles.aid, Beneath, true, ':'),
+        Role::Jump => of(styles.jump, Beneath, true, 'j'),
+        Role::Law | Role::Cusps => of(styles.curve, Shares, false, 'o'),
+        Role::Landings => of(styles.exact, Shares, true, 'n'),
+        Role::Level => of(styles.aid, Beneath, true, '='),
+        Role::Unchanged | Role::Twin => of(styles.smooth, Beneath, true, '.'),
+        Role::Starts => of(styles.smooth, Beneath, true, ','),
+    };
+    // Where colours are few a letter along the curve tells it.
+    let is_lettered = match role {
+        Role::Smooth | Role::Exact | Role::Envelope | Role::Pin(_) | Role::Branch => true,
+        Role::Loading | Role::Unloading => true,
+        Role::Inadmissible => true,
+        _ => false,
+    };
+    let letter =
+        (is_lettered && (theme.has_few_colours() || theme.charts == Charts::Ascii)).then_some(stroke.symbol);
+    Stroke { letter, ..stroke }
+}
+
+/// How a legend shows a line; with its style, or without colour alone, no two that meet are the same.
+pub fn glyph(role: Role, theme: Theme) -> String {
+    let stroke = look(role, theme);
+    let is_pin = matches!(role, Role::Pin(_));
+    if stroke.letter.is_some() || is_pin || theme.charts == Charts::Ascii {
+        return stroke.symbol.to_string();
+    }
+    let tells = matches!(role, Role::Contact | Role::Jump | Role::Walk | Role::Barrier | Role::Device);
+    if tells && theme.palette == Palette::Mono {
+        return stroke.symbol.to_string();
+    }
+    let of = |solid: &str, broken: &str| if stroke.is_broken { broken } else { solid }.to_owned();
+    if theme.charts == Charts::Block { of("▄▄", "▄ ▄") } else { of("━", "╌") }
+}
+
+/// The letter of a sign; `\u{b7}` is a mark of no event.
+pub fn letter(sign: Sign, theme: Theme) -> String {
+    let one = |unicode: &str, ascii: &str| theme.glyph(unicode, ascii).to_owned();
+    match sign {
+        Sign::OtherLimit(_) | Sign::Limit => one("·", "."),
+        Sign::Event(number @ 1..=9) => number.to_string(),
+        Sign::Event(_) => "v".to_owned(),
+        Sign::PullOff => one("×", "X"),
+        Sign::Landing => one("○", "O"),
+        Sign::Touch => "t".to_owned(),
+        Sign::Turn => "T".to_owned(),
+        Sign::Crest => "^".to_owned(),
+        Sign::Edge => "|".to_owned(),
+        Sign::Minimum => "m".to_owned(),
+        Sign::Maximum => "M".to_owned(),
+        Sign::Barrier => "B".to_owned(),
+        Sign::Stray | Sign::Walker => "@".to_owned(),
+        Sign::Value => "o".to_owned(),
+        Sign::Cusp => "C".to_owned(),
+        Sign::Swallowtail => "S".to_owned(),
+        Sign::Preset => "+".to_owned(),
+        Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)].to_owned(),
+        Sign::Measured { loading: true } => ",".to_owned(),
+        Sign::Measured { loading: false } => ".".to_owned(),
     }
 }
 
-/// The letter of a sign.
-pub fn letter(sign: Sign) -> &'static str {
+/// The style of a sign.
+pub fn style(sign: Sign, theme: Theme) -> Style {
+    let styles = theme.styles();
     match sign {
-        Sign::OtherLimit(Control::Force) => "p",
-        Sign::OtherLimit(_) => "d",
-        Sign::Limit => "v",
-        Sign::PullOff => "X",
-        Sign::Landing => "L",
-        Sign::Touch => "t",
-        Sign::Turn => "T",
-        Sign::Crest => "^",
-        Sign::Edge => "|",
-        Sign::Minimum => "m",
-        Sign::Maximum => "M",
-        Sign::Barrier => "B",
-        Sign::Stray | Sign::Walker => "@",
-        Sign::Cusp => "C",
-        Sign::Swallowtail => "S",
-        Sign::Preset => "+",
-        Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)],
-        Sign::Value => "o",
-        Sign::Measured { loading: true } => ",",
-        Sign::Measured { loading: false } => ".",
+        Sign::OtherLimit(_) | Sign::Limit => styles.dim,
+        Sign::Landing => styles.landing,
+        Sign::Crest | Sign::Edge | Sign::Snaps(_) | Sign::Measured { .. } => styles.smooth,
+        Sign::Stray => styles.stray,
+        Sign::Walker | Sign::Preset => styles.walker,
+        _ => styles.mark,
     }
 }

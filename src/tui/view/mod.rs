@@ -8,13 +8,12 @@ pub mod legend;
 mod marks;
 pub mod overlays;
 mod parts;
-pub mod pictures;
 pub mod problem;
 pub mod status;
 pub mod walker;
 
 use super::app::App;
-use super::layout::{Regions, SMALLEST, regions};
+use super::layout::{Regions, SMALLEST, Wants, regions};
 use super::overlay::Overlay;
 use crate::explorer::Panel;
 use ratatui::Frame;
@@ -22,14 +21,14 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use parts::is_selected;
-pub use pictures::Pictures;
-use pictures::What;
 
 /// Lines of inadmissible parts that get room of their own: they come late, and more would move the charts far.
 const PARTS: usize = 3;
+/// The inside of the left column on a large screen.
+const WIDE_SIDE: u16 = 35;
 
-/// Draws the whole screen, as far as it can from the pictures of the last one, and says for how many views it has room.
-pub fn draw(frame: &mut Frame<'_>, app: &App, pictures: &mut Pictures) -> usize {
+/// Draws the whole screen, and says for how many views it has room.
+pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     // The frame's own area only: the terminal may have changed its size meanwhile.
     let area = frame.area();
     let Some(regions) = places(app, area) else {
@@ -39,12 +38,10 @@ pub fn draw(frame: &mut Frame<'_>, app: &App, pictures: &mut Pictures) -> usize 
         return 1;
     };
     header::draw(frame, regions.header, app);
-    if let Some(area) = regions.problem {
-        problem::draw(frame, area, app);
+    // The selected panel last: shared walls take its style.
+    for selected in [false, true] {
+        draw_panels(frame, app, &regions, selected);
     }
-    pictures.begin(app);
-    draw_kept(frame, app, &regions, pictures);
-    pictures.end();
     status::draw(frame, regions.status, regions.footer, app);
     match &app.overlay {
         None => {}
@@ -54,33 +51,33 @@ pub fn draw(frame: &mut Frame<'_>, app: &App, pictures: &mut Pictures) -> usize 
     regions.charts.len()
 }
 
-/// Draws the panels that most keys do not change.
-fn draw_kept(frame: &mut Frame<'_>, app: &App, regions: &Regions, pictures: &mut Pictures) {
-    let model = &app.model;
-    if let Some(area) = regions.walker {
-        let selected = is_selected(app, Panel::Walker);
-        pictures.show(frame, area, What::Walker, selected, |frame| walker::draw(frame, area, app));
+/// Draws the selected panel, or the others.
+fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bool) {
+    let is_due = |panel| is_selected(app, panel) == selected;
+    if let Some(area) = regions.problem.filter(|_| is_due(Panel::Problem)) {
+        problem::draw(frame, area, app);
+    }
+    if let Some(area) = regions.walker.filter(|_| is_due(Panel::Walker)) {
+        walker::draw(frame, area, app);
     }
     for (i, (view, area)) in regions.charts.iter().enumerate() {
-        let is_first = i == 0;
-        let (window, cross) = (model.window(*view), model.cross.filter(|_| is_first));
-        let selected = is_first && is_selected(app, Panel::Charts);
-        let what = What::Chart { view: *view, window, cross, is_first };
-        pictures.show(frame, *area, what, selected, |frame| {
-            charts::draw(frame, *area, app, *view, is_first);
-        });
+        // The keys are those of the first.
+        if (i == 0 && is_selected(app, Panel::Charts)) == selected {
+            charts::draw(frame, *area, app, *view, i == 0);
+        }
     }
-    if let Some(area) = regions.events {
-        let selected = is_selected(app, Panel::Events);
-        let what = What::Events(model.event);
-        pictures.show(frame, area, what, selected, |frame| events::draw(frame, area, app));
+    if let Some(area) = regions.events.filter(|_| is_due(Panel::Events)) {
+        events::draw(frame, area, app);
     }
 }
 
 /// Where the regions of a screen of this size are.
 pub fn places(app: &App, area: Rect) -> Option<Regions> {
-    let events = app.model.shown_events().len() + app.model.shown_inadmissible().len().min(PARTS);
-    regions(area, app.model.view, events)
+    let model = &app.model;
+    let events = model.shown_events().len() + model.shown_inadmissible().len().min(PARTS);
+    let problem = problem::rows(app, WIDE_SIDE);
+    let whole = app.enlarged.then_some(model.panel);
+    regions(area, Wants { view: model.view, events, problem, whole })
 }
 
 #[cfg(test)]

@@ -5,18 +5,10 @@ use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use ratatui::text::Span;
-use ratatui::widgets::{Block, Borders};
-
-/// The frame of a panel in the side column: what lies right of it and below has a frame of its own.
-pub(super) fn side_panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
-    panel(theme, title, selected).borders(Borders::TOP | Borders::LEFT)
-}
+use ratatui::widgets::Block;
 
 pub(super) fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> {
-    Block::bordered()
-        .border_set(theme.border())
-        .border_style(theme.frame(selected))
-        .title(Span::styled(theme.text(title), theme.title(selected)))
+    theme.block(selected).title(Span::styled(theme.text(title), theme.title(selected)))
 }
 
 /// Whether a panel is the selected one, and nothing lies over it.
@@ -33,6 +25,18 @@ pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> St
     let rest = format!("{rest} {}: all", keymap.label(Id::Help));
     let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
     format!("{}{rest}", kept.trim_end())
+}
+
+/// As much of a line as there is room for, no word and no number cut: an ellipsis stands for the rest.
+pub(super) fn whole_words(theme: Theme, line: &str, room: usize) -> String {
+    if line.chars().count() <= room {
+        return line.to_owned();
+    }
+    let kept: String = line.chars().take(room.saturating_sub(1)).collect();
+    // What was cut in its middle goes.
+    let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
+    let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(0) };
+    format!("{}{}", kept[..end].trim_end(), theme.glyph("…", "."))
 }
 
 /// `key value` with the key dim.

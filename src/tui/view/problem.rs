@@ -1,6 +1,6 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
-use super::parts::{is_selected, pair, side_panel};
+use super::parts::{is_selected, pair, panel};
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -11,7 +11,7 @@ use pulloff_engine::problem::{Control, Groups};
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
@@ -20,7 +20,7 @@ const ABOVE: usize = 5;
 
 /// How the panel is filled.
 struct Arranged {
-    /// Inside the frame, which takes the top line and the left column.
+    /// Inside the frame.
     inner: Rect,
     /// How many parameters there are, the groups behind them not counted.
     parameters: usize,
@@ -33,12 +33,7 @@ struct Arranged {
 fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let model = &app.model;
     let selected = is_selected(app, Panel::Problem);
-    let inner = Rect {
-        x: area.x + 1,
-        y: area.y + 1,
-        width: area.width.saturating_sub(1),
-        height: area.height.saturating_sub(1),
-    };
+    let inner = area.inner(Margin::new(1, 1));
     // The groups that can be set stand behind the parameters, among those that cannot.
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
     let chosen = all.get(model.parameter).filter(|_| selected).map(|(row, _)| row.key.clone());
@@ -64,7 +59,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     } else {
         "Problem".to_owned()
     };
-    frame.render_widget(side_panel(theme, &title, selected), area);
+    frame.render_widget(panel(theme, &title, selected), area);
     let units = &model.preset.units;
     let keys = turning(&app.keymap);
     let shown = all[..parameters].iter().enumerate().skip(first).take(rows);
@@ -77,6 +72,13 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     lines.resize(rows, Line::default());
     lines.extend(groups);
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The rows that show everything in a panel so wide.
+pub fn rows(app: &App, width: u16) -> usize {
+    let all = app.model.knobs();
+    let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
+    parameters + group_lines(app, &all[parameters..], None, width).len()
 }
 
 /// The parameter in this row of the screen, in the panel `area`.

@@ -1,6 +1,5 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
-use super::Pictures;
 use crate::explorer::{Command, Id, Inline, Panel, View, update};
 use crate::store::Store;
 use crate::tui::app::App;
@@ -9,8 +8,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
-use ratatui::style::{Color, Modifier};
-use std::cell::RefCell;
+use ratatui::style::Modifier;
 
 mod keys;
 mod line;
@@ -24,8 +22,6 @@ const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, asci
 struct Screen {
     app: App,
     driver: Inline,
-    /// Of the last frame, whatever its size.
-    pictures: RefCell<Pictures>,
     folder: tempfile::TempDir,
 }
 
@@ -35,7 +31,7 @@ impl Screen {
         let store = Store::at(folder.path(), &[]);
         let loaded = store.load(&store.resolve(preset).unwrap(), &[] as &[&str]).unwrap();
         let (app, effects) = App::new(loaded, Theme::default());
-        (Self { app, driver: Inline::new(store), pictures: RefCell::default(), folder }, effects)
+        (Self { app, driver: Inline::new(store), folder }, effects)
     }
 
     fn new(preset: &str) -> Self {
@@ -69,23 +65,14 @@ impl Screen {
         self
     }
 
-    /// The screen; from the pictures of the last one it is the same as drawn from nothing.
     fn draw(&self, width: u16, height: u16) -> Buffer {
-        let draw = |pictures: &mut Pictures| {
-            let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-            terminal
-                .draw(|frame| {
-                    super::draw(frame, &self.app, pictures);
-                })
-                .unwrap();
-            terminal.backend().buffer().clone()
-        };
-        let anew = draw(&mut Pictures::default());
-        assert!(
-            draw(&mut self.pictures.borrow_mut()) == anew,
-            "a kept picture is of another state: {anew:?}"
-        );
-        anew
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+        terminal
+            .draw(|frame| {
+                super::draw(frame, &self.app);
+            })
+            .unwrap();
+        terminal.backend().buffer().clone()
     }
 
     fn text(&self, width: u16, height: u16) -> String {
@@ -93,6 +80,10 @@ impl Screen {
         let row = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
         (0..height).map(|y| row(y).trim_end().to_owned() + "\n").collect()
     }
+}
+
+fn is_braille(symbol: &str) -> bool {
+    symbol.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c))
 }
 
 /// The first cell of `text` on the screen.
@@ -159,6 +150,89 @@ fn whole_screens_as_text() {
     insta::assert_snapshot!("help_of_keys_100x45", screen.text(100, 45));
     screen.keys("\x1btav\r-1\r");
     insta::assert_snapshot!("refused_value_80x24", screen.text(80, 24));
+}
+
+/// The sizes that are drawn on purpose, with one curve pinned and one limit point passed.
+#[test]
+fn screens_of_every_layout_as_text() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p}nxn");
+    for (width, height) in [(80, 24), (100, 30), (120, 40), (160, 45), (200, 60), (300, 20)] {
+        for _ in 0..2 {
+            // Views that there is room for are computed first.
+            let mut views = 0;
+            let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+            terminal.draw(|frame| views = super::draw(frame, &screen.app)).unwrap();
+            let effects = screen.app.make_room(ratatui::layout::Rect::new(0, 0, width, height), views);
+            screen.settle(effects);
+        }
+        insta::assert_snapshot!(format!("layout_{width}x{height}"), screen.text(width, height));
+    }
+}
+
+/// Whether a number ends where a wall or an ellipsis begins, as if it had been cut.
+fn has_cut_number(text: &str) -> Option<String> {
+    let is_number = |c: char| c.is_ascii_digit() || c == 'e' || c == '-' || c == '.';
+    text.lines().find_map(|line| {
+        let chars: Vec<char> = line.chars().collect();
+        let cut = chars.windows(3).position(|three| {
+            let [before, last, end] = [three[0], three[1], three[2]];
+            // Half an exponent, or digits that run into a wall without the blank behind a value.
+            end == '\u{2502}' && (last == 'e' || last == '-' || last == '.') && is_number(before)
+        });
+        cut.map(|_| line.to_owned())
+    })
+}
+
+#[test]
+fn nothing_is_cut_inside_a_number() {
+    for preset in ["wavy-sphere", "fig-9-si", "fig-9"] {
+        let mut screen = Screen::new(preset);
+        screen.keys("nx");
+        for keys in ["", "c"] {
+            screen.keys(keys);
+            for (width, height) in [(60, 60), (80, 50), (40, 12), (80, 24), (100, 30), (120, 40), (45, 30)] {
+                let text = screen.text(width, height);
+                assert_eq!(has_cut_number(&text), None, "{width}x{height} {text}");
+                // The crests before and after stand together.
+                for line in text.lines().filter(|line| line.contains("snap")) {
+                    assert!(!line.contains("> ") || line.contains(">-"), "{line}");
+                }
+            }
+        }
+    }
+    // Under a dead load the approach is told before and after, and the load once.
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("c");
+    let text = screen.text(80, 24);
+    let head = text.lines().find(|line| line.contains("crest lost")).unwrap();
+    let words: Vec<&str> = head.split_whitespace().collect();
+    assert_eq!(words[1..6], ["#", "P/Pc", "δ", "after", "s"], "{head}");
+}
+
+#[test]
+fn a_panel_can_have_the_whole_screen_and_an_event_its_number_on_the_curve() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.model.panel = Panel::Charts;
+    screen.keys("z");
+    let text = screen.text(80, 24);
+    assert!(!text.contains("Problem") && text.contains("P/Pc over δ"), "{text}");
+    screen.press(KeyCode::Tab);
+    assert!(screen.text(80, 24).contains("Events on the curve"));
+    screen.keys("z");
+    assert!(screen.text(80, 24).contains("Problem"));
+    // The selected one is reversed.
+    let reversed = |screen: &Screen, number: &str| {
+        let buffer = screen.draw(120, 40);
+        let is_it = |cell: &&ratatui::buffer::Cell| {
+            cell.symbol() == number && cell.modifier.contains(Modifier::REVERSED)
+        };
+        let marks = screen.app.theme.styles().mark.fg;
+        buffer.content().iter().filter(is_it).any(|cell| cell.fg == marks.unwrap())
+    };
+    assert!(reversed(&screen, "1") && !reversed(&screen, "2"));
+    screen.press(KeyCode::Down);
+    assert!(reversed(&screen, "2") && !reversed(&screen, "1"));
 }
 
 #[test]
@@ -296,7 +370,8 @@ fn selection_instability_and_errors_have_their_styles() {
     assert!(find(&buffer, ">A ").modifier.contains(Modifier::REVERSED));
     screen.keys("n");
     let buffer = screen.draw(80, 24);
-    assert_eq!(find(&buffer, "LIMIT").fg, Color::Red);
+    let error = screen.app.theme.error().fg.unwrap();
+    assert_eq!(find(&buffer, "LIMIT").fg, error);
     assert!(find(&buffer, "@").modifier.contains(Modifier::REVERSED));
     screen.app.model.panel = Panel::Events;
     let buffer = screen.draw(80, 24);
@@ -305,7 +380,7 @@ fn selection_instability_and_errors_have_their_styles() {
     screen.app.model.panel = Panel::Walker;
     screen.keys("{");
     let buffer = screen.draw(80, 24);
-    assert_eq!(find(&buffer, "select a parameter first").fg, Color::Red);
+    assert_eq!(find(&buffer, "select a parameter first").fg, error);
     assert!(find(&buffer, "* unsaved").modifier.contains(Modifier::BOLD));
 }
 
@@ -316,14 +391,20 @@ fn inadmissible_parts_need_no_colour() {
     let weak = Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, weak);
     screen.settle(effects);
-    for ascii in [false, true] {
-        screen.app.theme = if ascii { PLAIN } else { Theme::default() };
+    // With colours enough the curve keeps its shape and takes the colour of a warning.
+    let warning = screen.app.theme.styles().warning.fg.unwrap();
+    let buffer = screen.draw(160, 50);
+    let warned = buffer.content().iter().filter(|cell| cell.fg == warning && is_braille(cell.symbol()));
+    assert!(warned.count() > 5);
+    for theme in [PLAIN, Theme { palette: Palette::Mono, ..Theme::default() }] {
+        screen.app.theme = theme;
         let text = screen.text(160, 50);
         // In the legend and in the log; the others stand on the curves.
         let told = text.matches("! inadmissible").count();
         assert!(text.contains("! inadmissible s = ") && told > 3, "{text}");
         assert!(text.matches('!').count() > told + screen.app.model.shown_inadmissible().len(), "{text}");
     }
+    screen.app.theme = Theme::default();
     screen.keys("[[");
     for _ in 0..200 {
         if !screen.app.model.walker().unwrap().admissibility.holds {
@@ -332,7 +413,8 @@ fn inadmissible_parts_need_no_colour() {
         screen.keys(" ");
     }
     for (width, height) in [(80, 24), (160, 50)] {
-        assert_eq!(find(&screen.draw(width, height), "inadmissible: r 0.").fg, Color::Red);
+        let error = screen.app.theme.error().fg.unwrap();
+        assert_eq!(find(&screen.draw(width, height), "inadmissible: r 0.").fg, error);
     }
 }
 
@@ -343,7 +425,7 @@ fn too_few_rings_are_a_warning_on_the_screen() {
     let effects = crate::explorer::update(&mut screen.app.model, set);
     screen.settle(effects);
     let buffer = screen.draw(120, 40);
-    assert_eq!(find(&buffer, "! only 4.0 rings per wave").fg, Color::Red);
+    assert_eq!(find(&buffer, "! only 4.0 rings per wave").fg, screen.app.theme.error().fg.unwrap());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The state of the walker.
 
-use super::parts::{is_selected, pair, side_panel};
+use super::parts::{is_selected, pair, panel, whole_words};
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
@@ -21,7 +21,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let node = model.history.current();
     let title = node.map_or_else(|| "Walker".to_owned(), |node| format!("Walker, step {}", node.step));
-    let block = side_panel(theme, &title, is_selected(app, Panel::Walker));
+    let block = panel(theme, &title, is_selected(app, Panel::Walker));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let Some(node) = node else { return };
@@ -36,7 +36,20 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         lines = lines.into_iter().map(|line| Line::styled(line.to_string(), style)).collect();
         lines.insert(0, Line::styled(" not of these values", theme.error()));
     }
+    let room = usize::from(inner.width);
+    let lines: Vec<Line> = lines.into_iter().filter_map(|line| fitting(theme, line, room)).collect();
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// A line that fits, or as many of its pairs as do.
+fn fitting(theme: Theme, line: Line<'static>, room: usize) -> Option<Line<'static>> {
+    if line.width() <= room {
+        return Some(line);
+    }
+    let style = line.style;
+    let text = whole_words(theme, &line.to_string(), room);
+    // A key without its value says nothing.
+    (text.split_whitespace().count() > 1).then(|| Line::styled(text, style))
 }
 
 /// A value of the node's problem in the unit in which it is shown.
@@ -117,7 +130,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
     if !node.has_rings() {
-        lines.push(Line::from(pair(theme, " P off the exact by ", &difference(node.from_exact)).to_vec()));
+        lines.push(Line::from(pair(theme, " off exact ", &difference(node.from_exact)).to_vec()));
     }
     lines.extend(stiffness(theme, node));
     lines.extend(known_to(theme, node));

@@ -170,7 +170,7 @@ fn the_help_is_searched() {
 #[test]
 fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     let mut screen = Screen::new("wavy-sphere");
-    let text = "[keys]\nstep = \"F4\"\nundo = [\"w\", \"Ctrl-U\"]\njump = []\nedit = \"z\"\n";
+    let text = "[keys]\nstep = \"F4\"\nundo = [\"w\", \"Ctrl-U\"]\njump = []\nedit = \"Z\"\n";
     screen.app.keymap = Keymap::of(&config::read("c", text).unwrap()).unwrap();
     screen.press(KeyCode::F(4));
     assert_eq!(screen.app.model.history.nodes().len(), 2);
@@ -183,7 +183,7 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     // A list is chosen from with Enter all the same.
     screen.keys("\x1be\r");
     assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
-    assert_eq!(screen.app.keymap.first(Id::Edit), "z");
+    assert_eq!(screen.app.keymap.first(Id::Edit), "Z");
 }
 
 #[test]

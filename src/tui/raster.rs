@@ -1,0 +1,338 @@
+//! Curves as dots in the cells of a plot, and whose colour each cell has.
+//!
+//! A solid line is stable, a broken one is not; which curve it is, its colour says, and where colours are few a letter
+//! along it. A cell that one curve crosses shows that curve. Curves that are compared share the cells in which they meet:
+//! these take their colours in turn, so that none hides another. Lines beneath them show where they are alone.
+//!
+//! Distances are counted along the curve in character widths, a row counting twice, from its first point, so that the
+//! pattern does not depend on where its points lie. What is outside the window is passed over, however long.
+
+use super::theme::Charts;
+use crate::figure::Bounds;
+use line_clipping::{LineSegment, Point, Window, cohen_sutherland};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use std::collections::HashMap;
+
+/// The distance between the dots of a line.
+const DENSE: f64 = 0.25;
+/// A broken line: of so many widths so many are drawn. No cell of it stays empty.
+const BROKEN: [f64; 2] = [1.5, 0.75];
+/// The first letter along a curve is so far from its beginning, and each further one from the one before.
+const LETTERS: [f64; 2] = [6.0, 17.0];
+/// The same of what tints: it may be short.
+const TINT_LETTERS: [f64; 2] = [0.5, 10.0];
+/// Beyond so many widths from the window lengths mean nothing.
+const FAR: f64 = 1e12;
+
+/// How a line meets the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Meets {
+    /// It shares the cells in which it meets others that do.
+    Shares,
+    /// It is seen where no other is.
+    Beneath,
+    /// It colours the cells of what it lies on.
+    Tints,
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke {
+    pub style: Style,
+    pub meets: Meets,
+    /// Broken: not stable, or no state.
+    pub is_broken: bool,
+    /// What it is in a cell of its own where a cell is one character.
+    pub symbol: char,
+    /// What stands along it where its colour does not tell it.
+    pub letter: Option<char>,
+}
+
+/// A curve on the cells of a plot; bits count from the upper left, rows first.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    pub stroke: Stroke,
+    bits: Vec<u8>,
+    /// The cells in which its letter may stand.
+    letters: Vec<usize>,
+}
+
+/// Dots of a cell, across and down.
+fn dots(charts: Charts) -> (u16, u16) {
+    match charts {
+        Charts::Braille => (2, 4),
+        Charts::Block => (1, 2),
+        Charts::Ascii => (1, 1),
+    }
+}
+
+impl Layer {
+    /// A layer without a dot.
+    pub fn new(stroke: Stroke, plot: Rect) -> Self {
+        let cells = usize::from(plot.width) * usize::from(plot.height);
+        Self { stroke, bits: vec![0; cells], letters: Vec::new() }
+    }
+
+    /// Adds a line of this layer, broken or not.
+    pub fn add(
+        &mut self,
+        points: &[(f64, f64)],
+        is_broken: bool,
+        bounds: &Bounds,
+        plot: Rect,
+        charts: Charts,
+    ) {
+        let (across, down) = dots(charts);
+        let (width, height) = (f64::from(plot.width), f64::from(plot.height));
+        // Inside the window, whose sides are below 2^16.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let place = |at: f64, count: u16| (at.max(0.0) as u16).min(count - 1);
+        let [mut next_letter, apart] = if self.stroke.meets == Meets::Tints { TINT_LETTERS } else { LETTERS };
+        for (distance, x, y) in along(points, bounds, plot, DENSE) {
+            if is_broken && distance % BROKEN[0] > BROKEN[1] {
+                continue;
+            }
+            let column = place(x / width * f64::from(plot.width * across), plot.width * across);
+            let row = place((height - y) / height * f64::from(plot.height * down), plot.height * down);
+            let cell = usize::from(row / down) * usize::from(plot.width) + usize::from(column / across);
+            self.bits[cell] |= 1 << (row % down * across + column % across);
+            if distance >= next_letter && self.letters.last() != Some(&cell) {
+                self.letters.push(cell);
+                next_letter = distance + apart;
+            }
+        }
+    }
+}
+
+/// Which layers a cell shows.
+fn owners(layers: &[Layer], cell: usize) -> impl Iterator<Item = usize> + '_ {
+    layers.iter().enumerate().filter(move |(_, layer)| layer.bits[cell] != 0).map(|(at, _)| at)
+}
+
+/// Draws the layers, the later over the earlier; says of each cell which layer it shows.
+pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -> Vec<Option<usize>> {
+    let (width, height) = (usize::from(plot.width), usize::from(plot.height));
+    let mut all = vec![None; width * height];
+    // How many cells the same layers have shared so far.
+    let mut turns: HashMap<Vec<usize>, usize> = HashMap::new();
+    // Column by column: neighbours along most curves follow each other.
+    for at in 0..width * height {
+        let (column, row) = (at / height, at % height);
+        let cell = row * width + column;
+        let meets = |kind: Meets| {
+            owners(layers, cell).filter(move |at| layers[*at].stroke.meets == kind).collect::<Vec<_>>()
+        };
+        let (sharing, beneath, tints) = (meets(Meets::Shares), meets(Meets::Beneath), meets(Meets::Tints));
+        let below = beneath.last().copied();
+        // Those that share a cell have it in turn, in runs of two.
+        let shared = if sharing.len() > 1 {
+            let turn = turns.entry(sharing.clone()).or_insert(0);
+            *turn += 1;
+            sharing.get((*turn - 1) / 2 % sharing.len()).copied()
+        } else {
+            sharing.first().copied()
+        };
+        let Some(at) = shared.or(tints.last().copied()).or(below) else {
+            continue;
+        };
+        all[cell] = Some(at);
+        // Both shapes are seen where two meet.
+        let bits = if sharing.is_empty() {
+            layers[at].bits[cell]
+        } else {
+            sharing.iter().fold(0, |bits, other| bits | layers[*other].bits[cell])
+        };
+        let stroke = layers[at].stroke;
+        // The last of those that share is the curve, and what tints lies on it.
+        let is_own = sharing.is_empty() || sharing.last() == Some(&at);
+        let over = tints.last().filter(|_| is_own).map_or(stroke, |tint| layers[*tint].stroke);
+        let symbol = match charts {
+            Charts::Braille => char::from_u32(0x2800 + braille(bits)).unwrap_or(' '),
+            Charts::Block => [' ', '\u{2580}', '\u{2584}', '\u{2588}'][usize::from(bits & 3)],
+            Charts::Ascii => over.symbol,
+        };
+        let place = &mut buffer[(plot.x + cell_at(column), plot.y + cell_at(row))];
+        place.set_char(symbol).set_style(over.style);
+    }
+    letters(layers, &all, buffer, plot);
+    all
+}
+
+/// Letters stand where their curve is alone.
+fn letters(layers: &[Layer], all: &[Option<usize>], buffer: &mut Buffer, plot: Rect) {
+    for (at, layer) in layers.iter().enumerate() {
+        let Some(letter) = layer.stroke.letter else { continue };
+        for cell in &layer.letters {
+            let is_alone = owners(layers, *cell).all(|other| other == at) && all[*cell] == Some(at);
+            if is_alone || layer.stroke.meets == Meets::Tints {
+                let (column, row) = (cell % usize::from(plot.width), cell / usize::from(plot.width));
+                let place = &mut buffer[(plot.x + cell_at(column), plot.y + cell_at(row))];
+                place.set_char(letter).set_style(layer.stroke.style);
+            }
+        }
+    }
+}
+
+/// A column or a row of a plot.
+fn cell_at(at: usize) -> u16 {
+    u16::try_from(at).unwrap_or(u16::MAX)
+}
+
+/// The dots of a cell, rows first, as Unicode numbers those of braille.
+fn braille(bits: u8) -> u32 {
+    const PLACES: [u32; 8] = [0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80];
+    PLACES.iter().enumerate().filter(|(bit, _)| bits & (1 << bit) != 0).map(|(_, dot)| dot).sum()
+}
+
+/// Places along a curve, `apart` from each other, inside the window: the distance from its first point, and where.
+fn along(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, apart: f64) -> Vec<(f64, f64, f64)> {
+    let (width, height) = (f64::from(plot.width), f64::from(plot.height));
+    let window = Window::new(0.0, width, 0.0, height);
+    // In cells from the lower left corner.
+    let cells = |(x, y): (f64, f64)| {
+        let share = |value: f64, [lo, hi]: [f64; 2]| (value - lo) / (hi - lo);
+        Point::new(share(x, bounds.x) * width, share(y, bounds.y) * height)
+    };
+    // A cell is twice as high as wide.
+    let distance = |a: Point, b: Point| (b.x - a.x).hypot(2.0 * (b.y - a.y));
+    let mut places = Vec::new();
+    let mut before = 0.0;
+    for pair in points.windows(2) {
+        let [from, to] = [cells(pair[0]), cells(pair[1])];
+        let length = distance(from, to);
+        if ![from.x, from.y, to.x, to.y].iter().all(|x| x.abs() < FAR) {
+            continue;
+        }
+        if let Some(seen) = cohen_sutherland::clip_line(LineSegment::new(from, to), window)
+            && length > 0.0
+        {
+            let (first, last) = (before + distance(from, seen.p1), before + distance(from, seen.p2));
+            let mut count = (first / apart).ceil();
+            while count * apart < last {
+                let share = (count * apart - before) / length;
+                let at = |a: f64, b: f64| a + (b - a) * share;
+                places.push((count * apart, at(from.x, to.x), at(from.y, to.y)));
+                count += 1.0;
+            }
+        }
+        before += length;
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ratatui::style::Color;
+
+    const PLOT: Rect = Rect { x: 3, y: 2, width: 60, height: 20 };
+    const BOUNDS: Bounds = Bounds { x: [0.0, 1.0], y: [0.0, 1.0] };
+
+    fn stroke(color: Color, symbol: char) -> Stroke {
+        let style = Style::new().fg(color);
+        Stroke { style, meets: Meets::Shares, is_broken: false, symbol, letter: Some(symbol) }
+    }
+
+    fn layer(points: &[(f64, f64)], is_broken: bool, color: Color, charts: Charts) -> Layer {
+        let mut layer = Layer::new(stroke(color, color_letter(color)), PLOT);
+        layer.add(points, is_broken, &BOUNDS, PLOT, charts);
+        layer
+    }
+
+    fn color_letter(color: Color) -> char {
+        if color == Color::Red { 'r' } else { 'g' }
+    }
+
+    fn lattice(f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        (0..=400).map(|i| f64::from(i) / 400.0).map(|x| (x, f(x))).collect()
+    }
+
+    /// The cells that a curve passes, from its points alone.
+    fn passed(points: &[(f64, f64)]) -> Vec<(u16, u16)> {
+        let mut cells: Vec<(u16, u16)> = Vec::new();
+        for pair in points.windows(2) {
+            for i in 0..40 {
+                let share = f64::from(i) / 40.0;
+                let x = pair[0].0 + share * (pair[1].0 - pair[0].0);
+                let y = pair[0].1 + share * (pair[1].1 - pair[0].1);
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let cell = ((x * 60.0) as u16, ((1.0 - y) * 20.0) as u16);
+                if cells.last() != Some(&cell) {
+                    cells.push(cell);
+                }
+            }
+        }
+        cells.retain(|(column, row)| *column < 60 && *row < 20);
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    #[test]
+    fn a_curve_shows_where_it_is_alone_and_two_share_where_they_meet() {
+        let first = lattice(|x| 0.2 + 0.5 * x);
+        // On the same cells over the first half, then away.
+        let second = lattice(|x| 0.2 + 0.5 * x + 1.2 * (x - 0.5).max(0.0).powi(2));
+        for charts in [Charts::Braille, Charts::Block, Charts::Ascii] {
+            for is_broken in [false, true] {
+                let layers = [
+                    layer(&first, false, Color::Red, charts),
+                    layer(&second, is_broken, Color::Green, charts),
+                ];
+                let mut buffer = Buffer::empty(Rect::new(0, 0, 70, 30));
+                draw(&layers, &mut buffer, PLOT, charts);
+                let cells = [passed(&first), passed(&second)];
+                let shows = |cell: &(u16, u16)| {
+                    let cell = &buffer[(PLOT.x + cell.0, PLOT.y + cell.1)];
+                    (cell.symbol() != " ").then_some(cell.fg)
+                };
+                for (own, other, color) in [(0, 1, Color::Red), (1, 0, Color::Green)] {
+                    let alone: Vec<_> = cells[own].iter().filter(|at| !cells[other].contains(at)).collect();
+                    let seen = alone.iter().filter(|at| shows(at) == Some(color)).count();
+                    assert!(alone.len() > 20 && 5 * seen >= 4 * alone.len(), "{charts:?} {color} {seen}");
+                    let shared: Vec<_> = cells[own].iter().filter(|at| cells[other].contains(at)).collect();
+                    let seen = shared.iter().filter(|at| shows(at) == Some(color)).count() as f64;
+                    let share = seen / shared.len() as f64;
+                    assert!(shared.len() > 20 && (0.4..=0.6).contains(&share), "{charts:?} {color} {share}");
+                    // Without colours a letter tells it, more than once.
+                    let letter = color_letter(color).to_string();
+                    let letters =
+                        alone.iter().filter(|at| buffer[(PLOT.x + at.0, PLOT.y + at.1)].symbol() == letter);
+                    assert!(letters.count() > 0, "{charts:?} {color}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_tint_keeps_the_shape_and_what_is_beneath_shows_alone() {
+        let line = lattice(|x| 0.3 + 0.4 * x);
+        let plain = layer(&line, true, Color::Red, Charts::Braille);
+        let mut tint = layer(&line, false, Color::Green, Charts::Braille);
+        (tint.stroke.meets, tint.stroke.letter) = (Meets::Tints, None);
+        let mut beneath = layer(&lattice(|x| 0.7 - 0.4 * x), false, Color::Blue, Charts::Braille);
+        beneath.stroke.meets = Meets::Beneath;
+        let draw_all = |layers: &[Layer]| {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 70, 30));
+            draw(layers, &mut buffer, PLOT, Charts::Braille);
+            buffer
+        };
+        let [alone, all] = [draw_all(&[plain.clone()]), draw_all(&[beneath, plain, tint])];
+        let mut tinted = 0;
+        for at in PLOT.positions().filter(|at| alone[*at].fg == Color::Red && alone[*at].symbol() != "r") {
+            assert_eq!((alone[at].symbol(), all[at].fg), (all[at].symbol(), Color::Green), "{at}");
+            tinted += 1;
+        }
+        assert!(tinted > 40 && PLOT.positions().filter(|at| all[*at].fg == Color::Blue).count() > 40);
+    }
+
+    #[test]
+    fn far_lines_and_numbers_that_are_none_cost_nothing() {
+        let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [0.0, 1e-9] };
+        let line = [(0.0, 0.0), (1.0, 0.0), (f64::NAN, 0.0), (1e300, -1e300), (0.0, f64::INFINITY)];
+        assert!((235..=245).contains(&along(&line, &deep, PLOT, DENSE).len()));
+        assert!(along(&line[2..], &deep, PLOT, DENSE).is_empty());
+    }
+}
