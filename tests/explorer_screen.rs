@@ -252,7 +252,10 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
     );
     // The state is solved anew after the curve.
     pty.wait_for(
-        |screen| !screen.contains("computing") && chart(screen)[1].contains('@'),
+        |screen| {
+            !screen.contains("computing")
+                && chart(screen).iter().any(|row| row.contains('@') && !row.contains("@ here"))
+        },
         "the state on the curve",
     );
     let smooth = chart(&pty.screen());
@@ -374,7 +377,7 @@ fn the_mouse_is_taken_and_given_back_in_every_way() {
     pty.keys(&format!("\x1b[<0;{column};{row}M\x1b[<0;{column};{row}m"));
     pty.keys("\r ");
     pty.wait_for(|screen| screen.contains("Walker, step 1"), "a step after all that");
-    let (column, row) = place(&pty, "  2 ");
+    let (column, row) = place(&pty, "   2   0.00");
     pty.keys(&format!("\x1b[<0;{column};{row}M"));
     pty.wait_for(|screen| screen.contains(">  2 "), "the event selected");
     // At run time.
@@ -403,8 +406,8 @@ fn the_mouse_is_taken_and_given_back_in_every_way() {
 
 #[test]
 fn no_color_means_none_unless_a_theme_is_asked_for() {
-    // That of the frames.
-    let colour = b"\x1b[90m";
+    // That of the frames and axes, in both palettes.
+    let colour = b"38;5;24";
     for (args, env, coloured) in [
         ([].as_slice(), [("NO_COLOR", "1")], false),
         (&["--theme", "mono"], [("NO_COLOR", "")], false),

@@ -137,7 +137,7 @@ fn any_size_is_survived_and_the_next_one_drawn() {
     pty.keys("TTTTTT");
     pty.resize(30, 8);
     pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
-    pty.resize(120, 40);
+    pty.resize(160, 45);
     let both = |screen: &str| screen.contains("P/Pc over δ") && screen.contains("s/λ over P/Pc");
     pty.wait_for(both, "both charts at the new size");
     pty.keys("q");
