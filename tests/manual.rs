@@ -251,9 +251,10 @@ fn the_readme_is_short() {
 /// A code span such as `src/store/presets.rs: Store::load, Loaded` names a file and what is in it.
 #[test]
 fn the_paths_and_names_of_the_architecture_are_those_of_the_code() {
-    const ROOTS: [&str; 10] = [
+    const ROOTS: [&str; 11] = [
         "src/",
         "engine/",
+        "python/",
         "tests/",
         "docs/",
         "presets/",
