@@ -16,28 +16,28 @@ use ratatui::widgets::{Clear, Paragraph};
 /// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
 const FIRST_STEPS: &[&str] = &[
     "The walker @ stands at the start of the path. \u{1}next-limit\u{1} runs to the first limit point: there the edge lets go.",
-    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the pull-off;      \u{1}undo\u{1} takes the last command back, whatever it was.",
-    "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its      unit where the preset has units.",
-    "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the      displacement.",
+    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the pull-off; \u{1}undo\u{1} takes the last command back, whatever it was.",
+    "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
+    "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
     "\u{1}next-view\u{1} shows the pressure, the gap, the energy; \u{1}cross-hair\u{1} reads numbers off the chart.",
-    "\u{1}save-as\u{1} keeps the preset under a name of yours, \u{1}export\u{1} writes curve, walk, events or a figure, and      \u{1}open\u{1} lists the presets. A session is kept without asking: pulloff --resume goes on with it.",
+    "\u{1}save-as\u{1} keeps the preset under a name of yours, \u{1}export\u{1} writes curve, walk, events or a figure, and \u{1}open\u{1} lists the presets. A session is kept without asking: pulloff --resume goes on with it.",
 ];
 
 /// The same.
 const READING: &[&str] = &[
     "The curve holds every equilibrium of one contact disc: approach δ, force P (tension is negative) and contact \
-     radius s. On its unstable parts (dotted) the contact would not stay under the control chosen.",
-    "v marks a limit point of that control: there the edge lets go and runs, at constant control, to the next stable \
-     part, and the energy between is lost. d and p mark the limit points of displacement and force. Not every limit \
-     point is on the quasi-static path: the events are those where the edge lets go on it.",
-    "! marks states that cannot be: outside the disc the next crest would touch. They stand behind the events. \
+     radius s. On its unstable parts (broken lines) the contact would not stay under the control chosen.",
+    "A number marks an event of the table: a limit point where the edge lets go and runs, at constant control, to the \
+     next stable part, and the energy between is lost. A dot is a limit point that is not on the quasi-static path.",
+    "States that cannot be have the colour of a warning, or ! without colours: outside the disc the next crest would \
+     touch. They stand behind the events. \
      The real path has rings of contact there: its loop is drawn with l (loading) and u (unloading), and \u{1}events\u{1} lists it.",
     "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap \
-     outside it and the potential over the radius at the walker's state, and the unloading with its losses hatched. \
+     outside it and the potential over the radius at the walker's state, and the unloading with its losses shaded. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
      crests.",
-    "Along the curve w marks the states walked, j a jump and b what branches off; letters and dashes tell lines apart \
-     without colour.",
+    "What was walked is bright; a jump and what branches off are broken lines. Without colours, letters along the lines \
+     tell them apart.",
     "Arrows move the chart, or the cross-hair, while Charts is the selected panel.",
     "The digits are an estimate of how far force and contact radius can be trusted; in the basis of rings, more rings give more.",
 ];
@@ -48,7 +48,7 @@ const SHORT: &[(&str, &str)] = &[
     ("P/Pc", "the force over the pull-off force of the smooth sphere, 3πγR/2"),
     ("A/λ  λ/R", "height of the waves over their length, their length over the radius of the sphere"),
     ("γ'", "2πγ/(E*R): adhesion against stiffness"),
-    ("λ²/AR", "above 8.58 the gap rises all the way; below it has rings that do not touch without adhesion"),
+    ("λ²/AR", "above 8.58 the gap rises all the way out; below, it has valleys around the axis"),
     ("α", "Johnson's √(2γλ/(π²E*A²)): large where adhesion flattens the waves"),
     ("μ", "Tabor's number: from 5 on the adhesion acts at the edge alone, as computed here"),
     ("crest 8", "the crest nearest to the edge, counted from the axis; 8>7: from one to the next"),
