@@ -45,12 +45,17 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
         Role::Starts => of(styles.smooth, Beneath, true, ','),
     };
     // Where colours are few a letter along the curve tells it.
-    let is_lettered = match role {
-        Role::Smooth | Role::Exact | Role::Envelope | Role::Pin(_) | Role::Branch => true,
-        Role::Loading | Role::Unloading => true,
-        Role::Inadmissible => true,
-        _ => false,
-    };
+    let is_lettered = matches!(
+        role,
+        Role::Smooth
+            | Role::Exact
+            | Role::Envelope
+            | Role::Pin(_)
+            | Role::Branch
+            | Role::Loading
+            | Role::Unloading
+            | Role::Inadmissible
+    );
     let letter =
         (is_lettered && (theme.has_few_colours() || theme.charts == Charts::Ascii)).then_some(stroke.symbol);
     Stroke { letter, ..stroke }
