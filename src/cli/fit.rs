@@ -431,8 +431,8 @@ impl Table {
 
     /// Whether the file was fitted before, in the same way.
     fn has(&self, path: &Path) -> bool {
-        let fingerprint = self.fingerprint(path);
-        self.rows.iter().any(|row| row.last() == Some(&fingerprint))
+        let (shown, fingerprint) = (show_path(path), self.fingerprint(path));
+        self.rows.iter().any(|row| row.first() == Some(&shown) && row.last() == Some(&fingerprint))
     }
 
     /// Puts a row in, in place of an older one of the same file; one without a fingerprint is tried again by a rerun.

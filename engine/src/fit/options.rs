@@ -85,6 +85,12 @@ pub enum FitError {
         /// How many are wanted.
         needed: usize,
     },
+    /// Loading alone, on a gap with waves.
+    #[error(
+        "loading on a gap with waves takes another path than unloading, with rings of contact, and is not fitted: use the \
+         retraction"
+    )]
+    Loading,
     /// No start gives a curve that comes near to the points.
     #[error(
         "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"

@@ -11,7 +11,7 @@ use super::solve::{Solved, solve};
 use super::start::{Tried, start};
 use crate::gap::Gap;
 use crate::measured::{Abscissa, Branches, Points, Segment};
-use crate::preset::{Preset, Value};
+use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::Start;
 use crate::units::Quantity;
 use nalgebra::DVector;
@@ -260,10 +260,16 @@ fn problem(
     // Values far off would be refused for where the path of the preset starts, which means nothing here.
     (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
     let has_waves = preset.gap.feature_length().is_some();
+    if preset.basis != BasisSpec::Exact {
+        notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
+    }
     let mut data = Vec::new();
     for branch in &branches.list {
         let loading = branch.segment == Segment::Approach;
-        if loading && has_waves && options.asked.segment.is_none() && branches.list.len() > 1 {
+        if loading && has_waves {
+            if branches.list.len() == 1 {
+                return Err(FitError::Loading);
+            }
             notes.push(format!(
                 "the {} points of the approach are left out: on a gap with waves loading takes another path, with rings of contact",
                 branch.attached.len() + branch.free.len()
