@@ -60,7 +60,7 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
     assert_eq!(contacts.len(), 2);
     assert!(
         (contacts.rings[0][1] - 0.106_108_4).abs() < 1e-6
-            && node.state.contact_radius == contacts.outermost()
+            && node.state.contact_radius.to_bits() == contacts.outermost().to_bits()
     );
     let state = node.state;
     session.does(Command::Steps(2));

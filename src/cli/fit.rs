@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Files with measured curves, and behind them a preset's name or file (ending in .toml); the wavy sphere when left out
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     paths: Vec<OsString>,
-    /// The keys to fit, dotted or by their letters: material.effective_modulus,material.work_of_adhesion or E*,gamma; also
+    /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma; also
     /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt
     #[arg(long, value_name = "KEY,...", required = true, value_delimiter = ',')]
     free: Vec<String>,
@@ -301,7 +301,7 @@ impl Arguments {
         {
             let Some(text) = text else { continue };
             let sigma = number(what, key, text)?;
-            if !(sigma > 0.0) {
+            if sigma.is_nan() || sigma <= 0.0 {
                 return Err(Failure::Usage(format!(
                     "{what} {}: a standard deviation is above 0",
                     quote(text)

@@ -89,15 +89,12 @@ fn axes(preset: &Preset) -> Option<[Axis; 2]> {
         ADHESIONS.iter().find_map(|key| Some((*key, number(key)?))).filter(|(_, x)| *x > 0.0)?;
     let factor = 10f64.powf(DECADES);
     let y = Axis::new(key, [adhesion / factor, adhesion * factor], true, 1.0).ok()?;
-    let x = match number(AMPLITUDE) {
-        Some(amplitude) => {
-            let top = if amplitude > 0.0 { 2.0 * amplitude } else { 0.05 };
-            Axis::new(AMPLITUDE, [0.0, top], false, 1.0).ok()?
-        }
-        None => {
-            let unit = preset.gap.reference_length() * preset.material.effective_modulus;
-            Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 1.0 / unit).ok()?
-        }
+    let x = if let Some(amplitude) = number(AMPLITUDE) {
+        let top = if amplitude > 0.0 { 2.0 * amplitude } else { 0.05 };
+        Axis::new(AMPLITUDE, [0.0, top], false, 1.0)
+    } else {
+        let unit = preset.gap.reference_length() * preset.material.effective_modulus;
+        Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 1.0 / unit)
     };
-    Some([x, y])
+    Some([x.ok()?, y])
 }

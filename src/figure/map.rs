@@ -88,8 +88,7 @@ fn role(row: &RowReport) -> (Role, &'static str) {
     match (row.kind, row.stable) {
         ("fold", Some("inward")) => (Role::Unstable, "maximum, jumps outward"),
         ("fold", _) => (Role::Stable, "minimum, jumps inward"),
-        ("cusp", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
-        ("landing", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
+        ("cusp" | "landing", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
         ("landing", _) => (Role::Landings, "line of landings"),
         ("start", _) => (Role::Starts, "limit point at the start"),
         _ => (Role::Cusps, "line of cusps"),

@@ -30,12 +30,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let units = *case.units();
     let problem = &case.problem;
     let group = problem.shape.radius_of_curvature().map(|radius| TAU / (problem.effective_modulus * radius));
-    let y = match group {
-        Some(_) => Axis::pure("log γ'".to_owned()),
-        None => {
-            let axis = scale.axis("log γ", "energy per area", Quantity::EnergyPerArea);
-            Axis { symbol: axis.symbol, ..axis }
-        }
+    let y = if group.is_some() {
+        Axis::pure("log γ'".to_owned())
+    } else {
+        scale.axis("log γ", "energy per area", Quantity::EnergyPerArea)
     };
     let is_exact = subject.preset.basis == BasisSpec::Exact;
     let under = match case.control {

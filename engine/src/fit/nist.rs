@@ -1,5 +1,5 @@
 //! NIST's nonlinear sets: data, starts and certified values from the Statistical Reference Datasets,
-//! itl.nist.gov/div898/strd/nls/nls_main.shtml.
+//! <https://itl.nist.gov/div898/strd/nls/nls_main.shtml>.
 
 use super::*;
 

@@ -3,6 +3,7 @@
 use super::branches::Asked;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
+use crate::problem::Control;
 use crate::units::{DisplayUnits, UnitSystem};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -100,7 +101,6 @@ fn a_tab_file_states_its_spring_and_its_segments() {
     assert_eq!(branches.turned, [true, false], "heights fall as the tip comes down: {:?}", branches.notes);
     assert_eq!(branches.list.len(), 2);
     assert!(matches!(measured.points(&si(), None), Err(PointsError::NoSpring("position"))));
-    use crate::problem::Control;
     let both = points::stiffness(measured.stiffness, Control::Stiffness(0.05), &si()).unwrap_err();
     assert!(both.to_string().contains("path.control.stiffness is 0.05 N/m"), "{both}");
     assert_eq!(points::stiffness(measured.stiffness, Control::Displacement, &si()), Ok(Some(0.043)));

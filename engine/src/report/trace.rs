@@ -321,6 +321,9 @@ mod tests {
     use crate::{Material, Shape, Start};
     use std::cell::Cell;
 
+    /// A document that asks whether it is still wanted.
+    type Way<'a> = &'a dyn Fn(&dyn Fn(f64) -> bool) -> Option<CaseError>;
+
     #[test]
     fn a_document_that_is_no_longer_wanted_is_cancelled_at_every_question() {
         let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
@@ -328,7 +331,7 @@ mod tests {
         let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
         let trace = |go_on: &dyn Fn(f64) -> bool| TraceReport::compute_while(&preset, go_on).err();
         let unload = |go_on: &dyn Fn(f64) -> bool| UnloadReport::compute_while(&preset, go_on).err();
-        let ways: [&dyn Fn(&dyn Fn(f64) -> bool) -> Option<CaseError>; 2] = [&trace, &unload];
+        let ways: [Way<'_>; 2] = [&trace, &unload];
         for compute in ways {
             let asked = Cell::new(0_u32);
             let count = |_| {

@@ -62,14 +62,11 @@ impl Data {
             return Ok(hash.clone());
         }
         let text = text(rows);
-        let hash = match known {
-            Some(hash) => hash,
-            None => {
-                let hash = sha256(text.as_bytes());
-                self.known.push((Arc::clone(rows), hash.clone()));
-                hash
-            }
-        };
+        let hash = known.unwrap_or_else(|| {
+            let hash = sha256(text.as_bytes());
+            self.known.push((Arc::clone(rows), hash.clone()));
+            hash
+        });
         let path = self.path(&hash);
         // One that was altered is put right.
         if !read_bytes(&path, LARGEST).is_ok_and(|(there, _)| there == text.as_bytes()) {

@@ -19,7 +19,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
         |style: Style, meets, is_broken, symbol| Stroke { style, meets, is_broken, symbol, letter: None };
     let stroke = match role {
         Role::Zero => of(styles.dim, Beneath, false, ','),
-        Role::Undeformed => of(styles.smooth, Beneath, true, ','),
+        Role::Undeformed | Role::Starts => of(styles.smooth, Beneath, true, ','),
         Role::Smooth => of(styles.smooth, Shares, false, 's'),
         Role::Branch => of(styles.smooth, Beneath, true, 'b'),
         Role::Envelope => of(styles.envelope, Shares, false, 'k'),
@@ -29,20 +29,19 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
             of(styles.pins[at], Shares, false, DIGITS[at])
         }
         Role::Unstable => of(styles.curve, Shares, true, '.'),
-        Role::Stable | Role::Body | Role::Edges => of(styles.curve, Shares, false, 'o'),
+        Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => {
+            of(styles.curve, Shares, false, 'o')
+        }
         Role::Loading => of(styles.exact, Beneath, false, 'l'),
         Role::Unloading => of(styles.loops, Beneath, false, 'u'),
         Role::Inadmissible => of(styles.warning, Tints, false, '!'),
         Role::Contact => of(styles.walk, Shares, false, 'c'),
         Role::Walk => of(styles.walk, Tints, false, 'w'),
-        Role::Barrier => of(styles.aid, Beneath, true, '='),
+        Role::Barrier | Role::Level => of(styles.aid, Beneath, true, '='),
         Role::Device => of(styles.aid, Beneath, true, ':'),
         Role::Jump => of(styles.jump, Beneath, true, 'j'),
-        Role::Law | Role::Cusps => of(styles.curve, Shares, false, 'o'),
         Role::Landings => of(styles.exact, Shares, true, 'n'),
-        Role::Level => of(styles.aid, Beneath, true, '='),
         Role::Unchanged | Role::Twin => of(styles.smooth, Beneath, true, '.'),
-        Role::Starts => of(styles.smooth, Beneath, true, ','),
     };
     // Where colours are few a letter along the curve tells it.
     let is_lettered = matches!(
