@@ -9,6 +9,7 @@ use home::{Ended, Home};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::os::unix::process::ExitStatusExt;
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -147,7 +148,7 @@ fn a_table_and_csv_say_the_same() {
             assert_eq!((&row[0], &row[8]), (&*i.to_string(), &*k.to_string()));
             assert_eq!(row[2], *state["direction"].as_str().unwrap());
             for (column, value) in [(5, &state["force"]), (9, &edges[0]), (10, &edges[1])] {
-                assert_eq!(row[column].parse::<f64>().unwrap(), number(value));
+                assert_eq!(row[column].parse::<f64>().unwrap().to_bits(), number(value).to_bits());
             }
         }
     }
@@ -278,7 +279,6 @@ fn a_signal_ends_it_and_leaves_no_file() {
     std::thread::sleep(Duration::from_millis(300));
     kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     let output = child.wait_with_output().unwrap();
-    use std::os::unix::process::ExitStatusExt;
     let ended = output.status.signal() == Some(2) || output.status.code() == Some(130);
     assert!(ended, "{:?} {}", output.status, String::from_utf8_lossy(&output.stderr));
     assert!(!home.path("loop.json").exists());

@@ -128,6 +128,8 @@ fn every_view_a_closer_look_and_a_pin() {
         "unloading: P/Pc",
         "cycle: P/Pc",
         "contacts over",
+        "limit points under",
+        "where snaps begin",
     ] {
         pty.keys("t");
         pty.wait_for(|screen| screen.contains(title), title);

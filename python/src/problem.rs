@@ -158,7 +158,7 @@ impl Problem {
                 Value::Number(x) => all.set_item(&*row.key, x)?,
                 Value::Integer(n) => all.set_item(&*row.key, n)?,
                 Value::Control(Control::Stiffness(k)) => {
-                    all.set_item(&*row.key, format!("stiffness={k:?}"))?
+                    all.set_item(&*row.key, format!("stiffness={k:?}"))?;
                 }
                 other => all.set_item(&*row.key, other.to_string())?,
             }

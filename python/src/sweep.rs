@@ -140,7 +140,7 @@ fn run(
 fn columns<'py>(py: Python<'py>, spec: &Spec, made: &[Measured]) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let rows = || 0..made.len() as u64;
-    all.set_item("row", PyArray1::from_iter(py, rows().map(|row| row.cast_signed())))?;
+    all.set_item("row", PyArray1::from_iter(py, rows().map(u64::cast_signed)))?;
     let values: Vec<Vec<Value>> = rows().map(|row| spec.values(row)).collect();
     for (at, SweepAxis { key, .. }) in spec.axes.iter().enumerate() {
         let axis = || values.iter().filter_map(|row| row.get(at));

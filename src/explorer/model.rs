@@ -194,6 +194,10 @@ pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
 impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
+        let stiffness = match loaded.preset.path.control {
+            Control::Stiffness(k) => Some(k),
+            Control::Displacement | Control::Force => None,
+        };
         let mut model = Self {
             session: 0,
             saved: loaded.preset.clone(),
@@ -211,7 +215,7 @@ impl Model {
             cycle_wanted: None,
             map: None,
             map_wanted: None,
-            stiffness: None,
+            stiffness,
             device: None,
             history: History::default(),
             journal: Journal::default(),

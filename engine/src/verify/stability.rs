@@ -41,7 +41,7 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
         .map(|control| {
             let law = law(control);
             let radii = points(control);
-            let what = format!("adhesion at the limit points under {control}, worst of {}", radii.len());
+            let what = format!("limit points under {control}, worst of {}", radii.len());
             let pairs = radii.iter().map(|s| (law.critical(*s).unwrap_or(f64::NAN), gamma));
             Row::worst(what, pairs, gamma, BOUND)
         })

@@ -67,7 +67,10 @@ pub fn glyph(role: Role, theme: Theme) -> String {
     if stroke.letter.is_some() || is_pin || theme.charts == Charts::Ascii {
         return stroke.symbol.to_string();
     }
-    let tells = matches!(role, Role::Contact | Role::Jump | Role::Walk | Role::Barrier | Role::Device);
+    let tells = matches!(
+        role,
+        Role::Contact | Role::Jump | Role::Walk | Role::Barrier | Role::Device | Role::Level | Role::Starts
+    );
     if tells && theme.palette == Palette::Mono {
         return stroke.symbol.to_string();
     }

@@ -44,7 +44,10 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let above = if in_groups { 2 } else { ABOVE };
     groups.truncate(height.saturating_sub(parameters.min(above)));
     let rows = height - groups.len();
-    let first = (model.parameter + 1).saturating_sub(rows).min(parameters.saturating_sub(rows));
+    // By half a window at a time: a line at a time would send the whole list for every key.
+    let half = (rows / 2).max(1);
+    let first = (model.parameter + 1).saturating_sub(rows).div_ceil(half) * half;
+    let first = first.min(parameters.saturating_sub(rows));
     Arranged { inner, parameters, first, rows, groups }
 }
 
