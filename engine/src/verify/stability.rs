@@ -41,7 +41,7 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
         .map(|control| {
             let law = law(control);
             let radii = points(control);
-            let what = format!("limit points under {control}, worst of {}", radii.len());
+            let what = format!("{control}: {} limit points, worst", radii.len());
             let pairs = radii.iter().map(|s| (law.critical(*s).unwrap_or(f64::NAN), gamma));
             Row::worst(what, pairs, gamma, BOUND)
         })
@@ -49,7 +49,7 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
     let grips = law(Control::Displacement);
     let ninth =
         points(Control::Force).into_iter().map(|s| (grips.critical(s).unwrap_or(f64::NAN), 9.0 * gamma));
-    rows.push(Row::worst("nine times the adhesion under displacement", ninth, gamma, 9.0 * BOUND));
+    rows.push(Row::worst("nine times that under displacement", ninth, gamma, 9.0 * BOUND));
     let (cusps, _) = grips.cusps([0.0, figure.start]);
     let wave = exact.wave().unwrap_or(figure.start);
     for (number, cusp) in cusps.iter().take(CUSPS).enumerate() {
