@@ -4,7 +4,7 @@
 //! cargo run --example make_curve > presets/data/lens.csv
 //! ```
 //!
-//! The truth is JKR's sphere (Proc. R. Soc. A 324, 301 (1971)) of R = 1 mm, E* = 1 MPa and γ = 50 `mJ/m²` behind a load cell of
+//! The truth is JKR's sphere (Proc. R. Soc. A 324, 301 (1971)) of R = 1 mm, E* = 1 `MPa` and γ = 50 mJ/m² behind a load cell of
 //! 500 N/m, so that the way of the stage is Δ = δ + P/k. It is driven evenly, jumps into contact at Δ = 0, is pressed to 1 mN and
 //! pulled off. The instrument has a zero of its own (12.3 µm and 4 µN), a noise of 10 nm and 2 µN, and rounds to 1 nm and 0.1 µN;
 //! one sample in two hundred is off by 30 µN. All random numbers come from one seed, so the file is the same whoever makes it.

@@ -319,7 +319,8 @@ mod tests {
             draw(layers, &mut buffer, PLOT, Charts::Braille);
             buffer
         };
-        let [alone, all] = [draw_all(&[plain.clone()]), draw_all(&[beneath, plain, tint])];
+        let [alone, all] =
+            [draw_all(std::slice::from_ref(&plain)), draw_all(&[beneath, plain.clone(), tint])];
         let mut tinted = 0;
         for at in PLOT.positions().filter(|at| alone[*at].fg == Color::Red && alone[*at].symbol() != "r") {
             assert_eq!((alone[at].symbol(), all[at].fg), (all[at].symbol(), Color::Green), "{at}");

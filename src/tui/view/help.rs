@@ -64,7 +64,7 @@ const SHORT: &[(&str, &str)] = &[
     ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),
 ];
 
-/// The pages by their names, in the order of [`entries`].
+/// The pages by their names, in their order.
 pub const PAGES: [&str; 3] = ["how to read it", "first steps", "keys"];
 
 /// Where what a key does begins.

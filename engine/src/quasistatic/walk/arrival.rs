@@ -48,7 +48,7 @@ pub enum WalkEnd {
     EdgesMeet(f64),
     /// The branch ends: the width of the contact at this radius, a length, goes to nothing.
     Vanishes(f64),
-    /// At [`ROOM`] times the start radius.
+    /// At three times the start radius.
     OutOfRange,
     /// It could not go on.
     Failed(WalkFailure),
