@@ -128,7 +128,7 @@ fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
         let digits = usize::from(percent.abs() < 9.95);
         return format!("{percent:+.digits$} %").replace('-', "−");
     }
-    let text = said(&preset.units, super::run::quantity(preset, &parameter.key()), after - before);
+    let text = said(&preset.units, super::fitted::quantity(preset, &parameter.key()), after - before);
     if after >= before { format!("+{text}") } else { text.replacen('-', "−", 1) }
 }
 

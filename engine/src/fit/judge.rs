@@ -1,8 +1,8 @@
 //! What is to be doubted about a fit.
 
+use super::fitted::Fitted;
 use super::path::Foot;
 use super::problem::{ADHESION, Problem, Target};
-use super::run::Fitted;
 use super::solve::{Solved, solve};
 use crate::measured::Segment;
 use crate::preset::{Preset, Value};

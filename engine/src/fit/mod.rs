@@ -19,6 +19,7 @@
 
 pub mod determined;
 pub mod distance;
+pub mod fitted;
 pub mod intervals;
 pub mod judge;
 pub mod least_squares;
@@ -29,8 +30,9 @@ pub mod run;
 pub mod solve;
 pub mod start;
 
+pub use fitted::Fitted;
 pub use options::{FitError, Options};
-pub use run::{Fit, Fitted, fit};
+pub use run::{Fit, fit};
 
 #[cfg(test)]
 mod tests;

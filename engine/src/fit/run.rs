@@ -1,19 +1,19 @@
 //! A whole fit: branches, start, minimum, errors, doubts.
 
 use super::determined::determined;
-use super::intervals::{Bootstrapped, bootstrap, profile};
+use super::fitted::Fitted;
+use super::intervals::{bootstrap, profile};
 use super::judge::{doubts, of_spring};
 use super::least_squares::Ending;
 use super::options::{FitError, Options, target};
 use super::path::Reach;
-use super::problem::{ADHESION, BASELINE, Datum, Instrument, OFFSET, Parameter, Problem, TILT, Target};
+use super::problem::{ADHESION, BASELINE, Datum, Instrument, Parameter, Problem, Target};
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
 use crate::gap::Gap;
 use crate::measured::{Abscissa, Branches, Points, Segment};
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::Start;
-use crate::units::Quantity;
 use nalgebra::DVector;
 
 /// Points in contact for each free parameter, at least.
@@ -24,23 +24,6 @@ const ROUNDS: usize = 200;
 const OUTLIER: f64 = 4.0;
 /// δ₀ and P₀ begin with a unit of their ranges.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
-
-/// One fitted value, in base units.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
-    /// Its dotted key.
-    pub key: String,
-    /// The value.
-    pub value: f64,
-    /// Its standard error; `None` where it is not determined.
-    pub standard_error: Option<f64>,
-    /// Where the fit started.
-    pub start: f64,
-    /// The 95 % interval by the profile of χ², where it was asked for and found.
-    pub profile: Option<[f64; 2]>,
-    /// What the bootstrap found.
-    pub bootstrap: Option<Bootstrapped>,
-}
 
 /// One point beside the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,18 +77,6 @@ pub struct Fit {
     pub instrument: Instrument,
     /// The points beside the fit.
     pub residuals: Vec<Residual>,
-}
-
-/// What a key measures.
-#[must_use]
-pub fn quantity(preset: &Preset, key: &str) -> Quantity {
-    match key {
-        OFFSET => Quantity::Length,
-        BASELINE => Quantity::Force,
-        TILT => Quantity::ForcePerLength,
-        key if key.starts_with(ADHESION) => Quantity::EnergyPerArea,
-        key => preset.row(key).map_or(Quantity::Number, |row| row.quantity),
-    }
 }
 
 /// Fits the free keys of `preset`, its device among it, to `points`; `go_on` is told the share that is done, and stops it by

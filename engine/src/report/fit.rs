@@ -2,9 +2,10 @@
 
 use super::number::{exact, short, significant};
 use super::table::aligned;
+use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
-use crate::fit::run::{Fit, Residual, quantity};
+use crate::fit::run::{Fit, Residual};
 use crate::measured::{Abscissa, Segment};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;

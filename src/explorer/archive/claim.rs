@@ -1,7 +1,8 @@
 //! The right to write one session.
 
 use super::data::Data;
-use super::{ArchiveError, ENDING, failed, lock_of};
+use super::error::{ArchiveError, failed};
+use super::{ENDING, lock_of};
 use crate::explorer::session::Document;
 use crate::store::lock::FileLock;
 use crate::store::{Overwrite, write_atomically};

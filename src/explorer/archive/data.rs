@@ -5,7 +5,7 @@
 //! The lock of the folder `data` is held from the look at the file until the session that refers to it is written, and
 //! whenever files that no session refers to are removed.
 
-use super::{ArchiveError, LARGEST, failed};
+use super::error::{ArchiveError, LARGEST, failed};
 use crate::store::file::{FileError, read_bytes};
 use crate::store::hash::{DIGITS, sha256};
 use crate::store::lock::{FolderLock, PATIENCE};

@@ -8,21 +8,23 @@
 //! |---|---|
 //! | `mod.rs` | the folder: list, load, delete, and room for new ones |
 //! | `data` | the rows of measured profiles, beside the sessions that use them |
+//! | `error` | why a session is not found, read or written |
 //! | [`claim`] | the right to write one session |
 //! | [`autosave`] | writes the newest state of a session every few seconds and at its end |
 
 pub mod autosave;
 pub mod claim;
 mod data;
+mod error;
 
 pub use autosave::Autosave;
 pub use claim::Claim;
+pub use error::ArchiveError;
 
 use self::data::{Data, named_in};
+use self::error::{LARGEST, failed};
 use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
-use crate::mend::Mend;
-use crate::store::WriteError;
-use crate::store::file::{FileError, read_bytes};
+use crate::store::file::read_bytes;
 use crate::store::lock::FileLock;
 use crate::store::name::is_well_formed;
 use etcetera::BaseStrategy;
@@ -33,10 +35,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
-use thiserror::Error;
 
-/// The largest session that is read, in bytes.
-const LARGEST: u64 = 256 << 20;
 /// So many sessions are kept,
 const MOST: usize = 50;
 /// of so many bytes together; older ones make room for newer.
@@ -47,67 +46,6 @@ const STALE: Duration = Duration::from_secs(3600);
 const ENDING: &str = "json";
 /// The ending of one that could not be read, kept aside.
 const ASIDE: &str = "damaged";
-
-/// Why a session is not found, read or written, in one line. Names and paths in it are safe to show.
-#[derive(Debug, Error)]
-pub enum ArchiveError {
-    /// Neither a state folder nor a home folder is known.
-    #[error("no folder for sessions: neither XDG_STATE_HOME nor HOME is set")]
-    NoFolder,
-    #[error("no session is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
-    NotFound { name: String, meant: Option<String> },
-    #[error("there is no session to resume")]
-    Empty,
-    #[error("the session {name} is running in another pulloff")]
-    Running { name: String },
-    #[error("{path}: {cause}")]
-    Unreadable { path: String, cause: Unreadable },
-    /// The rows of a profile are not as they were written.
-    #[error("{path}: the rows of its profile \"{name}\" are lost: {why}")]
-    Data { path: String, name: String, why: String },
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    #[error("the session cannot be written: {0}")]
-    Document(serde_json::Error),
-    #[error("{path}: cannot {doing}: {cause}")]
-    Io { path: String, doing: &'static str, cause: io::Error },
-}
-
-impl Mend for ArchiveError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::Document(_) => false,
-            Self::NoFolder
-            | Self::NotFound { .. }
-            | Self::Empty
-            | Self::Running { .. }
-            | Self::Data { .. }
-            | Self::Unreadable { .. } => true,
-        }
-    }
-}
-
-impl ArchiveError {
-    /// Why, without the path: for a line that is cut where the screen ends.
-    fn brief(&self) -> String {
-        match self {
-            Self::Write(WriteError::Io { doing, cause, .. }) | Self::Io { doing, cause, .. } => {
-                format!("cannot {doing}: {cause}")
-            }
-            other => other.to_string(),
-        }
-    }
-}
-
-fn failed(path: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> ArchiveError {
-    let path = show_path(path);
-    move |cause| ArchiveError::Io { path, doing, cause }
-}
 
 /// One line of the list of sessions.
 #[derive(Debug, Clone, PartialEq)]
