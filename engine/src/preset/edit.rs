@@ -15,7 +15,7 @@ use super::rows::parameter;
 use super::schema::Key;
 use super::shape::is_range;
 use super::value::Value as Number;
-use super::write::{FOLLOWING, comment, following, head, line, toml, toml_of_parameter};
+use super::write::{COMMENTS, FOLLOWING, comment, following, head, line, toml, toml_of_parameter};
 use crate::gap::Shape;
 use crate::problem::Control;
 use std::collections::{BTreeMap, BTreeSet};
@@ -461,7 +461,7 @@ impl Edits {
     }
 
     fn made(mut self, text: &str) -> String {
-        let values = self.values.into_values().map(|(place, value)| (place, printed(&value)));
+        let values = self.values.into_values().map(|(place, value)| in_line(text, place, &printed(&value)));
         self.places.extend(values);
         // What is added where something begins or ends stands before or behind it.
         self.places.sort_by_key(|(place, _)| (place.start, place.end));
@@ -493,6 +493,27 @@ impl Edits {
             made
         }
     }
+}
+
+/// The value `new` in its place, with the spaces behind it: a comment on its line stays in its column where it can.
+fn in_line(text: &str, place: Range<usize>, new: &str) -> (Range<usize>, String) {
+    let behind = &text[place.end..];
+    let spaces = behind.len() - behind.trim_start_matches(' ').len();
+    let is_one_line = !new.contains('\n') && !text[place.clone()].contains('\n');
+    if spaces == 0 || !is_one_line || !behind[spaces..].starts_with('#') {
+        return (place, new.to_owned());
+    }
+    let start = text[..place.start].rfind('\n').map_or(0, |at| at + 1);
+    let before = text[start..place.end].chars().count();
+    let after = text[start..place.start].chars().count() + new.chars().count();
+    let column = match spaces {
+        // One that was pushed out of the column of comments goes back to it.
+        1 if before >= COMMENTS => COMMENTS + 1,
+        1 => after,
+        more => before + more,
+    };
+    let spaces_after = column.saturating_sub(after).max(1);
+    (place.start..place.end + spaces, format!("{new}{}", " ".repeat(spaces_after)))
 }
 
 /// Gives the place `route` within `value` another value, with the spaces and comments around the one before, or takes it

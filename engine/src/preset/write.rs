@@ -50,6 +50,9 @@ pub(super) fn head(units: &UnitSystem) -> &'static str {
     }
 }
 
+/// The column at which comments begin, after a space.
+pub(super) const COMMENTS: usize = 40;
+
 /// The key that stands as a comment where it follows from others.
 pub(super) const FOLLOWING: &str = "path.end_contact_radius";
 
@@ -60,7 +63,7 @@ pub(super) fn following(row: &Parameter) -> String {
 
 /// A line of a key, its value and what it means.
 pub(super) fn line(name: &str, value: &str, comment: &str) -> String {
-    format!("{:<40}{comment}", format!("{name} = {value}")).trim_end().to_owned()
+    format!("{:<COMMENTS$}{comment}", format!("{name} = {value}")).trim_end().to_owned()
 }
 
 /// A parameter of a formula as TOML, with its range and its unit where it has them.
