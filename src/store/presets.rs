@@ -532,7 +532,8 @@ mod tests {
         fs::write(&path, mine).unwrap();
         let file = store.resolve(&path).unwrap();
         let loaded = store.load(&file, &["gap.amplitude=0.003"]).unwrap();
-        let changed = mine.replace("0.0025", "0.003");
+        // The comment stays in its column.
+        let changed = mine.replace("0.0025 ", "0.003  ");
         let text = |source: &Source| fs::read_to_string(source.path().unwrap()).unwrap();
         // Back to the file, under a name, and from there again.
         let known = Overwrite::IfUnchanged(loaded.fingerprint.unwrap());
