@@ -21,7 +21,10 @@ if ! { python3 -m venv "$work/venv" && "$work/venv/bin/pip" install --quiet hype
 fi
 export PULLOFF=$pulloff HOME=$work XDG_CONFIG_HOME=$work
 cd "$work"
-"$pulloff" sweep "$cluster/sweep.toml" -o whole.csv
+# The example with more rows: a shard must take long enough for two to run at once.
+spec=$work/sweep.toml
+sed 's/count = 40/count = 160/' "$cluster/sweep.toml" >"$spec"
+"$pulloff" sweep "$spec" -o whole.csv
 
 same() {
     cmp whole.csv "$1" && cmp whole.csv.spec.toml "$1.spec.toml" && echo "hyperqueue.sh: $2"
@@ -29,7 +32,7 @@ same() {
 
 # Starts the cluster in a session of its own.
 start() {
-    setsid "$work/venv/bin/python" "$cluster/hyperqueue_sweep.py" "$cluster/sweep.toml" "$1" --shards 8 \
+    setsid "$work/venv/bin/python" "$cluster/hyperqueue_sweep.py" "$spec" "$1" --shards 8 \
         >>"$1.log" 2>&1 &
     started=$!
 }
@@ -61,7 +64,7 @@ same one.csv 'a task killed half-way: equal to the single run'
 
 # One of the two workers is lost half-way: what it runs ends with it, or goes on while the shard is started again.
 for outcome in killed running; do
-    "$work/venv/bin/python" "$tests/lose_worker.py" "$outcome" "$cluster/sweep.toml" "lost-$outcome.csv" --shards 8 \
+    "$work/venv/bin/python" "$tests/lose_worker.py" "$outcome" "$spec" "lost-$outcome.csv" --shards 8 \
         >"lost-$outcome.log" 2>&1 || { cat "lost-$outcome.log" "lost-$outcome.csv".parts/*.log >&2; exit 1; }
     tail -n 1 "lost-$outcome.log"
     same "lost-$outcome.csv" "a worker lost half-way, what it ran $outcome: equal to the single run"
@@ -81,7 +84,7 @@ started=
 same all.csv "the whole cluster killed half-way with $kept lines: equal to the single run"
 
 for task in $(seq 8); do
-    SLURM_ARRAY_TASK_ID=$task SLURM_ARRAY_TASK_COUNT=8 bash "$cluster/slurm.sh" "$cluster/sweep.toml" slurm.csv
+    SLURM_ARRAY_TASK_ID=$task SLURM_ARRAY_TASK_COUNT=8 bash "$cluster/slurm.sh" "$spec" slurm.csv
 done
 "$pulloff" sweep merge slurm.csv.parts/*.csv -o slurm.csv
 same slurm.csv 'the tasks of a job array: equal to the single run'
