@@ -96,7 +96,7 @@ fn role(row: &RowReport) -> (Role, &'static str) {
 }
 
 /// The lines and marks of `report` at these places.
-pub fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
+fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
     let place = |row: &RowReport| (x.at(row.x), y.at(row.y));
     let is_map = report.counts.is_some();
     let (mut lines, mut marks): (Vec<Line>, Vec<Mark>) = (Vec::new(), Vec::new());
@@ -130,7 +130,7 @@ pub fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark
 /// The number of snaps in each region of the map, where it is widest.
 ///
 /// A region is cells next to each other with one count; its label stands on the cell that is farthest from all others.
-pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
+fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
     /// Nearer to its border than so many cells a region has no room for a number.
     const ROOM: usize = 2;
     let Some(counts) = &report.counts else { return Vec::new() };
@@ -184,8 +184,20 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
     marks
 }
 
+/// All that is drawn of `report` over these axes, with `preset` at its place.
+pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>, Bounds) {
+    let (lines, mut marks) = drawn(report, x, y);
+    marks.extend(counts(report, x, y));
+    let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
+    if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
+        marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });
+    }
+    let bounds = bounds(x, y, &lines);
+    (lines, marks, bounds)
+}
+
 /// Bounds of the axes, or of what is drawn where an axis follows from it.
-pub fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
+fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
     let found = Bounds::of(lines.iter().flat_map(|line| line.points.iter().copied()));
     Bounds { x: x.ends.unwrap_or(found.x), y: y.ends.unwrap_or(found.y) }
 }
@@ -194,13 +206,7 @@ pub fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let places = |axis| Places::of(axis, preset, report.control, true);
     let (x, y) = (places(&report.x), places(&report.y));
-    let (lines, mut marks) = drawn(report, &x, &y);
-    marks.extend(counts(report, &x, &y));
-    let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
-    if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
-        marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });
-    }
-    let bounds = bounds(&x, &y, &lines);
+    let (lines, marks, bounds) = laid(report, preset, &x, &y);
     let title = match &report.onset {
         Some(onset) => {
             let smallest = significant(onset.amplitude_over_wavelength, 4);

@@ -1,8 +1,7 @@
 //! Lines in two numbers at which snaps begin or end, and limit points over one, on paper.
 
 use super::chart::{Chart, ChartAxis, Run};
-use crate::figure::map::{Places, bounds, counts, drawn};
-use crate::figure::{Mark, Sign};
+use crate::figure::map::{Places, laid};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
@@ -11,13 +10,7 @@ use pulloff_engine::report::map::AxisReport;
 pub fn chart(report: &MapReport, preset: &Preset) -> Chart {
     let places = |axis: &AxisReport| Places::of(axis, preset, report.control, false);
     let (x, y) = (places(&report.x), places(&report.y));
-    let (lines, mut marks) = drawn(report, &x, &y);
-    marks.extend(counts(report, &x, &y));
-    let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
-    if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
-        marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });
-    }
-    let bounds = bounds(&x, &y, &lines);
+    let (lines, marks, bounds) = laid(report, preset, &x, &y);
     let axis = |places: &Places, of: &AxisReport| ChartAxis {
         title: places.axis.title(),
         run: if of.logarithmic { Run::Logarithmic } else { Run::Linear },
