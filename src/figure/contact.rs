@@ -7,20 +7,14 @@ use std::f64::consts::PI;
 /// Corners of half a circle.
 const CORNERS: u32 = 180;
 
-/// What is seen outside the outermost edge, as a share of its radius.
-const AROUND: f64 = 0.25;
-
-/// Lays the contacts, as [inner, outer] on the axis of radii, and the crests on a figure.
-pub fn lay(figure: &mut Figure, contacts: &[[f64; 2]], crests: impl Iterator<Item = f64>, seen: f64) {
-    let outermost = contacts.last().map_or(0.0, |contact| contact[1]);
-    let reach = seen.min((1.0 + AROUND) * outermost).max(outermost);
+/// Lays the contacts, as [inner, outer] on the axis of radii, and the crests on a figure that shows radii up to `reach`.
+pub fn lay(figure: &mut Figure, contacts: &[[f64; 2]], crests: impl Iterator<Item = f64>, reach: f64) {
     figure.bounds = Bounds { x: [-reach, reach], y: [0.0, reach] };
     for [inner, outer] in contacts {
         let outline = half(*outer).into_iter().chain(half(*inner).into_iter().rev()).collect();
         figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
     }
-    let rings = crests.take_while(|r| *r <= reach);
-    figure.lines.extend(rings.map(|r| Line::new(Role::Undeformed, "crest", half(r))));
+    figure.lines.extend(crests.map(|r| Line::new(Role::Undeformed, "crest", half(r))));
     // The axis is no edge.
     let edges = contacts.iter().flatten().filter(|r| **r > 0.0);
     figure.lines.extend(edges.map(|r| Line::new(Role::Edges, "edge", half(*r))));

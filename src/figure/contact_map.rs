@@ -66,7 +66,7 @@ pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
     figure.marks.extend(report.events.iter().filter_map(|event| mark(event, way, scale)));
     if let Some(turn) = report.events.iter().find(|event| event.kind == "turn") {
         let at = way.at("loading", turn.control_value);
-        figure.lines.insert(0, Line::new(Role::Zero, "", vec![(at, 0.0), (at, figure.bounds.y[1])]));
+        figure.lines.insert(0, Line::new(Role::Level, "", vec![(at, 0.0), (at, figure.bounds.y[1])]));
     }
     figure
 }

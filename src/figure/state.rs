@@ -16,6 +16,8 @@ use pulloff_engine::units::Quantity;
 
 /// The pressure is singular at an adhesive edge: axes are fitted to the disc up to this share of its radius.
 const FITTED: f64 = 0.99;
+/// What is seen of the contact from above outside its edge, as a share of its radius.
+const AROUND: f64 = 0.1;
 /// Of the contact this share of what is shown outside is seen in the gap.
 const INSIDE: f64 = 0.3;
 
@@ -39,8 +41,11 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
         });
         return figure;
     };
-    let drawing = Drawing { scale, inside };
-    let radius = drawing.radius(inside.profile.contact_radius);
+    // A walk is watched in one window: as wide as the largest contact of its curve.
+    let radii = subject.curve.points.iter().map(|at| scale.radius(at.contact_radius));
+    let widest = if subject.walk.is_empty() { 0.0 } else { radii.fold(0.0, f64::max) };
+    let radius = scale.radius(inside.profile.contact_radius * inside.units.length);
+    let drawing = Drawing { scale, inside, widest: widest.max(radius) };
     figure.title = format!("{}, {} {}", figure.title, scale.radius_axis("s").symbol, significant(radius, 4));
     match view {
         View::Pressure => drawing.pressure(subject.curve.base.theory.exact_name, &mut figure),
@@ -65,6 +70,8 @@ fn potential_axis(scale: Scale<'_>, control: Control) -> Axis {
 struct Drawing<'a> {
     scale: Scale<'a>,
     inside: &'a Inside,
+    /// The largest contact radius to be seen, on its axis.
+    widest: f64,
 }
 
 impl Drawing<'_> {
@@ -90,8 +97,9 @@ impl Drawing<'_> {
     fn contact(&self, figure: &mut Figure) {
         let profile = &self.inside.profile;
         let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
-        let crests = self.crests(0.0, end).map(|r| self.radius(r));
-        contact::lay(figure, &self.contacts(), crests, self.radius(end));
+        let reach = (1.0 + AROUND) * self.widest;
+        let crests = self.crests(0.0, end).map(|r| self.radius(r)).take_while(|r| *r <= reach);
+        contact::lay(figure, &self.contacts(), crests, reach);
     }
 
     /// The edges as marks; the axis is none.
@@ -114,7 +122,7 @@ impl Drawing<'_> {
             })
         };
         let seen = computed.iter().chain(&exact).filter(is_seen).copied();
-        figure.bounds = Bounds::of(seen.chain([(0.0, 0.0), (edge, 0.0)]));
+        figure.bounds = Bounds::of(seen.chain([(0.0, 0.0), (self.widest, 0.0)]));
         figure.lines.push(Line::new(Role::Zero, "", vec![(0.0, 0.0), (edge, 0.0)]));
         if !exact.is_empty() {
             figure.lines.push(Line::new(Role::Exact, exact_name, exact));

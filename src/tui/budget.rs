@@ -131,19 +131,22 @@ fn costliest_step(preset: &str, size: (u16, u16), theme: Theme, views: usize) ->
 }
 
 /// A plain key costs so much in the median; where the list of parameters scrolls, a little more.
-const MEDIAN: [usize; 2] = [130, 155];
+const MEDIAN: [usize; 2] = [130, 150];
 
 #[test]
-fn a_value_turned_beside_a_pin_costs_at_most_four_kilobytes() {
-    for theme in THEMES {
+fn a_value_turned_beside_a_pin_costs_two_and_a_half_kilobytes() {
+    // Moved to λ, whose waves all move, the most of them: the whole curve is another then.
+    for (theme, way, most) in [(THEMES[0], "", 2500), (THEMES[1], "", 2500), (THEMES[0], "j", 3000)] {
         let counter = Counter::leak((120, 40), None, None);
         let mut display = Display::new(counter).unwrap();
         let mut session = Session::new("wavy-sphere", theme);
-        session.cost(&mut display, counter, 'p');
+        for key in way.chars().chain(['p']) {
+            session.cost(&mut display, counter, key);
+        }
         session.draw_all(&mut display);
         let costs: Vec<usize> =
             ">>>><<".chars().map(|key| session.cost(&mut display, counter, key)).collect();
-        assert!(costs.iter().all(|bytes| *bytes <= 4000), "{costs:?} {theme:?}");
+        assert!(costs.iter().all(|bytes| *bytes <= most), "{costs:?} {theme:?} {way:?}");
     }
 }
 
@@ -151,8 +154,8 @@ fn a_value_turned_beside_a_pin_costs_at_most_four_kilobytes() {
 fn idle_costs_nothing_and_a_move_little() {
     // On small screens most parameters make room for the groups when one of those is selected.
     for (size, theme, most) in [
-        ((80, 24), THEMES[0], 400),
-        ((100, 30), THEMES[0], 400),
+        ((80, 24), THEMES[0], 350),
+        ((100, 30), THEMES[0], 350),
         ((120, 40), THEMES[0], 300),
         ((120, 40), THEMES[1], 300),
     ] {
@@ -177,30 +180,31 @@ fn idle_costs_nothing_and_a_move_little() {
 }
 
 #[test]
-fn a_step_costs_less_than_two_kilobytes() {
+fn a_step_costs_less_than_one_and_a_half_kilobytes() {
     // Every view of a curve with jumps: the curves, the pressure, the gap, the potential, the unloading.
     for views in [0, 1, 2, 3, 4, 5, 6] {
         for theme in THEMES {
             let bytes = costliest_step("wavy-sphere", (120, 40), theme, views);
-            assert!(bytes < 2000, "{bytes} bytes in view {views}, {theme:?}");
+            assert!(bytes < 1500, "{bytes} bytes in view {views}, {theme:?}");
         }
     }
-    for (preset, size, views) in [
-        ("wavy-sphere", (80, 24), 3),
-        ("wavy-sphere", (160, 44), 3),
-        ("fig-1-hertz", (120, 40), 3),
-        ("fig-3-jkr", (120, 40), 0),
-        ("fig-10-force", (120, 40), 0),
+    // A larger screen shows more of it.
+    for (preset, size, views, most) in [
+        ("wavy-sphere", (80, 24), 3, 1500),
+        ("wavy-sphere", (160, 44), 3, 2000),
+        ("fig-1-hertz", (120, 40), 3, 1500),
+        ("fig-3-jkr", (120, 40), 0, 1500),
+        ("fig-10-force", (120, 40), 0, 1500),
     ] {
         let bytes = costliest_step(preset, size, THEMES[0], views);
-        assert!(bytes < 2700, "{bytes} bytes for {preset} at {size:?}");
+        assert!(bytes < most, "{bytes} bytes for {preset} at {size:?}");
     }
 }
 
 #[test]
 fn four_charts_of_a_large_screen_cost_no_more_than_their_number() {
     let [braille, ascii] = THEMES.map(|theme| costliest_step("wavy-sphere", (200, 60), theme, 0));
-    assert!(braille < 3000 && ascii < 1800, "{braille} and {ascii} bytes");
+    assert!(braille < 2500 && ascii < 1500, "{braille} and {ascii} bytes");
 }
 
 #[test]

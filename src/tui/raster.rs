@@ -2,7 +2,7 @@
 //!
 //! A solid line is stable, a broken one is not; which curve it is, its colour says, and where colours are few a letter
 //! along it. A cell that one curve crosses shows that curve. Curves that are compared share the cells in which they meet:
-//! these take their colours in turn, so that none hides another. Lines beneath them show where they are alone.
+//! these take their colours in turn, in runs of two or a few, so that none hides another. Lines beneath them show where they are alone.
 //!
 //! Distances are counted along the curve in character widths, a row counting twice, from its first point, so that the
 //! pattern does not depend on where its points lie. What is outside the window is passed over, however long.
@@ -13,7 +13,6 @@ use line_clipping::{LineSegment, Point, Window, cohen_sutherland};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
-use std::collections::HashMap;
 
 /// The distance between the dots of a line.
 const DENSE: f64 = 0.25;
@@ -115,25 +114,14 @@ fn owners(layers: &[Layer], cell: usize) -> impl Iterator<Item = usize> + '_ {
 pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -> Vec<Option<usize>> {
     let (width, height) = (usize::from(plot.width), usize::from(plot.height));
     let mut all = vec![None; width * height];
-    // How many cells the same layers have shared so far.
-    let mut turns: HashMap<Vec<usize>, usize> = HashMap::new();
-    // Column by column: neighbours along most curves follow each other.
-    for at in 0..width * height {
-        let (column, row) = (at / height, at % height);
-        let cell = row * width + column;
+    for cell in 0..width * height {
+        let (column, row) = (cell % width, cell / width);
         let meets = |kind: Meets| {
             owners(layers, cell).filter(move |at| layers[*at].stroke.meets == kind).collect::<Vec<_>>()
         };
         let (sharing, beneath, tints) = (meets(Meets::Shares), meets(Meets::Beneath), meets(Meets::Tints));
         let below = beneath.last().copied();
-        // Those that share a cell have it in turn, in runs of two.
-        let shared = if sharing.len() > 1 {
-            let turn = turns.entry(sharing.clone()).or_insert(0);
-            *turn += 1;
-            sharing.get((*turn - 1) / 2 % sharing.len()).copied()
-        } else {
-            sharing.first().copied()
-        };
+        let shared = sharing.get(turn(column, row, sharing.len())).copied();
         let Some(at) = shared.or(tints.last().copied()).or(below) else {
             continue;
         };
@@ -158,6 +146,20 @@ pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -
     }
     letters(layers, &all, buffer, plot);
     all
+}
+
+/// Which of so many curves has a cell that all of them cross.
+///
+/// By the place of the cell alone: a curve that moves a little leaves the colours elsewhere as they are. Along any line
+/// all have it equally often, in runs of two or a few: the shares of the steps have no common multiple.
+fn turn(column: usize, row: usize, count: usize) -> usize {
+    /// What a step of two columns, and one of a row, adds to the turn, in whole turns.
+    const STEPS: [f64; 2] = [0.381_966, 0.276_393];
+    let turns = STEPS[0] * (column / 2) as f64 + STEPS[1] * row as f64;
+    // From 0 to below the count.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let at = (turns.fract() * count as f64) as usize;
+    at.min(count.saturating_sub(1))
 }
 
 /// Letters stand where their curve is alone.
@@ -301,6 +303,21 @@ mod tests {
                     let letters =
                         alone.iter().filter(|at| buffer[(PLOT.x + at.0, PLOT.y + at.1)].symbol() == letter);
                     assert!(letters.count() > 0, "{charts:?} {color}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn along_any_line_all_have_their_share_of_the_cells() {
+        for (right, down) in [(1, 0), (0, 1), (1, 1), (2, 1), (4, 1), (1, 2), (1, 3), (6, 1)] {
+            for count in [2, 3, 4] {
+                let cells: Vec<_> =
+                    (0..120).map(|i| (i * right / right.max(down), i * down / right.max(down))).collect();
+                for own in 0..count {
+                    let has = cells.iter().filter(|(column, row)| turn(*column, *row, count) == own).count();
+                    let share = has as f64 * count as f64 / cells.len() as f64;
+                    assert!((0.8..=1.2).contains(&share), "{own} of {count} along {right}, {down}: {share}");
                 }
             }
         }

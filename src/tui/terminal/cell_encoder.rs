@@ -1,10 +1,12 @@
 //! Cells as bytes, few of them: every byte is waited for on a slow line.
 //!
 //! The usual backend names a place by row and column, a colour by its number among 256 and each attribute alone; with
-//! the many short changes of a chart that is two thirds of a frame. Here a place further right in the row is named by the
-//! way there, what changes in the look is one sequence, and a blank takes the look that is there.
+//! the many short changes of a chart that is two thirds of a frame. Here a place nearby is named by the way there, what
+//! changes in the look is one sequence, and a blank takes the look that is there. Where curves cross each other all
+//! cells of one look go first, then those of the next: that is done when it is shorter than going row by row.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use ratatui::{
     buffer::Cell,
@@ -13,7 +15,7 @@ use ratatui::{
 };
 
 /// How characters look.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Ink {
     fg: Color,
     bg: Color,
@@ -26,51 +28,133 @@ const PLAIN: Ink = Ink { fg: Color::Reset, bg: Color::Reset, modifier: Modifier:
 /// The attributes that show on a blank.
 const SEEN_ON_BLANKS: Modifier = Modifier::REVERSED.union(Modifier::UNDERLINED).union(Modifier::CROSSED_OUT);
 
-/// Encodes the cells of one frame, which begins and ends with plain attributes.
-pub(super) struct CellEncoder<'a> {
-    frame: &'a mut Vec<u8>,
+impl Ink {
+    fn of(cell: &Cell) -> Self {
+        Self { fg: cell.fg, bg: cell.bg, modifier: cell.modifier }
+    }
+}
+
+/// Cells beside each other in one row and of one look, by where they stand among all.
+#[derive(Debug, Clone)]
+struct Run {
+    look: usize,
+    cells: Range<usize>,
+}
+
+/// Above so many runs of one look the order among them is that of the rows: finding a better one takes their square.
+const MOST_RUNS: usize = 400;
+
+/// The bytes that put `cells`, given row by row, on a screen so many columns wide; the look is plain before and after.
+pub(super) fn encode(cells: &[(Position, &Cell)], columns: u16) -> Vec<u8> {
+    let runs = runs(cells);
+    let in_rows = in_order(cells, columns, runs.clone().into_iter());
+    let mut by_look: Vec<Vec<Run>> = Vec::new();
+    for run in runs {
+        if by_look.len() <= run.look {
+            by_look.resize_with(run.look + 1, Vec::new);
+        }
+        by_look[run.look].push(run);
+    }
+    let mut at = None;
+    let by_look =
+        by_look.into_iter().flat_map(|runs| nearest_first(cells, runs, &mut at)).collect::<Vec<_>>();
+    let by_look = in_order(cells, columns, by_look.into_iter());
+    if by_look.len() < in_rows.len() { by_look } else { in_rows }
+}
+
+/// The cells in runs; a blank has the look of the cell before it where that makes no difference.
+fn runs(cells: &[(Position, &Cell)]) -> Vec<Run> {
+    let mut inks: Vec<Ink> = Vec::new();
+    let mut runs: Vec<Run> = Vec::new();
+    for (at, (place, cell)) in cells.iter().enumerate() {
+        let ink = Ink::of(cell);
+        let before = runs.last().map(|run| run.look);
+        let shared = before.filter(|look| cell.symbol() == " " && looks_same_blank(inks[*look], ink));
+        let look = shared.or_else(|| inks.iter().position(|other| *other == ink)).unwrap_or_else(|| {
+            inks.push(ink);
+            inks.len() - 1
+        });
+        match runs.last_mut() {
+            Some(run)
+                if run.look == look && cells[at - 1].0.y == place.y && cells[at - 1].0.x + 1 == place.x =>
+            {
+                run.cells.end = at + 1;
+            }
+            _ => runs.push(Run { look, cells: at..at + 1 }),
+        }
+    }
+    runs
+}
+
+/// The runs in an order in which each is near the one before it: steep curves are followed down, not crossed in rows.
+fn nearest_first(cells: &[(Position, &Cell)], mut runs: Vec<Run>, at: &mut Option<Position>) -> Vec<Run> {
+    if runs.len() > MOST_RUNS {
+        return runs;
+    }
+    let mut ordered = Vec::with_capacity(runs.len());
+    while !runs.is_empty() {
+        let cost = |run: &Run| at.map_or(0, |at| bytes_of_way(at, cells[run.cells.start].0));
+        // The first of those that are equally near.
+        let next = (0..runs.len()).min_by_key(|next| cost(&runs[*next])).unwrap_or(0);
+        let run = runs.remove(next);
+        let end = cells[run.cells.end - 1].0;
+        *at = Some(Position::new(end.x + 1, end.y));
+        ordered.push(run);
+    }
+    ordered
+}
+
+fn in_order(cells: &[(Position, &Cell)], columns: u16, runs: impl Iterator<Item = Run>) -> Vec<u8> {
+    let mut encoder = CellEncoder { frame: Vec::new(), ink: PLAIN, at: None, is_sure: false, columns };
+    for (place, cell) in runs.flat_map(|run| &cells[run.cells]) {
+        encoder.write(*place, cell);
+    }
+    encoder.dip(PLAIN);
+    encoder.frame
+}
+
+/// Encodes cells in any order.
+struct CellEncoder {
+    frame: Vec<u8>,
     ink: Ink,
     /// Where the next character goes, if that is known,
     at: Option<Position>,
     /// and whether that holds on any terminal: some show Greek letters and frames twice as wide.
     is_sure: bool,
+    columns: u16,
 }
 
-impl<'a> CellEncoder<'a> {
-    /// An encoder that does not know where the cursor is.
-    pub(super) fn new(frame: &'a mut Vec<u8>) -> Self {
-        Self { frame, ink: PLAIN, at: None, is_sure: false }
-    }
-
-    pub(super) fn write(&mut self, at: Position, cell: &Cell) {
+impl CellEncoder {
+    fn write(&mut self, at: Position, cell: &Cell) {
         self.go(at);
-        let ink = Ink { fg: cell.fg, bg: cell.bg, modifier: cell.modifier };
+        let ink = Ink::of(cell);
         let symbol = cell.symbol();
         if !(symbol == " " && looks_same_blank(self.ink, ink)) {
             self.dip(ink);
         }
         self.frame.extend_from_slice(symbol.as_bytes());
-        let next = Position::new(at.x.saturating_add(1), at.y);
+        // Behind the last column terminals differ in where the cursor is.
+        let next = Some(Position::new(at.x.saturating_add(1), at.y)).filter(|next| next.x < self.columns);
         (self.at, self.is_sure) = match width(symbol) {
-            Width::One => (Some(next), self.is_sure),
-            Width::MostlyOne => (Some(next), false),
+            Width::One => (next, self.is_sure),
+            Width::MostlyOne => (next, false),
             Width::Other => (None, false),
         };
     }
 
-    pub(super) fn end(mut self) {
-        self.dip(PLAIN);
-    }
-
     fn go(&mut self, to: Position) {
-        match self.at {
-            Some(at) if at == to => {}
-            Some(at) if self.is_sure && at.y == to.y && at.x < to.x => match to.x - at.x {
-                1 => self.say(format_args!("\x1b[C")),
-                columns => self.say(format_args!("\x1b[{columns}C")),
-            },
-            _ => {
-                self.say(format_args!("\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1));
+        let near = match self.at {
+            Some(at) if at == to => return,
+            Some(at) if self.is_sure => Some(way(at, to)),
+            _ => None,
+        };
+        let mut far = String::new();
+        // Writing to a string cannot fail, here and below.
+        let _ = write!(far, "\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1);
+        match near.filter(|near| near.len() < far.len()) {
+            Some(near) => self.frame.extend_from_slice(near.as_bytes()),
+            None => {
+                self.frame.extend_from_slice(far.as_bytes());
                 self.is_sure = true;
             }
         }
@@ -89,7 +173,6 @@ impl<'a> CellEncoder<'a> {
         }
         for (modifier, code) in MODIFIERS {
             if ink.modifier.difference(from.modifier).contains(modifier) {
-                // Writing to a string cannot fail, here and below.
                 let _ = write!(codes, "{code};");
             }
         }
@@ -99,14 +182,53 @@ impl<'a> CellEncoder<'a> {
         if ink.bg != from.bg {
             color(&mut codes, ink.bg, 10);
         }
-        self.say(format_args!("\x1b[{}m", codes.trim_end_matches(';')));
+        // A reset needs no number.
+        let codes = codes.trim_end_matches(';');
+        let codes = if codes == "0" { "" } else { codes };
+        self.frame.extend_from_slice(format!("\x1b[{codes}m").as_bytes());
         self.ink = ink;
     }
+}
 
-    fn say(&mut self, text: std::fmt::Arguments<'_>) {
-        // Writing to memory cannot fail.
-        let _ = std::io::Write::write_fmt(self.frame, text);
+/// The steps from one place to another: how many, the byte that makes one, if there is, and the letter of the sequence
+/// that makes all. A line feed leaves the column as it is on a terminal in raw mode.
+fn steps(from: Position, to: Position) -> [(u16, Option<char>, char); 4] {
+    [
+        (to.y.saturating_sub(from.y), Some('\n'), 'B'),
+        (from.y.saturating_sub(to.y), None, 'A'),
+        (from.x.saturating_sub(to.x), Some('\x08'), 'D'),
+        (to.x.saturating_sub(from.x), None, 'C'),
+    ]
+}
+
+/// Up to so many steps are shorter by a byte for each.
+const BY_BYTES: u16 = 3;
+
+/// The way from one place to another.
+fn way(from: Position, to: Position) -> String {
+    let mut way = String::new();
+    for (count, byte, letter) in steps(from, to) {
+        match (count, byte) {
+            (0, _) => {}
+            (..=BY_BYTES, Some(byte)) => way.extend(std::iter::repeat_n(byte, usize::from(count))),
+            (1, None) => way.extend(['\x1b', '[', letter]),
+            _ => {
+                let _ = write!(way, "\x1b[{count}{letter}");
+            }
+        }
     }
+    way
+}
+
+/// The length of the way from one place to another.
+fn bytes_of_way(from: Position, to: Position) -> u32 {
+    let cost = |(count, byte, _): (u16, Option<char>, char)| match (count, byte) {
+        (0, _) => 0,
+        (..=BY_BYTES, Some(_)) => u32::from(count),
+        (1, None) => 3,
+        _ => 4 + count.ilog10(),
+    };
+    steps(from, to).into_iter().map(cost).sum()
 }
 
 /// The codes that switch attributes on.
@@ -198,13 +320,9 @@ mod tests {
     ];
 
     fn frame(old: &Buffer, new: &Buffer) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let mut encoder = CellEncoder::new(&mut bytes);
-        for (x, y, cell) in old.diff(new) {
-            encoder.write(Position::new(x, y), cell);
-        }
-        encoder.end();
-        bytes
+        let cells: Vec<_> =
+            old.diff(new).into_iter().map(|(x, y, cell)| (Position::new(x, y), cell)).collect();
+        encode(&cells, new.area.width)
     }
 
     /// What a terminal shows of a colour.
@@ -271,6 +389,33 @@ mod tests {
     }
 
     #[test]
+    fn curves_that_cross_are_sent_one_after_the_other_and_steep_ones_downwards() {
+        let area = Rect::new(0, 0, 30, 9);
+        let (old, mut new) = (Buffer::empty(area), Buffer::empty(area));
+        // Two steep lines, which in rows would take turns.
+        for y in 0..8 {
+            new[(4 + y / 3, y)].set_symbol("⠿").set_fg(Color::Red);
+            new[(20 - y / 3, y)].set_symbol("⠿").set_fg(Color::Indexed(200));
+        }
+        let text = String::from_utf8(frame(&old, &new)).unwrap();
+        assert_eq!(text.matches("\x1b[3").count(), 2, "each colour once: {text:?}");
+        assert!(text.matches('\n').count() > 10, "{text:?}");
+        let [rows, columns] = [area.height, area.width].map(|count| count.try_into().unwrap());
+        let mut terminal = vt100::Parser::new(rows, columns, 0);
+        terminal.process(text.as_bytes());
+        assert_shows(terminal.screen(), &new);
+    }
+
+    #[test]
+    fn the_length_of_a_way_is_known_before_it_is_gone() {
+        let places = [(0, 0), (1, 0), (3, 2), (0, 3), (12, 7), (250, 60), (99, 61), (9, 10)];
+        for (from, to) in places.into_iter().flat_map(|from| places.map(|to| (from, to))) {
+            let (from, to) = (Position::from(from), Position::from(to));
+            assert_eq!(bytes_of_way(from, to) as usize, way(from, to).len(), "{from} {to}");
+        }
+    }
+
+    #[test]
     fn the_way_is_short_but_only_where_every_terminal_agrees_on_it() {
         let area = Rect::new(0, 0, 30, 2);
         let old = Buffer::empty(area);
@@ -280,7 +425,7 @@ mod tests {
         }
         new[(12, 1)].set_symbol("c");
         let text = String::from_utf8(frame(&old, &new)).unwrap();
-        assert_eq!(text, "\x1b[2;4H\x1b[32ma\x1b[Cb\x1b[3C\x1b[0mδ\x1b[2;13Hc");
+        assert_eq!(text, "\x1b[2;4H\x1b[32ma\x1b[Cb\x1b[3C\x1b[mδ\x1b[2;13Hc");
         assert!(frame(&new, &new).is_empty());
         // A wide character leaves the place to the terminal.
         new.set_string(0, 0, "字x", Style::new());

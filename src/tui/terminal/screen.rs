@@ -20,7 +20,7 @@ use ratatui::{
     layout::{Position, Size},
 };
 
-use super::cell_encoder::CellEncoder;
+use super::cell_encoder::encode;
 use super::end::{HUNG_UP, end};
 use super::sink::Sink;
 
@@ -72,16 +72,11 @@ impl<S: Sink> Backend for Screen<S> {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
-        let mut content = content.peekable();
-        if content.peek().is_none() {
-            return Ok(());
+        let cells: Vec<_> = content.map(|(x, y, cell)| (Position::new(x, y), cell)).collect();
+        if !cells.is_empty() {
+            self.cursor_at = None;
+            self.frame.extend(encode(&cells, self.size()?.width));
         }
-        self.cursor_at = None;
-        let mut encoder = CellEncoder::new(&mut self.frame);
-        for (x, y, cell) in content {
-            encoder.write(Position::new(x, y), cell);
-        }
-        encoder.end();
         Ok(())
     }
 

@@ -94,7 +94,8 @@ fn curve_of(role: Role) -> Role {
 /// The curves, each with all its parts, the curve of the problem last of those that share cells.
 fn series(figure: &Figure, theme: Theme) -> Vec<Series> {
     let mut all: Vec<(Role, Series)> = Vec::new();
-    for line in &figure.lines {
+    // A chart on the screen draws its zero lines itself.
+    for line in figure.lines.iter().filter(|line| line.role != Role::Zero) {
         let (curve, stroke) = (curve_of(line.role), look(line.role, theme));
         let part = (line.points.clone(), line.is_broken || stroke.is_broken);
         match all.iter_mut().find(|(other, _)| *other == curve) {
