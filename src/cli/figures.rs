@@ -44,8 +44,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut captions = String::from("# The figures of the paper, computed again\n");
     for sheet in &sheets {
         let file = |ending: &str| folder.join(sheet.name).with_extension(ending);
-        save(&file("csv"), table::csv(&sheet.chart)?.as_bytes())?;
-        let picture = svg::svg(&sheet.chart, Width::ONE_COLUMN);
+        save(&file("csv"), table::csv(&sheet.figure)?.as_bytes())?;
+        let picture = svg::svg(&sheet.figure, Width::ONE_COLUMN);
         save(&file("svg"), picture.as_bytes())?;
         #[cfg(feature = "png")]
         if arguments.png {

@@ -101,10 +101,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Format::Csv => report.csv()?.into_bytes(),
         Format::Json => json(&report)?.into_bytes(),
         Format::Figure(print) => {
-            let chart = lines::chart(&report, &preset);
+            let figure = lines::figure(&report, &preset);
             let picture = match over {
-                Some(map) => Map { lines: chart.lines, ..map }.svg(arguments.width),
-                None => svg::svg(&chart, arguments.width),
+                Some(map) => Map { lines: figure.lines, ..map }.svg(arguments.width),
+                None => svg::svg(&figure, arguments.width),
             };
             print.bytes(&picture)?
         }

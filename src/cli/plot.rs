@@ -6,12 +6,12 @@ use super::problem::Problem;
 use super::{Failure, output};
 use crate::explorer::maps::MapWish;
 use crate::explorer::profile::{Ask, Inside};
-use crate::explorer::{Axes, CurveData, Overlays, View, Window};
-use crate::figure::Subject;
+use crate::explorer::{Axes, CurveData, Overlays, View};
 use crate::figure::measured::Points;
+use crate::figure::range::RangeError;
+use crate::figure::{Figure, Range, Subject};
 use crate::plot::map::{Map, MapError};
-use crate::plot::range::RangeError;
-use crate::plot::{Chart, Range, Width, series, svg, table};
+use crate::plot::{Width, series, svg, table};
 use crate::print::{Format, FormatError};
 use crate::store::data::read_measured;
 use crate::store::file::kind_of;
@@ -165,18 +165,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         ..Subject::alone(&curve, overlays)
     };
     let mut figure = subject.figure(view);
-    if points.is_some_and(|points| !points.lay(&mut figure, subject.scale())) {
+    if points.is_some_and(|points| !points.lay(view, &mut figure, subject.scale())) {
         return Err(Failure::Usage(format!(
             "--measured: the file has not the columns of {}; points are drawn in force-approach, radius-force and \
              radius-approach",
             view.name()
         )));
     }
-    let chart = arguments.part(Chart::of(&figure, &Window::WHOLE))?;
-    let picture = svg::svg(&chart, arguments.width);
+    let figure = arguments.part(figure)?;
+    let picture = svg::svg(&figure, arguments.width);
     output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
     if let Some((path, overwrite)) = data {
-        write_atomically(&path, table::csv(&chart)?.as_bytes(), overwrite)?;
+        write_atomically(&path, table::csv(&figure)?.as_bytes(), overwrite)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -209,23 +209,23 @@ impl Arguments {
         let results = Results::open(path).map_err(MapError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
         Ok(match &results.axes[..] {
-            [axis] => svg::svg(&series::chart(&results, axis, quantity)?, self.width),
+            [axis] => svg::svg(&series::figure(&results, axis, quantity)?, self.width),
             axes => Map::of(&results, axes, quantity)?.svg(self.width),
         })
     }
 
-    /// The part of the chart that is asked for.
-    fn part(&self, mut chart: Chart) -> Result<Chart, Failure> {
+    /// The part of the figure that is asked for.
+    fn part(&self, mut figure: Figure) -> Result<Figure, Failure> {
         let refused = |axis: &'static str, range: Range| {
             move |error: RangeError| Failure::Usage(format!("--{axis} {range}: {error}"))
         };
         if let Some(range) = self.x {
-            chart = chart.across(range).map_err(refused("x", range))?;
+            figure = figure.across(range).map_err(refused("x", range))?;
         }
         if let Some(range) = self.y {
-            chart = chart.upwards(range).map_err(refused("y", range))?;
+            figure = figure.upwards(range).map_err(refused("y", range))?;
         }
-        Ok(chart)
+        Ok(figure)
     }
 
     /// The file of the data, and whether there is one to be replaced: only data of a figure are.

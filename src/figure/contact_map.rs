@@ -8,12 +8,9 @@ use super::loops::NO_LOOP;
 use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
-use crate::explorer::View;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, CycleStateReport, PathStateReport};
 use pulloff_engine::units::Quantity;
-
-const VIEW: View = View::ContactMap;
 
 /// Builds the view.
 pub fn figure(subject: &Subject<'_>) -> Figure {
@@ -31,7 +28,7 @@ fn blank(control: Control, scale: Scale<'_>) -> Figure {
         Control::Stiffness(_) => scale.length("Δ"),
     };
     x = Axis { symbol: format!("way of {}", x.symbol), ..x };
-    Figure::empty(VIEW, format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
+    Figure::empty(format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
 }
 
 /// The contacts of the loop of `report` over these divisors.

@@ -15,19 +15,19 @@ use pulloff_engine::report::number::{fixed, significant};
 pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let scale = subject.scale();
     let [x, y] = scale.axes(view);
-    let mut figure = Figure::empty(view, format!("{} over {}", y.title(), x.symbol), x, y);
+    let mut figure = Figure::empty(format!("{} over {}", y.title(), x.symbol), x, y);
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
-    theory(subject, scale, &mut figure);
-    cycle(subject, scale, &mut figure);
+    theory(subject, scale, view, &mut figure);
+    cycle(subject, scale, view, &mut figure);
     // Below the curve: what lies on it is known.
-    branches(subject, scale, &mut figure);
-    let pinned = pins(subject, &mut figure);
+    branches(subject, scale, view, &mut figure);
+    let pinned = pins(subject, view, &mut figure);
     figure.lines.extend(pieces(&subject.curve.points, &points));
-    inadmissible(subject, scale, &mut figure);
-    limit_marks(subject, scale, &mut figure);
-    device(subject, scale, &mut figure);
-    walk(subject, scale, &mut figure);
+    inadmissible(subject, scale, view, &mut figure);
+    limit_marks(subject, scale, view, &mut figure);
+    device(subject, scale, view, &mut figure);
+    walk(subject, scale, view, &mut figure);
     // The walker may have left the range of the curve: the figure follows it there.
     let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
     figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned));
@@ -35,9 +35,8 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
 }
 
 /// The loop, loading and unloading apart: of each contact its edges, where radii are shown.
-fn cycle(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
+fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let Some(report) = subject.cycle else { return };
-    let view = figure.view;
     let pieces = report.states.chunk_by(|a, b| {
         (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
     });
@@ -93,8 +92,7 @@ pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
 }
 
 /// The inadmissible parts, over the curve: whether they are stable is still seen beneath.
-pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
-    let view = figure.view;
+pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let lines = subject.curve.base.inadmissible.iter().flatten().map(|part| {
         let points = part.places.iter().map(|at| scale.place(view, *at));
         Line::new(Role::Inadmissible, "inadmissible", points.collect())
@@ -103,17 +101,16 @@ pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure
 }
 
 /// The line of the loading device, where it is shown; it has no radius.
-fn device(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
-    if let (View::ForceApproach, Some(ends)) = (figure.view, subject.device) {
-        let points = ends.map(|(approach, force)| scale.place(figure.view, [approach, force, 0.0]));
+fn device(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
+    if let (View::ForceApproach, Some(ends)) = (view, subject.device) {
+        let points = ends.map(|(approach, force)| scale.place(view, [approach, force, 0.0]));
         figure.lines.push(Line::new(Role::Device, "device", points.to_vec()));
     }
 }
 
 /// The overlays that are on and exist, and what the envelope says.
-fn theory(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
+fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let theory = &subject.curve.base.theory;
-    let view = figure.view;
     let line = |role, name: &str, places: &[[f64; 3]]| {
         Line::new(role, name, places.iter().map(|at| scale.place(view, *at)).collect())
     };
@@ -145,12 +142,12 @@ pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &'a Pin) -> Scale<'a> {
 }
 
 /// The pinned curves, each over its own divisors; their points are given back for the bounds.
-fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
+fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for pin in subject.pins {
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
-            pin.curve.points.iter().map(|point| scale.place(figure.view, place(point))).collect();
+            pin.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
         let name = pin.name(subject.preset);
         let parts = pieces(&pin.curve.points, &points).into_iter();
         figure.lines.extend(parts.map(|part| {
@@ -162,9 +159,8 @@ fn pins(subject: &Subject<'_>, figure: &mut Figure) -> Vec<(f64, f64)> {
 }
 
 /// The limit points of the control and of the others, and the pull-off.
-fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
+fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let curve = subject.curve;
-    let view = figure.view;
     figure.marks.extend(
         curve
             .other_limits

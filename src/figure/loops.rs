@@ -36,7 +36,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 
 fn blank(scale: Scale<'_>) -> Figure {
     let [x, y] = scale.axes(VIEW);
-    Figure::empty(VIEW, format!("cycle: {} over {}", y.title(), x.symbol), x, y)
+    Figure::empty(format!("cycle: {} over {}", y.title(), x.symbol), x, y)
 }
 
 /// The loop of `report` over these divisors; `curve` is the equilibrium curve of one disc, whose points bound the losses of

@@ -5,7 +5,6 @@
 
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
-use crate::explorer::View;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
@@ -55,7 +54,7 @@ impl Places {
             None if logarithmic => format!("log {symbol}"),
             None => symbol,
         };
-        let axis_of = Axis { symbol, unit: "", shown };
+        let axis_of = Axis { shown, ..Axis::pure(symbol) };
         let mut places = Self { axis: axis_of, factor, logarithmic, middle: axis.middle, ends: None };
         places.ends = axis.from.map(|from| [places.at(Some(from)), places.at(axis.to)]);
         places
@@ -214,7 +213,7 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
         }
         None => "where snaps begin".to_owned(),
     };
-    let mut figure = Figure::empty(View::Map, title, x.axis, y.axis);
+    let mut figure = Figure::empty(title, x.axis, y.axis);
     figure.lines = lines;
     figure.marks = marks;
     figure.bounds = bounds;

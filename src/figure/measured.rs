@@ -33,14 +33,14 @@ impl Points {
     }
 
     /// Lays them behind the signs of `figure`, as far as it has their columns; whether it has.
-    pub fn lay(&self, figure: &mut Figure, scale: Scale<'_>) -> bool {
-        if !matches!(figure.view, View::ForceApproach | View::RadiusForce | View::RadiusApproach) {
+    pub fn lay(&self, view: View, figure: &mut Figure, scale: Scale<'_>) -> bool {
+        if !matches!(view, View::ForceApproach | View::RadiusForce | View::RadiusApproach) {
             return false;
         }
         let step = self.0.len().div_ceil(DRAWN).max(1);
         let mark = |(segment, place): &(Segment, [f64; 3])| {
             let sign = Sign::Measured { loading: *segment == Segment::Approach };
-            let at = scale.place(figure.view, *place);
+            let at = scale.place(view, *place);
             (at.0.is_finite() && at.1.is_finite()).then_some(Mark { sign, at })
         };
         // Sorted by branch: each is drawn as one.

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`parts`] | lines, marks, areas, axes and their roles |
 //! | [`bounds`] | the range of both axes, always finite and ascending |
+//! | [`range`] | the part of an axis that is asked for |
 //! | [`scale`] | what the axes are divided by |
 //! | [`curves`] | P over δ, s over P, s over δ |
 //! | [`walk`] | the states walked, the jumps, the walker |
@@ -29,6 +30,7 @@ pub mod loops;
 pub mod map;
 pub mod measured;
 pub mod parts;
+pub mod range;
 pub mod reading;
 pub mod scale;
 pub mod shape;
@@ -40,7 +42,8 @@ pub mod walk;
 
 pub use crate::explorer::View;
 pub use bounds::Bounds;
-pub use parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
+pub use parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
+pub use range::Range;
 pub use reading::{Nearest, nearest};
 pub use scale::Scale;
 pub use subject::Subject;

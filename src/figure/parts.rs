@@ -1,7 +1,7 @@
 //! What a figure is made of: axes, lines, marks and areas, each with a role and no look.
 
 use super::bounds::Bounds;
-use crate::explorer::View;
+use crate::explorer::Window;
 use pulloff_engine::problem::Control;
 
 /// What a line shows. A renderer gives each role a stroke of its own.
@@ -147,12 +147,45 @@ pub struct Axis {
     pub unit: &'static str,
     /// The unit of its values where the problem is in SI; empty elsewhere.
     pub shown: String,
+    pub run: Run,
+}
+
+/// How an axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Run {
+    #[default]
+    Linear,
+    /// Equal factors; what is not positive is not drawn.
+    Logarithmic,
+}
+
+impl Run {
+    /// Where a value stands on the axis, in steps of it; no number where it has no place.
+    fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Logarithmic => value.log10(),
+        }
+    }
+
+    fn value(self, place: f64) -> f64 {
+        match self {
+            Self::Linear => place,
+            Self::Logarithmic => 10.0_f64.powf(place),
+        }
+    }
 }
 
 impl Axis {
     /// An axis of a pure number.
     pub fn pure(symbol: String) -> Self {
-        Self { symbol, unit: "", shown: String::new() }
+        Self { symbol, unit: "", shown: String::new(), run: Run::Linear }
+    }
+
+    /// The same axis, running so.
+    #[must_use]
+    pub fn running(self, run: Run) -> Self {
+        Self { run, ..self }
     }
 
     /// What stands beside the axis: `δ (µm)`, `P/Pc`.
@@ -161,10 +194,9 @@ impl Axis {
     }
 }
 
-/// A figure: everything a renderer needs but strokes, letters and colours.
+/// A figure, on the screen and on paper: everything a renderer needs but strokes, letters and colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    pub view: View,
     pub title: String,
     pub x: Axis,
     pub y: Axis,
@@ -181,9 +213,8 @@ pub struct Figure {
 
 impl Figure {
     /// A figure without anything on it.
-    pub fn empty(view: View, title: String, x: Axis, y: Axis) -> Self {
+    pub fn empty(title: String, x: Axis, y: Axis) -> Self {
         Self {
-            view,
             title,
             x,
             y,
@@ -194,6 +225,30 @@ impl Figure {
             notes: Vec::new(),
             missing: None,
         }
+    }
+
+    /// A figure of `lines` over all their points; a logarithmic axis passes over what is not positive.
+    pub fn of(x: Axis, y: Axis, lines: Vec<Line>) -> Self {
+        let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
+        let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
+        let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };
+        Self { lines, bounds, ..Self::empty(String::new(), x, y) }
+    }
+
+    /// The same figure in the part of it that `window` shows.
+    #[must_use]
+    pub fn in_window(self, window: &Window) -> Self {
+        Self { bounds: self.bounds.part(window), ..self }
+    }
+
+    /// Names the computed curve, which its stability alone does not tell from curves beside it.
+    #[must_use]
+    pub fn naming(mut self, curve: &str) -> Self {
+        let own = self.lines.iter_mut().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
+        for line in own {
+            line.name = format!("{curve}, {}", line.name);
+        }
+        self
     }
 
     /// Where the walker stands, if it is on the figure.

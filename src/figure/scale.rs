@@ -101,7 +101,7 @@ impl<'a> Scale<'a> {
     /// The axis of a quantity that is divided by nothing.
     pub fn axis(self, symbol: &str, unit: &'static str, quantity: Quantity) -> Axis {
         let shown = self.units.unit(quantity).map_or_else(String::new, ToString::to_string);
-        Axis { symbol: symbol.to_owned(), unit, shown }
+        Axis { unit, shown, ..Axis::pure(symbol.to_owned()) }
     }
 
     /// A value on an axis that is divided by nothing.

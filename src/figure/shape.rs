@@ -3,7 +3,7 @@
 //! Where the start is not given as a contact radius, nothing says how large the disc is without solving: then the gap is
 //! drawn over its own length.
 
-use super::{Bounds, Figure, Line, Mark, Role, Scale, Sign, View};
+use super::{Bounds, Figure, Line, Mark, Role, Scale, Sign};
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Start;
@@ -17,7 +17,7 @@ const BEYOND: f64 = 1.5;
 pub fn undeformed(preset: &Preset) -> Figure {
     let scale = Scale { force: None, wave: None, modulus: None, units: &preset.units };
     let name = preset.gap.name().to_owned();
-    let mut figure = Figure::empty(View::Gap, name, scale.length("r"), scale.length("h"));
+    let mut figure = Figure::empty(name, scale.length("r"), scale.length("h"));
     let disc = match preset.path.start {
         Start::ContactRadius(s) => Some(s),
         Start::Approach(_) | Start::Force(_) => None,

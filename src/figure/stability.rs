@@ -7,15 +7,12 @@ use super::bounds::Bounds;
 use super::map;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
-use crate::explorer::View;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Control;
 use pulloff_engine::stability::Law;
 use pulloff_engine::stability::law::adhesion_of;
 use pulloff_engine::units::Quantity;
 use std::f64::consts::TAU;
-
-const VIEW: View = View::Stability;
 
 /// Radii at which the law is drawn.
 const RADII: usize = 1500;
@@ -43,7 +40,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     };
     let of = if is_exact { "" } else { ", of the exact equation of one disc" };
     let title = format!("limit points under {under}: adhesion over contact radius{of}");
-    let mut figure = Figure::empty(VIEW, title, scale.radius_axis("s"), y);
+    let mut figure = Figure::empty(title, scale.radius_axis("s"), y);
     let Ok(panels) = case.table.up_to(case.start) else {
         figure.missing = Some("the gap cannot be tabulated".to_owned());
         return figure;
@@ -120,8 +117,5 @@ pub fn map(subject: &Subject<'_>) -> Figure {
 
 fn empty_map(why: &str) -> Figure {
     let none = || Axis::pure(String::new());
-    Figure {
-        missing: Some(why.to_owned()),
-        ..Figure::empty(View::Map, "where snaps begin".to_owned(), none(), none())
-    }
+    Figure { missing: Some(why.to_owned()), ..Figure::empty("where snaps begin".to_owned(), none(), none()) }
 }

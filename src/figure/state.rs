@@ -32,7 +32,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     };
     let title =
         if view == View::Contact { "contact".to_owned() } else { format!("{} over {}", y.title(), x.symbol) };
-    let mut figure = Figure::empty(view, title, x, y);
+    let mut figure = Figure::empty(title, x, y);
     let Some(inside) = subject.inside else {
         figure.missing = Some(match subject.walk.last() {
             Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),

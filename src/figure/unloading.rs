@@ -23,7 +23,7 @@ const VIEW: View = View::Unloading;
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     let [x, y] = scale.axes(VIEW);
-    let mut figure = Figure::empty(VIEW, format!("unloading: {} over {}", y.title(), x.symbol), x, y);
+    let mut figure = Figure::empty(format!("unloading: {} over {}", y.title(), x.symbol), x, y);
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(VIEW, place(point))).collect();
     figure.bounds = Bounds::of(points.iter().copied());
@@ -53,7 +53,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     // The path may begin or land beyond the curve; where the bodies come apart may be far away.
     let kept = figure.lines.iter().filter(|line| line.role != Role::Jump);
     figure.bounds = Bounds::of(kept.flat_map(|line| line.points.iter().copied()));
-    inadmissible(subject, scale, &mut figure);
+    inadmissible(subject, scale, VIEW, &mut figure);
     figure.marks.extend(events_before(subject, scale, VIEW));
     let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
     let bounded = figure.areas.len() == unloading.events.len();

@@ -40,10 +40,9 @@ pub fn events_before<'a>(
 }
 
 /// Adds the other branches of the walk to a view of the curve, whatever their problems: to compare them.
-pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
-    let place = |node: &Node, state: &State| {
-        scale.place(figure.view, quantities(&state.in_units(node.setting.units())))
-    };
+pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
+    let place =
+        |node: &Node, state: &State| scale.place(view, quantities(&state.in_units(node.setting.units())));
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     for branch in &subject.branches {
         let mut steps: Vec<(f64, f64)> = Vec::new();
@@ -68,8 +67,7 @@ pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
 }
 
 /// Adds the walk to a view of the curve; the walker is the last mark.
-pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, figure: &mut Figure) {
-    let view = figure.view;
+pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let place =
         |node: &Node, state: &State| scale.place(view, quantities(&state.in_units(node.setting.units())));
     let mut steps: Vec<(f64, f64)> = Vec::new();

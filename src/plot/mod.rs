@@ -1,31 +1,24 @@
-//! Figures for print: a figure, or any chart of lines and marks, as SVG.
+//! Figures for print, as SVG.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`chart`] | what is drawn: axes, lines, marks, areas; made from a figure of the explorer or by hand |
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
 //! | [`lines`] | lines in two numbers at which snaps begin, limit points over one |
 //! | [`map`] | a quantity of a sweep over its two axes |
 //! | [`paper`] | the figures of the paper, computed again |
-//! | [`range`] | the part of an axis that is asked for |
 //! | [`series`] | a quantity of a sweep over its one axis |
 //! | [`svg`] | the one place that knows the drawing library |
-//! | [`table`] | the data of a chart as CSV |
+//! | [`table`] | the data of a figure as CSV |
 //!
-//! A chart is drawn in its size on paper: 86 mm for one column of a journal, 178 mm for two, letters of 8 points.
+//! A figure is drawn in its size on paper: 86 mm for one column of a journal, 178 mm for two, letters of 8 points.
 
-pub mod chart;
 pub mod ink;
 pub mod lines;
 pub mod map;
 pub mod paper;
-pub mod range;
 pub mod series;
 pub mod svg;
 pub mod table;
-
-pub use chart::Chart;
-pub use range::Range;
 
 /// The width of a figure on paper, in millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,8 @@
 //! | 8, 9 | force and contact radius on slight and on steep waves |
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
 
-use super::chart::{Chart, ChartAxis, Run};
-use crate::explorer::{CurveData, Overlays, View, Window};
-use crate::figure::{Line, Role, Subject};
+use crate::explorer::{CurveData, Overlays, View};
+use crate::figure::{Axis, Figure, Line, Role, Run, Subject};
 use crate::store::{read_with, shipped};
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::{Preset, ReadError};
@@ -31,7 +30,7 @@ pub struct Sheet {
     /// The name of its files: `fig-9a`.
     pub name: &'static str,
     /// What is drawn.
-    pub chart: Chart,
+    pub figure: Figure,
     /// What it shows, and how well we and the theory agree.
     pub caption: String,
 }
@@ -94,14 +93,14 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
     let case = &data.case;
     let theory = Exact::of(&case.problem).name();
     let sheet = |name, view, what: &str| {
-        let chart = chart(&data, view);
+        let figure = figure(&data, view);
         let caption = format!(
             "{title}: {what}. {} rings, stable parts solid, unstable ones dashed under displacement control, limit points \
              marked. {theory} (dots): our curve is nowhere further from it than {} of the picture.",
             case.basis.size(),
-            significant(furthest(&chart), 2)
+            significant(furthest(&figure), 2)
         );
-        Sheet { name, chart, caption }
+        Sheet { name, figure, caption }
     };
     Ok([
         sheet(names[0], View::ForceApproach, "the force over the approach"),
@@ -110,13 +109,13 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
 }
 
 /// The largest distance of the computed curve from the exact one, in shares of the picture.
-fn furthest(chart: &Chart) -> f64 {
+fn furthest(figure: &Figure) -> f64 {
     let share = |(x, y): &(f64, f64)| {
         let share = |[lo, hi]: [f64; 2], value: f64| (value - lo) / (hi - lo);
-        (share(chart.bounds.x, *x), share(chart.bounds.y, *y))
+        (share(figure.bounds.x, *x), share(figure.bounds.y, *y))
     };
     let points = |wanted: &dyn Fn(Role) -> bool| -> Vec<(f64, f64)> {
-        chart
+        figure
             .lines
             .iter()
             .filter(|line| wanted(line.role))
@@ -140,10 +139,10 @@ fn distance((x, y): (f64, f64), (ax, ay): (f64, f64), (bx, by): (f64, f64)) -> f
 }
 
 /// A view of a curve with the exact solution.
-fn chart(data: &CurveData, view: View) -> Chart {
+fn figure(data: &CurveData, view: View) -> Figure {
     let overlays = Overlays { smooth: true, exact: true, envelope: false };
     let subject = Subject::alone(data, overlays);
-    Chart::of(&subject.figure(view), &Window::WHOLE)
+    subject.figure(view)
 }
 
 /// The quasi-static path of Fig. 9 and what it dissipates, in the exact basis, whose energies are good to rounding.
@@ -166,7 +165,7 @@ fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
         events.iter().filter(|event| event.dissipated.is_some()).count(),
         significant(apart, 2)
     );
-    Ok(Sheet { name, chart: chart(&data, View::Unloading), caption })
+    Ok(Sheet { name, figure: figure(&data, View::Unloading), caption })
 }
 
 /// The contact pressure of the smooth sphere in a few rings, over theory.
@@ -190,7 +189,7 @@ fn smooth_pressure(
         Line::new(Role::Body, format!("{rings} rings"), pressure.steps(rings)),
         Line::new(Role::Exact, Exact::of(&case.problem).name(), pressure.exact),
     ];
-    Ok(Sheet { name, chart: pressure_chart(lines), caption })
+    Ok(Sheet { name, figure: pressures("r/s", lines), caption })
 }
 
 /// The pressure on waves without adhesion at these contact radii.
@@ -226,14 +225,12 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
          solution (dots). {sign} The two differ by at most {} of the pressure on the axis.",
         significant(apart, 2)
     );
-    let mut chart = pressure_chart(lines);
-    "r/R".clone_into(&mut chart.x.title);
-    Ok(Sheet { name, chart, caption })
+    Ok(Sheet { name, figure: pressures("r/R", lines), caption })
 }
 
-fn pressure_chart(lines: Vec<Line>) -> Chart {
-    let axis = |title: &str| ChartAxis { title: title.to_owned(), run: Run::Linear };
-    Chart::new(axis("r/s"), axis("p/E*"), lines)
+fn pressures(radius: &str, lines: Vec<Line>) -> Figure {
+    let axis = |title: &str| Axis::pure(title.to_owned());
+    Figure::of(axis(radius), axis("p/E*"), lines)
 }
 
 /// A pressure and the exact one, over r/s.
@@ -304,14 +301,14 @@ fn errors() -> Result<Sheet, PaperError> {
             lines.push(Line::new(Role::Pin(2 * i + k + 1), format!("{title}, {quantity}"), points));
         }
     }
-    let axis = |title: &str| ChartAxis { title: title.to_owned(), run: Run::Logarithmic };
+    let axis = |title: &str| Axis::pure(title.to_owned()).running(Run::Logarithmic);
     let caption = format!(
         "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
          number of rings N. The observed orders at the finest meshes are {}.",
         words.join("; ")
     );
-    let chart = Chart::new(axis("N"), axis("relative error"), lines);
-    Ok(Sheet { name: "fig-5", chart, caption })
+    let figure = Figure::of(axis("N"), axis("relative error"), lines);
+    Ok(Sheet { name: "fig-5", figure, caption })
 }
 
 fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperError> {

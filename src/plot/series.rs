@@ -1,13 +1,12 @@
 //! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value.
 
-use super::chart::{Chart, ChartAxis, Run};
 use super::map::{MapError, distinct, is_logarithmic};
-use crate::figure::{Line, Mark, Role, Sign};
+use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Sign};
 use crate::sweep::Results;
 
-/// The chart of `quantity` in `results` over the column `axis`; a row without a value is a gap.
+/// The figure of `quantity` in `results` over the column `axis`; a row without a value is a gap.
 /// Errors: [`MapError`] when there is no such column, one is not of numbers, or no row has a value.
-pub fn chart(results: &Results, axis: &str, quantity: &str) -> Result<Chart, MapError> {
+pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapError> {
     let mut columns = results.numbers(&[axis, quantity])?.into_iter();
     let mut next = || columns.next().unwrap_or_default();
     let (along, found) = (next(), next());
@@ -23,6 +22,6 @@ pub fn chart(results: &Results, axis: &str, quantity: &str) -> Result<Chart, Map
     let run = if is_logarithmic(&values) { Run::Logarithmic } else { Run::Linear };
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
     let [x, y] = [(axis, run), (quantity, Run::Linear)]
-        .map(|(name, run)| ChartAxis { title: results.title(name), run });
-    Ok(Chart { marks, ..Chart::new(x, y, vec![Line::new(Role::Body, "", points)]) })
+        .map(|(name, run)| Axis::pure(results.title(name)).running(run));
+    Ok(Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) })
 }

@@ -1,9 +1,8 @@
-//! A chart as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
+//! A figure as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
 
 use super::Width;
-use super::chart::{Chart, ChartAxis, Run};
 use super::ink::{self, Stroke};
-use crate::figure::{Bounds, Line, Mark, Meaning, Role, Sign};
+use crate::figure::{Axis, Bounds, Figure, Line, Mark, Meaning, Role, Run, Sign};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -36,17 +35,17 @@ const FIELD: &str = "field";
 /// Axes whose largest number is in this range have plain numbers.
 const PLAIN: (f64, f64) = (2e-3, 1e5);
 
-/// `chart` as an SVG document of this width; the height follows from what the legend needs.
-pub fn svg(chart: &Chart, width: Width) -> String {
+/// `figure` as an SVG document of this width; the height follows from what the legend needs.
+pub fn svg(figure: &Figure, width: Width) -> String {
     let wide = width.get() * UNITS_PER_MM;
-    let legend = legend(chart);
+    let legend = legend(figure);
     // What surrounds the field does not depend on the height: one trial tells it.
-    let trial = ComputedLayout::from_layout(&layout(chart, &legend, wide, wide));
+    let trial = ComputedLayout::from_layout(&layout(figure, &legend, wide, wide));
     let high = (wide - trial.plot_height() + ASPECT * trial.plot_width()).round();
-    let layout = layout(chart, &legend, wide, high);
+    let layout = layout(figure, &legend, wide, high);
     let field = ComputedLayout::from_layout(&layout);
-    let mut scene = render_multiple(plots(chart), layout);
-    hatch(chart, &field, &mut scene);
+    let mut scene = render_multiple(plots(figure), layout);
+    hatch(figure, &field, &mut scene);
     finish(&scene, cropped(&legend))
 }
 
@@ -66,12 +65,12 @@ pub(super) fn frame(
 ) -> Layout {
     let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
     let [x, y] = titles;
-    let axis = |title: String, k: usize| ChartAxis { title, run: run(logarithmic[k]) };
+    let axis = |title: String, k: usize| Axis::pure(title).running(run(logarithmic[k]));
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
-    let chart = Chart { bounds, ..Chart::new(axis(x, 0), axis(y, 1), Vec::new()) };
+    let figure = Figure { bounds, ..Figure::of(axis(x, 0), axis(y, 1), Vec::new()) };
     let wide = width.get() * UNITS_PER_MM;
     let beside_colors = |high: f64| {
-        let mut layout = layout(&chart, legend, wide, high);
+        let mut layout = layout(&figure, legend, wide, high);
         layout.show_colorbar = true;
         layout.colorbar_tick_format = ticks(values);
         layout
@@ -111,15 +110,15 @@ fn in_millimetres(text: &str, wide: f64, high: f64) -> String {
     svg
 }
 
-fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout {
-    let ([x, y], bounds) = ([&chart.x, &chart.y], &chart.bounds);
+fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layout {
+    let ([x, y], bounds) = ([&figure.x, &figure.y], &figure.bounds);
     let theme = Theme { show_grid: false, legend_border: "none".to_owned(), ..Theme::light() };
     let mut layout = Layout::new((bounds.x[0], bounds.x[1]), (bounds.y[0], bounds.y[1]))
         .with_theme(theme)
         .with_width(wide)
         .with_height(high)
-        .with_x_label(plain(&x.title))
-        .with_y_label(plain(&y.title))
+        .with_x_label(plain(&x.title()))
+        .with_y_label(plain(&y.title()))
         .with_label_size(LETTERS)
         .with_tick_size(SMALL_LETTERS)
         .with_body_size(SMALL_LETTERS)
@@ -150,14 +149,14 @@ fn layout(chart: &Chart, legend: &[LegendEntry], wide: f64, high: f64) -> Layout
             .with_legend_position(LegendPosition::OutsideBottomColumns)
             .with_legend_box(false);
     }
-    for mark in &chart.marks {
+    for mark in &figure.marks {
         if let Sign::Snaps(count) = mark.sign {
             let (x, y) = mark.at;
             layout = layout
                 .with_annotation(TextAnnotation::new(count.to_string(), x, y).with_font_size(SMALL_LETTERS));
         }
     }
-    if let Some(reason) = &chart.missing {
+    if let Some(reason) = &figure.missing {
         let [x, y] = [bounds.x, bounds.y].map(|[lo, hi]| 0.5 * lo + 0.5 * hi);
         layout =
             layout.with_annotation(TextAnnotation::new(plain(reason), x, y).with_font_size(SMALL_LETTERS));
@@ -203,8 +202,8 @@ pub(super) fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -
 }
 
 /// Every name once, the lines before the signs; a sign that is out of sight needs none.
-fn legend(chart: &Chart) -> Vec<LegendEntry> {
-    let mut named: Vec<&Line> = chart.lines.iter().filter(|line| !line.name.is_empty()).collect();
+fn legend(figure: &Figure) -> Vec<LegendEntry> {
+    let mut named: Vec<&Line> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
     // The computed curve first, as on the screen.
     named.sort_by_key(|line| match line.role {
         Role::Pin(number) => (1, std::cmp::Reverse(Role::Pin(usize::MAX - number))),
@@ -220,11 +219,11 @@ fn legend(chart: &Chart) -> Vec<LegendEntry> {
         let Stroke { color, dashes, .. } = ink::stroke(line.role);
         add(entry(&line.name, color, LegendShape::Line, dashes));
     }
-    let shown = chart.marks.iter().filter(|mark| chart.bounds.share(mark.at).is_some());
+    let shown = figure.marks.iter().filter(|mark| figure.bounds.share(mark.at).is_some());
     for stamp in shown.map(|mark| ink::stamp(mark.sign)).filter(|stamp| !stamp.name.is_empty()) {
         add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
     }
-    for area in &chart.areas {
+    for area in &figure.areas {
         add(match area.meaning {
             Meaning::Lost => hatched(Meaning::Lost.name()),
             Meaning::Contact => entry(Meaning::Contact.name(), CONTACT, LegendShape::Rect, ""),
@@ -244,14 +243,14 @@ pub(super) fn hatched(name: &str) -> LegendEntry {
     entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
 }
 
-fn plots(chart: &Chart) -> Vec<Plot> {
+fn plots(figure: &Figure) -> Vec<Plot> {
     // The dots of the exact solution stand on the line that they agree with.
     let (exact, others): (Vec<&Line>, Vec<&Line>) =
-        chart.lines.iter().partition(|line| line.role == Role::Exact);
+        figure.lines.iter().partition(|line| line.role == Role::Exact);
     // Measured points stand behind everything.
     let is_measured = |mark: &&Mark| matches!(mark.sign, Sign::Measured { .. });
     // Numbers of snaps are written, not stamped.
-    let stamped = chart.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
+    let stamped = figure.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
     let (behind, above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
     let of = |some: &[Mark]| some.chunk_by(|a, b| a.sign == b.sign).filter_map(marks).collect::<Vec<_>>();
     let mut plots: Vec<Drawn> = of(&behind);
@@ -317,10 +316,10 @@ fn filled(d: String, fill: Color) -> Primitive {
 }
 
 /// Puts the areas below the lines.
-fn hatch(chart: &Chart, field: &ComputedLayout, scene: &mut Scene) {
+fn hatch(figure: &Figure, field: &ComputedLayout, scene: &mut Scene) {
     let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
-    let (Some(begin), false) = (begin, chart.areas.is_empty()) else { return };
-    let of = |meaning| chart.areas.iter().filter(move |area| area.meaning == meaning);
+    let (Some(begin), false) = (begin, figure.areas.is_empty()) else { return };
+    let of = |meaning| figure.areas.iter().filter(move |area| area.meaning == meaning);
     let contact = of(Meaning::Contact).map(|area| filled(outline(&area.outline, field), CONTACT.into()));
     let mut paths: Vec<Primitive> = contact.collect();
     if of(Meaning::Lost).next().is_some() {
@@ -334,8 +333,9 @@ mod tests {
     use super::*;
     use crate::figure::Area;
 
-    fn chart(lines: Vec<Line>) -> Chart {
-        Chart::new(ChartAxis::default(), ChartAxis::default(), lines)
+    fn figure(lines: Vec<Line>) -> Figure {
+        let axis = || Axis::pure(String::new());
+        Figure::of(axis(), axis(), lines)
     }
 
     #[test]
@@ -358,27 +358,27 @@ mod tests {
     #[test]
     fn nothing_a_point_and_numbers_that_are_none_are_valid_documents() {
         let nan = f64::NAN;
-        let missing = Chart { missing: Some("no path: $1 <&> \u{1b}".to_owned()), ..chart(Vec::new()) };
+        let missing = Figure { missing: Some("no path: $1 <&> \u{1b}".to_owned()), ..figure(Vec::new()) };
         let broken =
             Line::new(Role::Stable, "a < b & \"c\"", vec![(0.0, 1.0), (nan, 2.0), (1.0, 2.0), (2.0, 1e300)]);
-        let mut full = chart(vec![broken]);
+        let mut full = figure(vec![broken]);
         for meaning in [Meaning::Lost, Meaning::Contact] {
             let outline = vec![(0.0, 0.0), (nan, 1.0), (1.0, 1.0)];
             full.areas.push(Area { meaning, outline, lost: None });
         }
         full.marks.push(Mark { sign: Sign::Limit, at: (0.5, nan) });
-        let log = ChartAxis { title: String::new(), run: Run::Logarithmic };
+        let log = Axis::pure(String::new()).running(Run::Logarithmic);
         let negative =
-            Chart::new(log.clone(), log, vec![Line::new(Role::Body, "", vec![(-1.0, 2.0), (1.0, 0.0)])]);
-        for chart in [
-            chart(Vec::new()),
-            chart(vec![Line::new(Role::Stable, "one", vec![(1.0, 2.0)])]),
+            Figure::of(log.clone(), log, vec![Line::new(Role::Body, "", vec![(-1.0, 2.0), (1.0, 0.0)])]);
+        for figure in [
+            figure(Vec::new()),
+            figure(vec![Line::new(Role::Stable, "one", vec![(1.0, 2.0)])]),
             missing,
             full,
             negative,
         ] {
             for width in [Width::ONE_COLUMN, Width::TWO_COLUMNS] {
-                let text = svg(&chart, width);
+                let text = svg(&figure, width);
                 let document = roxmltree::Document::parse(&text).unwrap();
                 assert_eq!(document.root_element().tag_name().name(), "svg");
                 assert!(!text.contains("NaN"), "{text}");
@@ -390,19 +390,19 @@ mod tests {
 
     #[test]
     fn the_legend_names_only_the_signs_in_sight() {
-        let mut chart = chart(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
-        chart.marks =
+        let mut figure = figure(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
+        figure.marks =
             vec![Mark { sign: Sign::Limit, at: (0.8, 0.8) }, Mark { sign: Sign::PullOff, at: (0.1, 0.1) }];
-        let names = |chart: &Chart| legend(chart).into_iter().map(|entry| entry.label).collect::<Vec<_>>();
-        assert_eq!(names(&chart), ["curve", "limit point", "pull-off"]);
-        let close = chart.across("0.5..".parse().unwrap()).unwrap();
+        let names = |figure: &Figure| legend(figure).into_iter().map(|entry| entry.label).collect::<Vec<_>>();
+        assert_eq!(names(&figure), ["curve", "limit point", "pull-off"]);
+        let close = figure.across("0.5..".parse().unwrap()).unwrap();
         assert_eq!(names(&close), ["curve", "limit point"]);
         assert_eq!(names(&close.naming("A 2")), ["A 2, curve", "limit point"]);
     }
 
     #[test]
     fn a_chart_is_the_same_document_every_time() {
-        let chart = chart(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
-        assert_eq!(svg(&chart, Width::ONE_COLUMN), svg(&chart, Width::ONE_COLUMN));
+        let figure = figure(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
+        assert_eq!(svg(&figure, Width::ONE_COLUMN), svg(&figure, Width::ONE_COLUMN));
     }
 }

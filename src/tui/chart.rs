@@ -2,42 +2,17 @@
 //!
 //! No number that is not finite reaches a cell, and nothing outside the window is drawn.
 
-use super::raster::{self, Layer, Stroke};
+use super::marks::{letter, look, style};
+use super::raster::{self, Layer, Meets};
 use super::theme::Theme;
-use crate::figure::Bounds;
-use pulloff_engine::report::number::{fixed, short};
+use super::ticks::ticks;
+use crate::figure::{Area, Bounds, Figure, Meaning, Role, Sign};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Block;
-
-/// A curve to draw: its parts, and whether each is broken.
-#[derive(Debug, Clone)]
-pub struct Series {
-    pub parts: Vec<(Vec<(f64, f64)>, bool)>,
-    pub stroke: Stroke,
-}
-
-/// A closed outline that is filled.
-#[derive(Debug, Clone)]
-pub struct Region {
-    pub outline: Vec<(f64, f64)>,
-    pub style: Style,
-    /// What each of its cells is filled with.
-    pub shade: &'static str,
-}
-
-/// A letter at a point.
-#[derive(Debug, Clone)]
-pub struct Mark {
-    pub at: (f64, f64),
-    pub letter: String,
-    pub style: Style,
-    /// Whether it stands beside the point where a cell is free there: what it marks stays seen.
-    pub is_beside: bool,
-}
 
 /// An entry of the legend: what a line or a letter looks like, and what it means.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,79 +28,50 @@ impl Entry {
     }
 }
 
-/// A chart.
-#[derive(Debug, Clone)]
-pub struct Chart {
+/// A figure on the cells of a screen.
+#[derive(Debug)]
+pub struct Chart<'a> {
+    pub figure: &'a Figure,
+    pub theme: Theme,
+    /// What stands in its upper wall.
     pub title: String,
-    /// What else it says, at the right end of the title's line where it fits.
-    pub note: String,
-    /// The name of the x axis, at its right end.
-    pub x_title: String,
-    pub areas: Vec<Region>,
-    /// The curves, in the order of drawing.
-    pub series: Vec<Series>,
-    /// The marks, the last on top.
-    pub marks: Vec<Mark>,
-    pub cross: Option<(f64, f64)>,
+    /// The part of the figure that is seen.
     pub bounds: Bounds,
+    /// Whether its lines are curves to be compared: those share the cells in which they meet.
+    pub compares: bool,
     /// What lines and letters mean, the most important first.
     pub legend: Vec<Entry>,
-    /// What stands in it where there is nothing to draw.
-    pub missing: Option<String>,
+    /// The mark that stands out, by its place among those of the figure.
+    pub selected: Option<usize>,
+    pub cross: Option<(f64, f64)>,
+    /// The state next to the cross-hair.
+    pub nearest: Option<(f64, f64)>,
 }
 
 /// A chart with fewer rows inside has no row for its legend.
 const LEGEND_ROWS: u16 = 8;
 
-/// Round ticks inside `bounds`, at most `most`, with labels of one precision.
-pub fn ticks([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
-    let range = hi - lo;
-    if most == 0 || !range.is_finite() || range <= 0.0 {
-        return Vec::new();
-    }
-    let raw = range / most as f64;
-    let decade = 10f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|step| *step >= raw).unwrap_or(raw);
-    let first = (lo / step).ceil();
-    // Decimals that tell neighbouring ticks apart; very small or large values get an exponent.
-    let decimals = (-step.log10().floor()).max(0.0);
-    let size = lo.abs().max(hi.abs());
-    let plain = decimals <= 5.0 && size < 1e6;
-    // Far into a curve only the last digits differ.
-    let digits = (size / step).log10().ceil().clamp(2.0, 16.0) + 1.0;
-    (0..=most)
-        .map(|i| (first + i as f64) * step)
-        .take_while(|tick| *tick <= hi + 1e-9 * step)
-        .map(|tick| {
-            let tick = if tick.abs() < 0.5 * step { 0.0 } else { tick };
-            // Between 0 and 5, and between 3 and 17, see above.
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let label = if plain { fixed(tick, decimals as usize) } else { short(tick, digits as usize) };
-            (tick, label)
-        })
-        .collect()
-}
-
-impl Chart {
+impl Chart<'_> {
     /// Draws the chart with its frame into `area`.
-    pub fn draw(&self, frame: &mut Frame<'_>, area: Rect, theme: Theme, selected: bool) {
+    pub fn draw(&self, frame: &mut Frame<'_>, area: Rect, selected: bool) {
+        let theme = self.theme;
         let mut block: Block<'_> =
             theme.block(selected).title(Span::styled(theme.text(&self.title), theme.title(selected)));
-        let note = theme.text(&self.note);
+        let note = self.note();
         if self.legend_fits(area) {
-            let mut spans = self.legend_spans(theme, usize::MAX);
+            let mut spans = self.legend_spans(usize::MAX);
             if !note.is_empty() && !spans.is_empty() {
                 spans.push(Span::raw("  "));
             }
             spans.push(Span::styled(note, theme.dim()));
             block = block.title_top(Line::from(spans).right_aligned());
-        } else if self.title.chars().count() + note.chars().count() + 3 <= usize::from(area.width) {
+        } else if self.heading() + 3 <= usize::from(area.width) {
             block = block.title_top(Line::styled(note, theme.dim()).right_aligned());
         }
         let inner = block.inner(area);
         frame.render_widget(block, area);
         let buffer = frame.buffer_mut();
-        if let Some(reason) = &self.missing {
+        if let Some(reason) = &self.figure.missing {
             let text = theme.text(reason);
             let room = usize::from(inner.width.saturating_sub(1));
             buffer.set_stringn(inner.x + 1, inner.y + 1, text, room, theme.dim());
@@ -133,36 +79,63 @@ impl Chart {
         }
         let Some(plot) = self.plot(area) else { return };
         if plot.y > inner.y {
-            let line = Line::from(self.legend_spans(theme, usize::from(plot.width)));
+            let line = Line::from(self.legend_spans(usize::from(plot.width)));
             buffer.set_line(plot.x, inner.y, &line, plot.width);
         }
-        for region in &self.areas {
-            self.fill(buffer, plot, region);
+        for (at, region) in self.figure.areas.iter().enumerate() {
+            self.fill(buffer, plot, at, region);
         }
-        self.draw_zero(buffer, plot, theme);
-        let layers: Vec<Layer> = self.series.iter().map(|series| self.layer(series, plot, theme)).collect();
-        let taken = raster::draw(&layers, buffer, plot, theme.charts);
-        self.draw_cross(buffer, plot, theme);
-        self.draw_labels(buffer, inner, plot, theme);
+        self.draw_zero(buffer, plot);
+        let taken = raster::draw(&self.layers(plot), buffer, plot, theme.charts);
+        self.draw_cross(buffer, plot);
+        self.draw_labels(buffer, inner, plot);
         self.draw_marks(buffer, plot, &taken);
     }
 
-    fn layer(&self, series: &Series, plot: Rect, theme: Theme) -> Layer {
-        let mut layer = Layer::new(series.stroke, plot);
-        for (points, is_broken) in &series.parts {
-            layer.add(points, *is_broken, &self.bounds, plot, theme.charts);
+    /// What else the figure says, at the right end of the title's line where it fits.
+    fn note(&self) -> String {
+        self.theme.text(&self.figure.notes.join(", "))
+    }
+
+    /// The width of the title with the note.
+    pub fn heading(&self) -> usize {
+        self.title.chars().count() + self.note().chars().count()
+    }
+
+    /// The curves, each with all its parts, the curve of the problem last of those that share cells.
+    fn layers(&self, plot: Rect) -> Vec<Layer> {
+        let mut all: Vec<(Role, Layer)> = Vec::new();
+        // A chart draws its zero lines itself.
+        for line in self.figure.lines.iter().filter(|line| line.role != Role::Zero) {
+            // The stable and the unstable parts are one curve.
+            let curve = if line.role == Role::Unstable { Role::Stable } else { line.role };
+            let at = all.iter().position(|(other, _)| *other == curve).unwrap_or_else(|| {
+                all.push((curve, Layer::new(look(curve, self.theme), plot)));
+                all.len() - 1
+            });
+            let is_broken = line.is_broken || look(line.role, self.theme).is_broken;
+            all[at].1.add(&line.points, is_broken, &self.bounds, plot, self.theme.charts);
         }
-        layer
+        all.sort_by_key(|(role, _)| (*role == Role::Stable, *role));
+        for (role, layer) in &mut all {
+            // Curves of states are not compared: the computed one is seen where others agree with it.
+            let is_own = matches!(role, Role::Stable | Role::Body | Role::Edges);
+            if !self.compares && !is_own && layer.stroke.meets == Meets::Shares {
+                layer.stroke.meets = Meets::Beneath;
+            }
+        }
+        all.into_iter().map(|(_, layer)| layer).collect()
     }
 
     /// Whether the whole legend stands in the upper wall.
     fn legend_fits(&self, area: Rect) -> bool {
         let legend: usize = self.legend.iter().map(|entry| entry.width() + 2).sum();
-        self.title.chars().count() + self.note.chars().count() + legend + 4 <= usize::from(area.width)
+        self.heading() + legend + 4 <= usize::from(area.width)
     }
 
     /// As many entries as there is room for; an ellipsis where some are left out.
-    fn legend_spans(&self, theme: Theme, room: usize) -> Vec<Span<'static>> {
+    fn legend_spans(&self, room: usize) -> Vec<Span<'static>> {
+        let theme = self.theme;
         let mut spans = Vec::new();
         let mut used = 0;
         for (at, entry) in self.legend.iter().enumerate() {
@@ -216,8 +189,15 @@ impl Chart {
         self.bounds.y[1] = self.bounds.y[0] + unit * upwards;
     }
 
-    /// The cells whose middle is inside of an outline.
-    fn fill(&self, buffer: &mut Buffer, plot: Rect, region: &Region) {
+    /// The cells whose middle is inside of an outline, the `at`-th of the figure.
+    fn fill(&self, buffer: &mut Buffer, plot: Rect, at: usize, region: &Area) {
+        let (theme, styles) = (self.theme, self.theme.styles());
+        let (style, shade) = match region.meaning {
+            // Neighbours differ.
+            Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
+            Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
+            Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
+        };
         if region.outline.iter().any(|(x, y)| !(x.is_finite() && y.is_finite())) {
             return;
         }
@@ -232,14 +212,15 @@ impl Chart {
                 let (x, _) = self.bounds.at(((f64::from(column) + 0.5) / f64::from(plot.width), 0.0));
                 // Inside when an odd number of sides lies to the left.
                 if crossings.iter().filter(|crossing| **crossing < x).count() % 2 == 1 {
-                    put(buffer, (plot.x + column, plot.y + row), region.shade, region.style);
+                    put(buffer, (plot.x + column, plot.y + row), shade, style);
                 }
             }
         }
     }
 
     /// The axes through zero, in the empty cells.
-    fn draw_zero(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
+    fn draw_zero(&self, buffer: &mut Buffer, plot: Rect) {
+        let theme = self.theme;
         let column = cell(0.0, self.bounds.x, plot.width, false);
         let row = cell(0.0, self.bounds.y, plot.height, true);
         let across = row.into_iter().flat_map(|row| (0..plot.width).map(move |i| (i, row)));
@@ -255,7 +236,8 @@ impl Chart {
     }
 
     /// Each label on its row or column, or not at all.
-    fn draw_labels(&self, buffer: &mut Buffer, inner: Rect, plot: Rect, theme: Theme) {
+    fn draw_labels(&self, buffer: &mut Buffer, inner: Rect, plot: Rect) {
+        let theme = self.theme;
         let gutter = plot.x - inner.x;
         for (value, label) in &self.y_ticks(inner) {
             let room = usize::from(gutter.saturating_sub(1));
@@ -267,7 +249,7 @@ impl Chart {
             }
         }
         let below = plot.y + plot.height;
-        let title = theme.text(&self.x_title);
+        let title = theme.text(&self.figure.x.title());
         let title_width = u16::try_from(title.chars().count()).unwrap_or(u16::MAX);
         let end = inner.right().saturating_sub(title_width + 1);
         let mut free = inner.x;
@@ -287,11 +269,8 @@ impl Chart {
     /// The marks; one that stands beside its point takes a free cell there, where there is one.
     fn draw_marks(&self, buffer: &mut Buffer, plot: Rect, taken: &[Option<usize>]) {
         let mut marked: Vec<Position> = Vec::new();
-        for mark in &self.marks {
-            let column = cell(mark.at.0, self.bounds.x, plot.width, false);
-            let row = cell(mark.at.1, self.bounds.y, plot.height, true);
-            let (Some(column), Some(row)) = (column, row) else { continue };
-            let own = Position::new(plot.x + column, plot.y + row);
+        for (number, mark) in self.figure.marks.iter().enumerate() {
+            let Some(own) = self.place(mark.at, plot) else { continue };
             let is_free = |at: &Position| {
                 let index = usize::from(at.y - plot.y) * usize::from(plot.width) + usize::from(at.x - plot.x);
                 taken.get(index).is_some_and(Option::is_none) && !marked.contains(at)
@@ -300,18 +279,35 @@ impl Chart {
                 let at = Position::new(own.x.checked_add_signed(right)?, own.y.checked_add_signed(down)?);
                 plot.contains(at).then_some(at)
             });
-            let found = if mark.is_beside { beside.into_iter().find(is_free) } else { None };
+            // What it marks stays seen.
+            let is_beside = matches!(mark.sign, Sign::OtherLimit(_) | Sign::Limit | Sign::Event(_));
+            let found = if is_beside { beside.into_iter().find(is_free) } else { None };
             let at = found.unwrap_or(own);
-            if mark.is_beside && marked.contains(&at) {
+            if is_beside && marked.contains(&at) {
                 continue;
             }
             marked.push(at);
-            put(buffer, (at.x, at.y), &mark.letter, mark.style);
+            let mut style = style(mark.sign, self.theme);
+            if self.selected == Some(number) {
+                style = style.add_modifier(Modifier::REVERSED);
+            }
+            put(buffer, at.into(), &letter(mark.sign, self.theme), style);
+        }
+        if let Some(at) = self.nearest.and_then(|at| self.place(at, plot)) {
+            put(buffer, at.into(), "*", self.theme.styles().nearest);
         }
     }
 
+    /// The cell of a point, where it is seen.
+    fn place(&self, (x, y): (f64, f64), plot: Rect) -> Option<Position> {
+        let column = cell(x, self.bounds.x, plot.width, false)?;
+        let row = cell(y, self.bounds.y, plot.height, true)?;
+        Some(Position::new(plot.x + column, plot.y + row))
+    }
+
     /// The cross-hair: lines in the empty cells of its row and column.
-    fn draw_cross(&self, buffer: &mut Buffer, plot: Rect, theme: Theme) {
+    fn draw_cross(&self, buffer: &mut Buffer, plot: Rect) {
+        let theme = self.theme;
         let Some((x, y)) = self.cross else { return };
         let column = cell(x, self.bounds.x, plot.width, false);
         let row = cell(y, self.bounds.y, plot.height, true);
@@ -362,19 +358,6 @@ fn cell(value: f64, [lo, hi]: [f64; 2], count: u16, flipped: bool) -> Option<u16
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        let labels = |bounds, most| ticks(bounds, most).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
-        assert_eq!(labels([-0.061, 0.066], 4), ["-0.05", "0.00", "0.05"]);
-        assert_eq!(labels([-1.5, 0.4], 5), ["-1.5", "-1.0", "-0.5", "0.0"]);
-        assert_eq!(labels([0.0, 3e-9], 3), ["0", "1e-9", "2e-9", "3e-9"]);
-        // Far into a curve neighbouring ticks still differ.
-        let deep = labels([0.123_456_78, 0.123_456_82], 4);
-        assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);
-        assert!(ticks([1.0, 1.0], 4).is_empty());
-        assert!(ticks([0.0, f64::NAN], 4).is_empty());
-    }
 
     #[test]
     fn an_outline_is_filled_inside_and_nowhere_else() {

@@ -10,7 +10,9 @@
 //! | [`layout`] | which region goes where at which size |
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
 //! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
-//! | [`chart`] | one chart: axes, ticks, curves, marks, the cross-hair |
+//! | [`chart`] | a figure on cells: axes, curves, marks, the cross-hair |
+//! | `marks` | how each line and sign of a figure is drawn |
+//! | `ticks` | round numbers beside an axis |
 //! | [`raster`] | curves as dots in cells, and whose colour each cell has |
 //! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
 //! | [`view`] | one file per screen region |
@@ -21,11 +23,13 @@ pub mod copy;
 pub mod keymap;
 pub mod layout;
 pub mod look;
+mod marks;
 pub mod overlay;
 pub mod raster;
 mod slow_notice;
 pub mod terminal;
 pub mod theme;
+mod ticks;
 pub mod view;
 
 #[cfg(test)]

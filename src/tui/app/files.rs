@@ -5,7 +5,7 @@ use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::model::Level;
 use crate::explorer::{Effect, Id};
 use crate::figure::Subject;
-use crate::plot::{Chart, Width, svg};
+use crate::plot::{Width, svg};
 use crate::print::Format;
 use crate::store::Source;
 use crate::tui::copy;
@@ -84,10 +84,10 @@ impl App {
     fn figure(&self) -> Option<String> {
         let view = self.model.view;
         let subject = Subject::of(&self.model)?;
-        let chart = Chart::of(&subject.figure(view), &self.model.window(view));
+        let figure = subject.figure(view).in_window(&self.model.window(view));
         let own_name = subject.own_name().filter(|_| view.is_curve());
-        let chart = if let Some(name) = own_name { chart.naming(&name) } else { chart };
-        Some(svg::svg(&chart, Width::ONE_COLUMN))
+        let figure = if let Some(name) = own_name { figure.naming(&name) } else { figure };
+        Some(svg::svg(&figure, Width::ONE_COLUMN))
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {

@@ -131,7 +131,8 @@ impl App {
         let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
         let subject = Subject::of(&self.model);
         let plot = subject.and_then(|subject| {
-            charts::chart(&subject.figure(*view), &self.model.window(*view), self.theme).plot(*area)
+            let figure = subject.figure(*view);
+            charts::chart(&figure, *view, &self.model.window(*view), self.theme).plot(*area)
         });
         let share = |at: u16, from: u16, count: u16| (f64::from(at - from) + 0.5) / f64::from(count);
         let place = plot

@@ -1,13 +1,12 @@
-//! The views: figures given their strokes, letters and colours.
+//! The views: figures with their legends, the cross-hair and the selected event.
 
 use super::legend::legend;
-use super::marks::{letter, look, style};
 use super::parts::is_selected;
-use crate::explorer::{EventSource, Id, Panel, View, Window};
-use crate::figure::{Area, Bounds, Figure, Mark as Placed, Meaning, Role, Sign, Subject, nearest};
+use crate::explorer::{EventSource, Id, Model, Panel, View, Window};
+use crate::figure::{Axis, Figure, Sign, Subject, nearest};
 use crate::tui::app::App;
-use crate::tui::chart::{Chart, Entry, Mark, Region, Series};
-use crate::tui::raster::Meets;
+use crate::tui::chart::{Chart, Entry};
+use crate::tui::marks::style;
 use crate::tui::theme::Theme;
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
@@ -16,56 +15,46 @@ use ratatui::style::Modifier;
 
 /// Draws one view; the first one has the cross-hair and the keys.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
+    let model = &app.model;
     let selected = first && is_selected(app, Panel::Charts);
-    let chart = Subject::of(&app.model).map_or_else(
-        || without_curve(app),
-        |subject| {
-            let figure = subject.figure(view);
-            let mut chart = chart(&figure, &app.model.window(view), app.theme);
-            if view == View::Contact {
-                chart.make_even(area);
-            }
-            if first {
-                let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
-                let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
-                if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
-                    chart.title.push_str(&hint);
-                }
-                cross_hair(&subject, view, app, &mut chart);
-            }
-            if view.is_curve() || view == View::Unloading {
-                select_event(app, &figure, &mut chart);
-            }
-            chart
-        },
-    );
-    chart.draw(frame, area, app.theme, selected);
+    let Some(subject) = Subject::of(model) else {
+        chart(&without_curve(app), view, &Window::WHOLE, app.theme).draw(frame, area, selected);
+        return;
+    };
+    let figure = subject.figure(view);
+    let mut chart = chart(&figure, view, &model.window(view), app.theme);
+    if view == View::Contact {
+        chart.make_even(area);
+    }
+    if first {
+        let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
+        if chart.heading() + hint.chars().count() + 3 <= usize::from(area.width) {
+            chart.title.push_str(&hint);
+        }
+        chart.cross = model.cross.map(|share| chart.bounds.at(share));
+        let found = chart.cross.and_then(|at| nearest(&subject, view, &chart.bounds, at));
+        chart.nearest = found.map(|nearest| nearest.at);
+    }
+    if view.is_curve() || view == View::Unloading {
+        select_event(model, &mut chart);
+    }
+    chart.draw(frame, area, selected);
 }
 
-/// The chart while there is no curve: on its way, or given up or failed, which the status line explains.
-fn without_curve(app: &App) -> Chart {
+/// What stands there while there is no curve: on its way, or given up or failed, which the status line explains.
+fn without_curve(app: &App) -> Figure {
     let missing = if app.model.is_computing() {
         "computing".to_owned()
     } else {
         let key = app.keymap.first(Id::Restart);
         format!("no curve: {key} computes it again, and so does another value")
     };
-    Chart {
-        title: "Curve".to_owned(),
-        note: String::new(),
-        x_title: String::new(),
-        areas: Vec::new(),
-        series: Vec::new(),
-        marks: Vec::new(),
-        cross: None,
-        bounds: Bounds::of([]),
-        legend: Vec::new(),
-        missing: Some(missing),
-    }
+    let axis = || Axis::pure(String::new());
+    Figure { missing: Some(missing), ..Figure::empty("Curve".to_owned(), axis(), axis()) }
 }
 
-/// A figure as a chart.
-pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
+/// The part of a figure of `view` in a window, on the screen.
+pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) -> Chart<'a> {
     let zoom = if window.is_whole() {
         String::new()
     } else {
@@ -73,96 +62,35 @@ pub fn chart(figure: &Figure, window: &Window, theme: Theme) -> Chart {
     };
     let bounds = figure.bounds.part(window);
     Chart {
+        figure,
+        theme,
         title: format!("{}{zoom}", figure.title),
-        note: figure.notes.join(", "),
-        x_title: figure.x.title(),
-        areas: figure.areas.iter().enumerate().map(|(at, area)| region(at, area, theme)).collect(),
-        series: series(figure, theme),
-        marks: figure.marks.iter().map(|placed| mark(placed, theme)).collect(),
-        cross: None,
-        bounds,
         legend: legend(figure, &bounds, theme),
-        missing: figure.missing.clone(),
+        bounds,
+        compares: view.is_curve(),
+        selected: None,
+        cross: None,
+        nearest: None,
     }
 }
 
-/// The curve that a line is a part of: its stable and unstable parts are one.
-fn curve_of(role: Role) -> Role {
-    if role == Role::Unstable { Role::Stable } else { role }
-}
-
-/// The curves, each with all its parts, the curve of the problem last of those that share cells.
-fn series(figure: &Figure, theme: Theme) -> Vec<Series> {
-    let mut all: Vec<(Role, Series)> = Vec::new();
-    // A chart on the screen draws its zero lines itself.
-    for line in figure.lines.iter().filter(|line| line.role != Role::Zero) {
-        let (curve, stroke) = (curve_of(line.role), look(line.role, theme));
-        let part = (line.points.clone(), line.is_broken || stroke.is_broken);
-        match all.iter_mut().find(|(other, _)| *other == curve) {
-            Some((_, series)) => series.parts.push(part),
-            None => all.push((curve, Series { parts: vec![part], stroke: look(curve, theme) })),
-        }
-    }
-    all.sort_by_key(|(role, _)| (*role == Role::Stable, *role));
-    if !figure.view.is_curve() {
-        // Curves of states are not compared: the computed one is seen where others agree with it.
-        for (role, series) in &mut all {
-            if !matches!(role, Role::Stable | Role::Body | Role::Edges)
-                && series.stroke.meets == Meets::Shares
-            {
-                series.stroke.meets = Meets::Beneath;
-            }
-        }
-    }
-    all.into_iter().map(|(_, series)| series).collect()
-}
-
-fn region(at: usize, area: &Area, theme: Theme) -> Region {
-    let styles = theme.styles();
-    let (style, shade) = match area.meaning {
-        // Neighbours differ.
-        Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
-        Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
-        Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
-    };
-    Region { outline: area.outline.clone(), style, shade }
-}
-
-/// The cross-hair, and the state of the curve nearest to it.
-fn cross_hair(subject: &Subject<'_>, view: View, app: &App, chart: &mut Chart) {
-    chart.cross = app.model.cross.map(|share| chart.bounds.at(share));
-    if let Some(nearest) = chart.cross.and_then(|at| nearest(subject, view, &chart.bounds, at)) {
-        let style = app.theme.styles().nearest;
-        chart.marks.push(Mark { at: nearest.at, letter: "*".to_owned(), style, is_beside: false });
-    }
-}
-
-fn mark(mark: &Placed, theme: Theme) -> Mark {
-    let is_beside = matches!(mark.sign, Sign::OtherLimit(_) | Sign::Limit | Sign::Event(_));
-    Mark { at: mark.at, letter: letter(mark.sign, theme), style: style(mark.sign, theme), is_beside }
-}
-
-/// The mark of the selected event stands out, and has its number where the letter has none.
-fn select_event(app: &App, figure: &Figure, chart: &mut Chart) {
-    let model = &app.model;
+/// The mark of the selected event stands out, and has its number in the legend where the letter has none.
+fn select_event(model: &Model, chart: &mut Chart<'_>) {
     if model.events != EventSource::Curve {
         return;
     }
     let number = model.event + 1;
     let count = model.shown_events().len();
-    for (placed, mark) in figure.marks.iter().zip(&mut chart.marks) {
-        let is_it = match placed.sign {
-            Sign::Event(other) => other == number,
-            Sign::PullOff => number == count,
-            _ => false,
-        };
-        if is_it {
-            mark.style = mark.style.add_modifier(Modifier::REVERSED);
-            if number > 9 && placed.sign != Sign::PullOff {
-                let entry =
-                    Entry { glyph: "v".to_owned(), style: mark.style, meaning: format!("event {number}") };
-                chart.legend.insert(0, entry);
-            }
-        }
+    chart.selected = chart.figure.marks.iter().position(|mark| match mark.sign {
+        Sign::Event(other) => other == number,
+        Sign::PullOff => number == count,
+        _ => false,
+    });
+    if let Some(at) = chart.selected
+        && number > 9
+        && let sign @ Sign::Event(_) = chart.figure.marks[at].sign
+    {
+        let style = style(sign, chart.theme).add_modifier(Modifier::REVERSED);
+        chart.legend.insert(0, Entry { glyph: "v".to_owned(), style, meaning: format!("event {number}") });
     }
 }

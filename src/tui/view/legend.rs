@@ -1,9 +1,9 @@
 //! What the lines and letters of a figure mean; and the cross-hair in words.
 
-use super::marks::{glyph, letter, look, style};
 use crate::explorer::Model;
 use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading};
 use crate::tui::chart::Entry;
+use crate::tui::marks::{glyph, letter, look, style};
 use crate::tui::theme::Theme;
 
 /// What is in the window of a figure, the most important first: the curve, the walk, the marks, pins, theory, the rest.

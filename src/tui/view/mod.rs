@@ -5,7 +5,6 @@ pub mod events;
 pub mod header;
 pub mod help;
 pub mod legend;
-mod marks;
 pub mod overlays;
 mod parts;
 pub mod problem;

@@ -2,7 +2,7 @@
 
 use super::charts;
 use super::parts::panel;
-use crate::explorer::Window;
+use crate::explorer::{View, Window};
 use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
 use crate::tui::theme::Theme;
@@ -114,7 +114,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         && inner.width >= LIST + NARROWEST
     {
         let beside = Rect { x: inner.x + LIST, width: inner.width - LIST, ..inner };
-        charts::chart(figure, &Window::WHOLE, theme).draw(frame, beside, theme, false);
+        charts::chart(figure, View::Gap, &Window::WHOLE, theme).draw(frame, beside, false);
         inner.width = LIST;
     }
     let rows = usize::from(inner.height);

@@ -3,8 +3,8 @@
 use super::Screen;
 use crate::explorer::View;
 use crate::figure::{Role, Subject};
+use crate::tui::marks::{glyph, letter, look};
 use crate::tui::theme::{Charts, Palette, Theme};
-use crate::tui::view::marks::{glyph, letter, look};
 use ratatui::style::Color;
 use std::collections::HashMap;
 

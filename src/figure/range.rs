@@ -1,5 +1,6 @@
 //! The part of an axis that a figure is asked to show, in the units of that axis: `0..0.1`, `..0.1`, `-2..`.
 
+use super::{Bounds, Figure};
 use pulloff_engine::report::number::short;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -76,6 +77,34 @@ fn narrowest(largest: f64) -> f64 {
     // An end of a width above zero is not zero.
     let decade = largest.log10().floor();
     STEPS * 10.0_f64.powf(decade + 1.0 - f64::from(digits))
+}
+
+impl Figure {
+    /// The part of its x axis in `range`; an empty figure stays as it is. Errors: those of [`Range::ends`].
+    pub fn across(mut self, range: Range) -> Result<Self, RangeError> {
+        if self.missing.is_none() {
+            self.bounds.x = range.ends(&self.x.title(), self.bounds.x, self.drawn().x)?;
+        }
+        Ok(self)
+    }
+
+    /// The part of its y axis in `range`; an empty figure stays as it is. Errors: those of [`Range::ends`].
+    pub fn upwards(mut self, range: Range) -> Result<Self, RangeError> {
+        if self.missing.is_none() {
+            self.bounds.y = range.ends(&self.y.title(), self.bounds.y, self.drawn().y)?;
+        }
+        Ok(self)
+    }
+
+    /// How far anything drawn reaches, and how far it is shown.
+    fn drawn(&self) -> Bounds {
+        let Bounds { x, y } = &self.bounds;
+        let lines = self.lines.iter().flat_map(|line| line.points.iter().copied());
+        lines.filter(|(x, y)| x.is_finite() && y.is_finite()).fold(Bounds { x: *x, y: *y }, |all, (x, y)| {
+            let wider = |[lo, hi]: [f64; 2], at: f64| [lo.min(at), hi.max(at)];
+            Bounds { x: wider(all.x, x), y: wider(all.y, y) }
+        })
+    }
 }
 
 impl FromStr for Range {
