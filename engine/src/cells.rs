@@ -3,9 +3,10 @@
 //! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
 //! come in runs, and every fault must name its line.
 
-use crate::text::is_unsafe;
+use crate::text::{is_unsafe, quote};
 use crate::units::{Dimension, Unit};
 use std::fmt;
+use thiserror::Error;
 
 /// The largest file, in bytes.
 pub const LARGEST: u64 = 64 << 20;
@@ -50,6 +51,60 @@ impl<F: fmt::Display> fmt::Display for Faults<F> {
             0 => Ok(()),
             more => write!(f, "\nand {more} more"),
         }
+    }
+}
+
+/// What is wrong with a line, whatever its columns are.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum LineFault {
+    /// The line is far too long.
+    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
+    Long(usize),
+    /// Characters that are not for the eye.
+    #[error("holds control or invisible characters")]
+    Unprintable,
+}
+
+/// What is wrong with a cell that should hold a number.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum CellFault {
+    /// It is empty.
+    #[error("the {0} is missing")]
+    Missing(&'static str),
+    /// Not a number.
+    #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
+    Number {
+        /// What it holds.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// Not finite, or absurdly large.
+    #[error(
+        "the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to {LARGEST_NUMBER:e}"
+    )]
+    Range {
+        /// What it holds.
+        what: &'static str,
+        /// Its text, safe to show.
+        text: String,
+    },
+}
+
+/// The number in a cell that holds `what`.
+///
+/// # Errors
+/// [`CellFault`].
+pub fn number(text: &str, what: &'static str) -> Result<f64, CellFault> {
+    if text.is_empty() {
+        return Err(CellFault::Missing(what));
+    }
+    let number: f64 = text.parse().map_err(|_| CellFault::Number { what, text: quote(text) })?;
+    if number.abs() <= LARGEST_NUMBER {
+        // -0 is 0, so that rows are compared as numbers.
+        Ok(number + 0.0)
+    } else {
+        Err(CellFault::Range { what, text: quote(text) })
     }
 }
 

@@ -7,6 +7,7 @@
 //! | [`distance`] | the signed distance of a point from it |
 //! | [`problem`] | parameters, data, residuals, derivatives |
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
+//! | [`pose`] | points and parameters of what is asked for |
 //! | [`start`] | where a fit starts |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
@@ -25,6 +26,7 @@ pub mod judge;
 pub mod least_squares;
 pub mod options;
 pub mod path;
+pub mod pose;
 pub mod problem;
 pub mod run;
 pub mod solve;

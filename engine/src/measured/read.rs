@@ -10,9 +10,10 @@
 //! are in SI (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
 //! Every fault is told with its line and its column, the first of them; a file with faults gives no curve.
 
-use super::role::{Place, Role, Segment, Spec, SpecError, dimensions, unit_of};
+use super::role::{Place, Role, Said, Segment, Spec, SpecError, dimensions, unit_of};
 use crate::cells::{
-    self, Faults, Head, LARGEST_NUMBER, LONGEST_LINE, Separator, heads, is_header, is_unprintable, remark,
+    self, CellFault, Faults, Head, LARGEST_NUMBER, LONGEST_LINE, LineFault, Separator, heads, is_header,
+    is_unprintable, remark,
 };
 use crate::text::{quote, sanitize};
 use crate::units::Unit;
@@ -59,12 +60,9 @@ pub struct Measured {
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Fault {
-    /// The line is far too long.
-    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
-    Long(usize),
-    /// Characters that are not for the eye.
-    #[error("holds control or invisible characters")]
-    Unprintable,
+    /// Of the line as a whole.
+    #[error(transparent)]
+    Line(#[from] LineFault),
     /// Another number of cells than the first row.
     #[error("has {found} cells, and the first row has {expected}")]
     Cells {
@@ -73,36 +71,13 @@ pub enum Fault {
         /// How many are expected.
         expected: usize,
     },
-    /// An empty cell.
-    #[error("column {number}: the {what} is missing")]
-    Missing {
+    /// Of one cell.
+    #[error("column {number}: {fault}")]
+    Cell {
         /// The column, from 1.
         number: usize,
-        /// What it holds.
-        what: &'static str,
-    },
-    /// Not a number.
-    #[error("column {number}: the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
-    Number {
-        /// The column, from 1.
-        number: usize,
-        /// What it holds.
-        what: &'static str,
-        /// Its text, safe to show.
-        text: String,
-    },
-    /// Not finite, or absurdly large.
-    #[error(
-        "column {number}: the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to \
-         {LARGEST_NUMBER:e}"
-    )]
-    Range {
-        /// The column, from 1.
-        number: usize,
-        /// What it holds.
-        what: &'static str,
-        /// Its text, safe to show.
-        text: String,
+        /// What is wrong.
+        fault: CellFault,
     },
     /// A branch that is not known.
     #[error(
@@ -192,6 +167,25 @@ struct Header {
     heads: Vec<Head>,
 }
 
+/// How rows are taken apart, as the first of them shows.
+struct Layout {
+    separator: Separator,
+    cells: usize,
+    wanted: Vec<Wanted>,
+}
+
+/// A file on its way to columns: what the lines so far have said.
+#[derive(Default)]
+struct Reader<'a> {
+    header: Option<(usize, &'a str)>,
+    /// A remark that may be the header.
+    candidate: Option<(usize, &'a str)>,
+    metadata: Metadata,
+    layout: Option<Layout>,
+    rows: usize,
+    measured: Measured,
+}
+
 /// Reads the curve in `bytes`, the content of a file, with what a person says of its columns.
 ///
 /// # Errors
@@ -199,74 +193,84 @@ struct Header {
 pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     let text = cells::text_of(bytes).map_err(ReadError::NotText)?;
     let mut faults = Faults::default();
-    let mut measured = Measured::default();
-    // Lines with their numbers: the header, and a remark that may be one.
-    let mut header: Option<(usize, &str)> = None;
-    let mut candidate: Option<(usize, &str)> = None;
-    let mut metadata = Metadata::default();
-    let mut layout: Option<(Separator, usize, Vec<Wanted>)> = None;
-    let mut rows = 0;
-    for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim_end_matches('\r'))) {
-        // A trailing tab is an empty cell; a leading one is not there in files of ours.
-        let trimmed = text.trim();
-        if trimmed.is_empty() {
-            continue;
-        }
-        if is_unprintable(trimmed) {
-            faults.add(line, Fault::Unprintable);
-            continue;
-        }
-        if let Some(remark) = remark(trimmed) {
-            if layout.is_none() && !metadata.takes(remark) {
-                candidate = Some((line, remark.trim()));
-            }
-            continue;
-        }
-        if trimmed.len() > LONGEST_LINE {
-            faults.add(line, Fault::Long(trimmed.len()));
-            continue;
-        }
-        if layout.is_none() && header.is_none() && is_header(trimmed) {
-            header = Some((line, trimmed));
-            continue;
-        }
-        if layout.is_none() {
-            let separator = Separator::of(trimmed);
-            let cells = separator.cells(trimmed).len();
-            if cells > MOST_COLUMNS {
-                return Err(ReadError::ManyColumns { line, found: cells });
-            }
-            let header = headed(header, candidate, separator, cells);
-            measured.header = header.as_ref().map(|header| header.line);
-            let wanted = wanted(spec, header.as_ref(), line, cells, metadata.found, &mut measured.notes)?;
-            for column in wanted.iter().filter(|column| column.role != Role::Segment) {
-                let (role, unit) = (column.role, column.unit.clone());
-                let number = column.at + 1;
-                measured.columns.push(Column { role, number, unit, values: Vec::new(), step: f64::INFINITY });
-            }
-            if wanted.iter().any(|column| column.role == Role::Segment) {
-                measured.segments = Some(Vec::new());
-            }
-            layout = Some((separator, cells, wanted));
-        }
-        if let Some((separator, cells, wanted)) = &layout {
-            rows += 1;
-            if let Err(fault) = row(trimmed, *separator, *cells, wanted, &mut measured) {
-                faults.add(line, fault);
-            }
-            if rows > *ROW_RANGE.end() {
-                return Err(ReadError::Rows(rows));
-            }
+    let mut reader = Reader::default();
+    for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
+        if let Some(fault) = reader.takes(spec, line, text)? {
+            faults.add(line, fault);
         }
     }
     if faults.total > 0 {
         return Err(ReadError::Faults(faults));
     }
-    if !ROW_RANGE.contains(&rows) {
-        return Err(ReadError::Rows(rows));
+    if !ROW_RANGE.contains(&reader.rows) {
+        return Err(ReadError::Rows(reader.rows));
     }
-    measured.stiffness = metadata.stiffness();
-    Ok(measured)
+    reader.measured.stiffness = reader.metadata.stiffness();
+    Ok(reader.measured)
+}
+
+impl<'a> Reader<'a> {
+    /// Takes a line in; answers with what is wrong with it, and fails where there is no use in reading on.
+    fn takes(&mut self, spec: &Spec, line: usize, text: &'a str) -> Result<Option<Fault>, ReadError> {
+        if text.is_empty() {
+            return Ok(None);
+        }
+        if is_unprintable(text) {
+            return Ok(Some(LineFault::Unprintable.into()));
+        }
+        if let Some(remark) = remark(text) {
+            if self.layout.is_none() && !self.metadata.takes(remark) {
+                self.candidate = Some((line, remark.trim()));
+            }
+            return Ok(None);
+        }
+        if text.len() > LONGEST_LINE {
+            return Ok(Some(LineFault::Long(text.len()).into()));
+        }
+        if self.layout.is_none() && self.header.is_none() && is_header(text) {
+            self.header = Some((line, text));
+            return Ok(None);
+        }
+        if self.layout.is_none() {
+            self.layout = Some(self.lay_out(spec, line, text)?);
+        }
+        self.rows += 1;
+        if self.rows > *ROW_RANGE.end() {
+            return Err(ReadError::Rows(self.rows));
+        }
+        let layout = self.layout.as_ref();
+        Ok(layout.and_then(|layout| row(text, layout, &mut self.measured).err()))
+    }
+
+    /// What the first row, in `line`, and the header above it say of the columns; makes them.
+    fn lay_out(&mut self, spec: &Spec, line: usize, text: &str) -> Result<Layout, ReadError> {
+        let separator = Separator::of(text);
+        let cells = separator.cells(text).len();
+        if cells > MOST_COLUMNS {
+            return Err(ReadError::ManyColumns { line, found: cells });
+        }
+        let header = headed(self.header, self.candidate, separator, cells);
+        self.measured.header = header.as_ref().map(|header| header.line);
+        let mut wanted = wanted(spec, header.as_ref(), line, cells, &mut self.measured.notes)?;
+        if self.metadata.found {
+            in_si(&mut wanted);
+        }
+        for column in wanted.iter().filter(|column| column.role != Role::Segment) {
+            let (role, unit) = (column.role, column.unit.clone());
+            let number = column.at + 1;
+            self.measured.columns.push(Column {
+                role,
+                number,
+                unit,
+                values: Vec::new(),
+                step: f64::INFINITY,
+            });
+        }
+        if wanted.iter().any(|column| column.role == Role::Segment) {
+            self.measured.segments = Some(Vec::new());
+        }
+        Ok(Layout { separator, cells, wanted })
+    }
 }
 
 /// The block of JSON in the remarks of an afmformats file.
@@ -339,23 +343,59 @@ fn whole((name, unit): Head) -> Head {
     }
 }
 
-/// Which columns are used.
+/// Which columns are used, in a file whose first row is in the line `row`.
 fn wanted(
     spec: &Spec,
     header: Option<&Header>,
     row: usize,
     cells: usize,
-    is_tab: bool,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Wanted>, ReadError> {
     let line = header.map_or(row, |header| header.line);
-    let names = || header.map_or_else(String::new, |header| listed(&header.heads));
-    let mut wanted: Vec<Wanted> = Vec::new();
-    let of_header = |at: usize, role: Role| -> Result<Option<Unit>, ReadError> {
-        let text = header.and_then(|header| header.heads.get(at)?.1.as_deref());
-        text.map(|text| unit_of(role, text)).transpose().map_err(|cause| ReadError::Unit { line, cause })
+    let known = || header.map_or_else(String::new, |header| listed(&header.heads));
+    let wanted = match header {
+        _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
+        Some(header) => of_header(header, notes)?,
+        None if cells == 2 => {
+            notes.push(
+                "there is no header: the first column is taken for the approach, the second for the force"
+                    .to_owned(),
+            );
+            let of = |(at, role)| Wanted { role, at, unit: None };
+            [(0, Role::Approach), (1, Role::Force)].map(of).into()
+        }
+        None => Vec::new(),
     };
-    for said in &spec.0 {
+    if wanted.is_empty() {
+        return Err(ReadError::Unknown { line, cells, names: known() });
+    }
+    let has = |role| wanted.iter().any(|column: &Wanted| column.role == role);
+    let lacks = |missing| Err(ReadError::Lacks { line, missing, known: known() });
+    if !(has(Role::Force) || has(Role::Deflection)) {
+        return lacks("force, or of the deflection");
+    }
+    if !(has(Role::Approach) || has(Role::Position) || has(Role::Radius)) {
+        return lacks("approach, of the position or of the contact radius");
+    }
+    Ok(wanted)
+}
+
+/// The unit that a header names for the column `at`, of the role `role`.
+fn unit_in(header: &Header, at: usize, role: Role) -> Result<Option<Unit>, ReadError> {
+    let text = header.heads.get(at).and_then(|head| head.1.as_deref());
+    text.map(|text| unit_of(role, text))
+        .transpose()
+        .map_err(|cause| ReadError::Unit { line: header.line, cause })
+}
+
+/// The columns that a person names.
+fn of_person(
+    spec: &Spec,
+    header: Option<&Header>,
+    line: usize,
+    cells: usize,
+) -> Result<Vec<Wanted>, ReadError> {
+    let column = |said: &Said| {
         let at = match &said.place {
             Place::Number(number) => Some(number - 1).filter(|at| *at < cells),
             Place::Name(name) => header.and_then(|header| {
@@ -367,66 +407,52 @@ fn wanted(
                 Place::Number(number) => format!("{number}: a row has {cells}"),
                 Place::Name(name) => format!("\"{}\"", quote(name)),
             };
-            return Err(ReadError::NoColumn { line, place, known: names() });
+            let known = header.map_or_else(String::new, |header| listed(&header.heads));
+            return Err(ReadError::NoColumn { line, place, known });
         };
-        let unit = match &said.unit {
-            Some(unit) => Some(unit.clone()),
-            None => of_header(at, said.role)?,
+        let unit = match (&said.unit, header) {
+            (Some(unit), _) => Some(unit.clone()),
+            (None, Some(header)) => unit_in(header, at, said.role)?,
+            (None, None) => None,
         };
-        wanted.push(Wanted { role: said.role, at, unit });
-    }
-    if let (Some(header), true) = (header, spec.0.is_empty()) {
-        for (at, (name, _)) in header.heads.iter().enumerate() {
-            let Some(role) = Role::of(name) else { continue };
-            if let Some(known) = wanted.iter_mut().find(|column| column.role == role) {
-                // Of two heights that of the sensor is the one that was reached.
-                let better = name.to_lowercase().contains("measured");
-                let (taken, left) = if better { (at, known.at) } else { (known.at, at) };
-                known.at = taken;
-                notes.push(format!(
-                    "columns {} and {} are both a {}: the {} is read, the other left out",
-                    known.at.min(left) + 1,
-                    known.at.max(left) + 1,
-                    role.word(),
-                    if taken < left { "first" } else { "second" }
-                ));
-                continue;
-            }
+        Ok(Wanted { role: said.role, at, unit })
+    };
+    spec.0.iter().map(column).collect()
+}
+
+/// The columns whose names in the header are known.
+fn of_header(header: &Header, notes: &mut Vec<String>) -> Result<Vec<Wanted>, ReadError> {
+    let mut wanted: Vec<Wanted> = Vec::new();
+    for (at, (name, _)) in header.heads.iter().enumerate() {
+        let Some(role) = Role::of(name) else { continue };
+        let Some(known) = wanted.iter_mut().find(|column| column.role == role) else {
             wanted.push(Wanted { role, at, unit: None });
-        }
-        for column in &mut wanted {
-            column.unit = of_header(column.at, column.role)?;
-        }
-    } else if spec.0.is_empty() && cells == 2 {
-        notes.push(
-            "there is no header: the first column is taken for the approach, the second for the force"
-                .to_owned(),
-        );
-        wanted = vec![
-            Wanted { role: Role::Approach, at: 0, unit: None },
-            Wanted { role: Role::Force, at: 1, unit: None },
-        ];
-    } else if spec.0.is_empty() {
-        return Err(ReadError::Unknown { line, cells, names: String::new() });
+            continue;
+        };
+        // Of two heights that of the sensor is the one that was reached.
+        let better = name.to_lowercase().contains("measured");
+        let (taken, left) = if better { (at, known.at) } else { (known.at, at) };
+        known.at = taken;
+        notes.push(format!(
+            "columns {} and {} are both a {}: the {} is read, the other left out",
+            taken.min(left) + 1,
+            taken.max(left) + 1,
+            role.word(),
+            if taken < left { "first" } else { "second" }
+        ));
     }
-    if wanted.is_empty() {
-        return Err(ReadError::Unknown { line, cells, names: names() });
-    }
-    if is_tab {
-        for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
-            let si = column.role.quantity().and_then(crate::units::Quantity::si);
-            column.unit = si.and_then(|si| Unit::parse(si, 0).ok());
-        }
-    }
-    let has = |role| wanted.iter().any(|column: &Wanted| column.role == role);
-    let lacks = |missing| Err(ReadError::Lacks { line, missing, known: names() });
-    if !(has(Role::Force) || has(Role::Deflection)) {
-        return lacks("force, or of the deflection");
-    }
-    if !(has(Role::Approach) || has(Role::Position) || has(Role::Radius)) {
-        return lacks("approach, of the position or of the contact radius");
+    for column in &mut wanted {
+        column.unit = unit_in(header, column.at, column.role)?;
     }
     Ok(wanted)
+}
+
+/// Gives columns without a unit that of SI.
+fn in_si(wanted: &mut [Wanted]) {
+    for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
+        let si = column.role.quantity().and_then(crate::units::Quantity::si);
+        column.unit = si.and_then(|si| Unit::parse(si, 0).ok());
+    }
 }
 
 /// The names of a header, safe to show.
@@ -435,41 +461,27 @@ fn listed(heads: &[Head]) -> String {
     sanitize(&names.join(", "), 200)
 }
 
-/// Takes a row in, or leaves no trace of it.
-fn row(
-    text: &str,
-    separator: Separator,
-    expected: usize,
-    wanted: &[Wanted],
-    measured: &mut Measured,
-) -> Result<(), Fault> {
-    let cells = separator.cells(text);
-    if cells.len() != expected {
-        return Err(Fault::Cells { found: cells.len(), expected });
+/// Takes a row in, up to its first fault.
+fn row(text: &str, layout: &Layout, measured: &mut Measured) -> Result<(), Fault> {
+    let cells = layout.separator.cells(text);
+    if cells.len() != layout.cells {
+        return Err(Fault::Cells { found: cells.len(), expected: layout.cells });
     }
-    let mut column = 0;
-    for want in wanted {
+    let mut columns = measured.columns.iter_mut();
+    for want in &layout.wanted {
         let number = want.at + 1;
         let text = cells.get(want.at).copied().unwrap_or_default();
         let what = want.role.word();
-        if text.is_empty() {
-            return Err(Fault::Missing { number, what });
-        }
         if want.role == Role::Segment {
-            let segment = Segment::of(text).ok_or_else(|| Fault::Segment { number, text: quote(text) })?;
-            measured.segments.get_or_insert_default().push(segment);
-            continue;
-        }
-        let value: f64 = text.parse().map_err(|_| Fault::Number { number, what, text: quote(text) })?;
-        // Not a number has no size.
-        if !matches!(value.abs().partial_cmp(&LARGEST_NUMBER), Some(order) if order.is_le()) {
-            return Err(Fault::Range { number, what, text: quote(text) });
-        }
-        if let Some(column) = measured.columns.get_mut(column) {
-            column.values.push(value + 0.0);
+            let known = |text| Segment::of(text).ok_or_else(|| Fault::Segment { number, text: quote(text) });
+            let missing = Fault::Cell { number, fault: CellFault::Missing(what) };
+            let segment = if text.is_empty() { Err(missing) } else { known(text) };
+            measured.segments.get_or_insert_default().push(segment?);
+        } else if let Some(column) = columns.next() {
+            let value = cells::number(text, what).map_err(|fault| Fault::Cell { number, fault })?;
+            column.values.push(value);
             column.step = column.step.min(last_digit(text));
         }
-        column += 1;
     }
     Ok(())
 }

@@ -14,7 +14,9 @@
 //!
 //! The cells are taken apart as those of any table of an instrument: [`cells`](crate::cells).
 
-use crate::cells::{self, Head, Separator, heads, is_header, is_unprintable, remark};
+use crate::cells::{
+    self, CellFault, Head, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
+};
 use crate::text::quote;
 use crate::units::{Quantity, Unit};
 use std::ops::RangeInclusive;
@@ -45,36 +47,15 @@ pub struct Columns {
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Fault {
-    /// The line is far too long.
-    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
-    Long(usize),
-    /// Characters that are not for the eye.
-    #[error("holds control or invisible characters")]
-    Unprintable,
+    /// Of the line as a whole.
+    #[error(transparent)]
+    Line(#[from] LineFault),
+    /// Of one cell.
+    #[error(transparent)]
+    Cell(#[from] CellFault),
     /// Not two cells.
     #[error("has {0} cells, and a row has two: radius and gap")]
     Cells(usize),
-    /// An empty cell.
-    #[error("the {0} is missing")]
-    Missing(&'static str),
-    /// Not a number.
-    #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
-    Number {
-        /// Which cell.
-        what: &'static str,
-        /// Its text, safe to show.
-        text: String,
-    },
-    /// Not finite, or absurdly large.
-    #[error(
-        "the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to {LARGEST_NUMBER:e}"
-    )]
-    Range {
-        /// Which cell.
-        what: &'static str,
-        /// Its text, safe to show.
-        text: String,
-    },
     /// A negative radius.
     #[error(
         "the radius {0:?} is negative: radii count from the axis, so fold a scan over the whole diameter there first"
@@ -229,7 +210,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
     let (mut header, mut candidate) = (None, None);
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
         if is_unprintable(text) {
-            faults.add(line, Fault::Unprintable);
+            faults.add(line, LineFault::Unprintable.into());
             continue;
         }
         if text.is_empty() {
@@ -242,7 +223,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
             continue;
         }
         if text.len() > LONGEST_LINE {
-            faults.add(line, Fault::Long(text.len()));
+            faults.add(line, LineFault::Long(text.len()).into());
             continue;
         }
         if separator.is_none() && header.is_none() && is_header(text) {
@@ -305,25 +286,12 @@ fn row(text: &str, separator: Separator) -> Result<(f64, f64), Fault> {
     let cells = separator.cells(text);
     let &[radius, gap] = cells.as_slice() else {
         return Err(match cells.len() {
-            1 => Fault::Missing(COLUMNS[1]),
+            1 => CellFault::Missing(COLUMNS[1]).into(),
             many => Fault::Cells(many),
         });
     };
     let (radius, gap) = (number(radius, COLUMNS[0])?, number(gap, COLUMNS[1])?);
     if radius < 0.0 { Err(Fault::Negative(radius)) } else { Ok((radius, gap)) }
-}
-
-fn number(text: &str, what: &'static str) -> Result<f64, Fault> {
-    if text.is_empty() {
-        return Err(Fault::Missing(what));
-    }
-    let number: f64 = text.parse().map_err(|_| Fault::Number { what, text: quote(text) })?;
-    if number.abs() <= LARGEST_NUMBER {
-        // −0 is 0, so that rows are compared as numbers.
-        Ok(number + 0.0)
-    } else {
-        Err(Fault::Range { what, text: quote(text) })
-    }
 }
 
 /// Sorts the rows, takes each radius once, and looks whether they begin at the axis.

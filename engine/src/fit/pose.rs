@@ -1,0 +1,157 @@
+//! What is fitted: the points and parameters of a preset's branches.
+
+use super::options::{FitError, Options, target};
+use super::path::Reach;
+use super::problem::{ADHESION, BASELINE, Datum, Instrument, Parameter, Problem, Target};
+use crate::gap::Gap;
+use crate::measured::{Abscissa, Branches, Segment};
+use crate::preset::{BasisSpec, Preset, Value};
+use crate::problem::Start;
+
+/// Points in contact for each free parameter, at least.
+const PER_PARAMETER: usize = 3;
+/// δ₀ and P₀ begin with a unit of their ranges.
+const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
+
+/// What is fitted to these branches.
+///
+/// # Errors
+/// [`FitError`].
+pub fn posed(
+    preset: &Preset,
+    branches: &Branches,
+    options: &Options,
+    notes: &mut Vec<String>,
+) -> Result<Problem, FitError> {
+    let mut bare = preset.clone();
+    // Values far off would be refused for where the path of the preset starts, which means nothing here.
+    (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
+    if preset.basis != BasisSpec::Exact {
+        notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
+    }
+    let data = data(preset, branches, notes)?;
+    let mut targets = targets(preset, branches, options, &data)?;
+    let instrument = instrument(branches, options, &mut targets, notes)?;
+    let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
+    let parameters: Vec<Parameter> = parameters.collect();
+    let attached = data.iter().filter(|datum| !datum.free).count();
+    let needed = PER_PARAMETER * parameters.len().max(2);
+    if attached < needed {
+        return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
+    }
+    let abscissa = branches.abscissa;
+    let reach = reach(branches, &data);
+    let sigma = branches.noise.sigma;
+    let space = sigma[2] > 0.0 && abscissa != Abscissa::Radius;
+    Ok(Problem { preset: bare, abscissa, parameters, instrument, data, sigma, space, reach, counts: None })
+}
+
+/// The points that are fitted.
+fn data(preset: &Preset, branches: &Branches, notes: &mut Vec<String>) -> Result<Vec<Datum>, FitError> {
+    let has_waves = preset.gap.feature_length().is_some();
+    let mut data = Vec::new();
+    for branch in &branches.list {
+        let loading = branch.segment == Segment::Approach;
+        if loading && has_waves {
+            if branches.list.len() == 1 {
+                return Err(FitError::Loading);
+            }
+            notes.push(format!(
+                "the {} points of the approach are left out: on a gap with waves loading takes another path, with rings of contact",
+                branch.attached.len() + branch.free.len()
+            ));
+            continue;
+        }
+        for (free, points) in [(false, &branch.attached), (true, &branch.free)] {
+            data.extend(points.iter().map(|&point| Datum { point, segment: branch.segment, free }));
+        }
+    }
+    Ok(data)
+}
+
+/// What is free, by what is asked for.
+fn targets(
+    preset: &Preset,
+    branches: &Branches,
+    options: &Options,
+    data: &[Datum],
+) -> Result<Vec<Target>, FitError> {
+    let mut targets: Vec<Target> = Vec::new();
+    for name in &options.free {
+        let target = target(preset, branches.abscissa, name)?;
+        if !targets.contains(&target) {
+            targets.push(target);
+        }
+    }
+    if !options.separate {
+        return Ok(targets);
+    }
+    let refused = |why: &str| Err(FitError::Key { key: ADHESION.to_owned(), why: why.to_owned() });
+    let Some(at) = targets.iter().position(|target| *target == Target::Key(ADHESION.to_owned())) else {
+        return refused("--separate splits it, so it must be free");
+    };
+    if branches.list.len() < 2 || data.iter().all(|datum| datum.segment == Segment::Retraction) {
+        return refused("--separate needs both an approach and a retraction that are fitted");
+    }
+    targets.splice(at..=at, [Target::Adhesion(Segment::Approach), Target::Adhesion(Segment::Retraction)]);
+    Ok(targets)
+}
+
+/// Where the values between model and instrument start; a baseline that the points show is free too.
+fn instrument(
+    branches: &Branches,
+    options: &Options,
+    targets: &mut Vec<Target>,
+    notes: &mut Vec<String>,
+) -> Result<Instrument, FitError> {
+    let mut instrument = Instrument {
+        offset: options.offset.unwrap_or(0.0),
+        baseline: options.baseline.unwrap_or(0.0),
+        tilt: options.tilt.unwrap_or(0.0),
+    };
+    match branches.baseline {
+        Some(found) if options.baseline.is_none() => {
+            if !targets.contains(&Target::Baseline) {
+                targets.push(Target::Baseline);
+                notes.push("data.baseline is fitted too, since there is a free part".to_owned());
+            }
+            instrument.baseline = found;
+        }
+        None if targets.contains(&Target::Baseline) => {
+            return Err(FitError::Key {
+                key: BASELINE.to_owned(),
+                why: "there is no free part, which alone says where the baseline is".to_owned(),
+            });
+        }
+        _ => {}
+    }
+    Ok(instrument)
+}
+
+/// What the paths must reach.
+fn reach(branches: &Branches, data: &[Datum]) -> Reach {
+    let most = |of: fn(&Datum) -> f64| {
+        data.iter().map(of).filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let of_radius = branches.abscissa == Abscissa::Radius;
+    let radius = if of_radius { most(|datum| datum.point.x) } else { most(|datum| datum.point.radius) };
+    let most = [most(|datum| datum.point.x), most(|datum| datum.point.force), radius];
+    Reach { most, radius: None, length: branches.ranges[0] }
+}
+
+/// A parameter at its start.
+fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, target: Target) -> Parameter {
+    let value = |key: &str| match preset.get(key) {
+        Some(Value::Number(value)) => value,
+        _ => f64::NAN,
+    };
+    let [x, force, _] = branches.ranges.map(|range| range.max(LEAST_UNIT));
+    let (start, scale) = match &target {
+        Target::Key(key) => (value(key), None),
+        Target::Adhesion(_) => (value(ADHESION), None),
+        Target::Offset => (instrument.offset, Some(x)),
+        Target::Baseline => (instrument.baseline, Some(force)),
+        Target::Tilt => (instrument.tilt, Some(force / x)),
+    };
+    Parameter { target, start, scale }
+}
