@@ -18,8 +18,9 @@ use crate::problem::Control;
 
 /// Values of the number at which limit points are looked for where no curve follows from s.
 const COLUMNS: u32 = 24;
-/// Values between which landings are looked for.
+/// Values between which landings are looked for, and just before and after a cusp, as a share of the axis.
 const SAMPLES: u32 = 100;
+const BESIDE: f64 = 1e-7;
 
 /// One limit point over the number.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +89,12 @@ impl Family {
                 known.push(line);
             }
         }
-        for change in self.changes(0, &[0.0], &even(SAMPLES), EXACTLY, go_on) {
+        // On both sides of every cusp too: what is won there may be lost before the next sample.
+        let beside = folds.cusps.iter().flat_map(|cusp| [cusp.at[0] - BESIDE, cusp.at[0] + BESIDE]);
+        let mut samples: Vec<f64> = even(SAMPLES).into_iter().chain(beside).collect();
+        samples.retain(|share| (0.0..=1.0).contains(share));
+        samples.sort_by(f64::total_cmp);
+        for change in self.changes(0, &[0.0], &samples, EXACTLY, go_on) {
             if let Cause::Landing([outer, _]) = change.cause {
                 folds.landings.extend(self.point_at(&[change.share], outer));
             }

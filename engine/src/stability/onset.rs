@@ -26,12 +26,12 @@ pub struct Onset {
 }
 
 impl Onset {
-    /// The onset of `preset`; `None` for a gap without one wave, and where nothing snaps up to A/λ = 0.5.
+    /// The onset of `preset`; `None` for a gap without one wave, without adhesion, and where nothing snaps up to A/λ = 0.5.
     ///
     /// # Errors
     /// The gap cannot be tabulated, or the path has no start.
     pub fn of(preset: &Preset, go_on: &dyn Fn() -> bool) -> Result<Option<Self>, FamilyError> {
-        if preset.get(GROUP).is_none() {
+        if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 {
             return Ok(None);
         }
         let Ok(axis) = Axis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };
