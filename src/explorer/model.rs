@@ -425,7 +425,7 @@ impl Model {
 
     /// The inadmissible parts of the curve, where the events shown are the curve's; they stand behind those.
     pub fn shown_inadmissible(&self) -> &[Inadmissible] {
-        let base = self.curve.as_ref().map(|curve| &curve.base).filter(|_| self.events == EventSource::Curve);
+        let base = self.curve.as_ref().map(|curve| &curve.base).filter(|_| self.events.is_curve());
         base.and_then(|base| base.inadmissible.as_deref()).unwrap_or_default()
     }
 
@@ -437,7 +437,7 @@ impl Model {
                 let report = self.cycle.as_ref().and_then(|cycle| cycle.report());
                 report.map_or_else(Vec::new, |report| report.events.iter().map(loops::event).collect())
             }
-            EventSource::Curve => self
+            EventSource::Curve | EventSource::Folded => self
                 .curve
                 .as_ref()
                 .and_then(|curve| curve.report.as_ref())

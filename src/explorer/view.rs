@@ -38,16 +38,24 @@ pub enum EventSource {
     /// The loop of loading and unloading.
     Cycle,
     Walked,
+    /// The curve's, of which only the heading is shown: the charts have the room.
+    Folded,
 }
 
 impl EventSource {
+    /// Whether they are those of the curve.
+    pub fn is_curve(self) -> bool {
+        matches!(self, Self::Curve | Self::Folded)
+    }
+
     /// The one that comes after it; the loop only where there is one.
     #[must_use]
     pub fn next(self, has_loop: bool) -> Self {
         match self {
             Self::Curve if has_loop => Self::Cycle,
             Self::Curve | Self::Cycle => Self::Walked,
-            Self::Walked => Self::Curve,
+            Self::Walked => Self::Folded,
+            Self::Folded => Self::Curve,
         }
     }
 }

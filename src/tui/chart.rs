@@ -235,7 +235,7 @@ impl Chart<'_> {
         }
     }
 
-    /// Each label on its row or column, or not at all.
+    /// Each label on its row or column with its tick, or not at all.
     fn draw_labels(&self, buffer: &mut Buffer, inner: Rect, plot: Rect) {
         let theme = self.theme;
         let gutter = plot.x - inner.x;
@@ -246,6 +246,7 @@ impl Chart<'_> {
             {
                 let text = format!("{label:>room$}");
                 buffer.set_stringn(inner.x, plot.y + row, text, room, theme.dim());
+                buffer.set_stringn(plot.x - 1, plot.y + row, theme.glyph("╶", "-"), 1, theme.dim());
             }
         }
         let below = plot.y + plot.height;
@@ -260,6 +261,10 @@ impl Chart<'_> {
             if x >= free && x + width <= end {
                 buffer.set_stringn(x, below, &label, usize::from(width), theme.dim());
                 free = x + width + 1;
+                let tick = &mut buffer[(plot.x + column, below - 1)];
+                if tick.symbol() == " " {
+                    tick.set_symbol(theme.glyph("╷", "|")).set_style(theme.dim());
+                }
             }
         }
         let x = inner.right().saturating_sub(title_width).max(inner.x);

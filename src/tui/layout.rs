@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | below 60 wide | nothing | one | below, from 18 rows on |
 //! | 60-99 | 26 | one | below |
-//! | 100-159 | 31 | one | below |
+//! | 100-159 | 31 | one; two, one above the other, where events are folded and each has 14 rows of plot | below |
 //! | from 160x45 | 36 | two, side by side | below |
 //! | from 200x60 | 36 | four, of at least 14 rows of plot each; the lower two over the whole width where the left has room | below |
 //! | from 240 wide, below 30 rows | 36 | two, side by side | a column of their own |
@@ -35,8 +35,8 @@ pub struct Regions {
 pub struct Wants {
     /// The first view.
     pub view: View,
-    /// Rows of events.
-    pub events: usize,
+    /// Rows of events; `None` where only their heading is shown.
+    pub events: Option<usize>,
     /// Rows of the problem.
     pub problem: usize,
     /// The panel that has the whole screen.
@@ -45,6 +45,8 @@ pub struct Wants {
 
 /// Width of the column of the events where they have one.
 const EVENTS_COLUMN: u16 = 88;
+/// Rows of folded events: two walls, the upper one with their heading.
+const FOLDED: usize = 2;
 /// Rows of a chart that has a plot of 14: its walls, its legend, its labels.
 const CHART_ROWS: u16 = 18;
 
@@ -111,7 +113,8 @@ fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: W
             _ => 19,
         };
         // The walls and the heads take three lines; what there is to say instead of events takes one.
-        let rows = u16::try_from(wants.events.max(1) + 3).unwrap_or(u16::MAX).min(most);
+        let rows = wants.events.map_or(FOLDED, |events| events.max(1) + 3);
+        let rows = u16::try_from(rows).unwrap_or(u16::MAX).min(most);
         if rows == 0 {
             body
         } else {
@@ -153,6 +156,9 @@ fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: W
         }
         let [(a, b), (c, d)] = [half(above), half(below)];
         vec![a, b, c, d]
+    } else if wants.events.is_none() && charts.height + 1 >= 2 * CHART_ROWS {
+        let (above, below) = split_top(charts, charts.height / 2 + 1);
+        vec![above, below]
     } else {
         vec![charts]
     };
@@ -167,7 +173,7 @@ mod tests {
     use super::*;
 
     fn wants(events: usize) -> Wants {
-        Wants { view: View::ForceApproach, events, problem: 14, whole: None }
+        Wants { view: View::ForceApproach, events: Some(events), problem: 14, whole: None }
     }
 
     #[test]
@@ -206,6 +212,26 @@ mod tests {
                     assert!(views == 1 || height < 30 || chart.height >= CHART_ROWS, "{width}x{height}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn folded_events_leave_their_rows_to_the_charts() {
+        let folded = Wants { events: None, ..wants(6) };
+        for (size, charts) in [((80, 24), 1), ((100, 30), 1), ((120, 40), 2), ((160, 45), 2), ((200, 60), 4)]
+        {
+            let area = Rect::new(0, 0, size.0, size.1);
+            let [plain, folded] = [wants(6), folded].map(|wants| regions(area, wants).unwrap());
+            assert_eq!(folded.charts.len(), charts, "{size:?}");
+            assert_eq!(folded.events.map(|events| events.height), Some(2), "{size:?}");
+            let rows = |regions: &Regions| {
+                regions.charts.iter().map(|(_, chart)| u32::from(chart.height)).sum::<u32>()
+            };
+            assert!(rows(&folded) > rows(&plain), "{size:?}");
+            assert!(
+                charts == 1 || folded.charts.iter().all(|(_, chart)| chart.height >= CHART_ROWS),
+                "{size:?}"
+            );
         }
     }
 

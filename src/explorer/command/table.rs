@@ -106,7 +106,7 @@ commands! {
         Whole "whole" Zoom "whole": "the whole chart again";
         CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
         Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
-        Events "events" Nothing "events": "events on the curve, of the loop with rings, or walked";
+        Events "events" Nothing "events": "events on the curve, of the loop with rings, walked, or folded";
         Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";
         Overlays "overlays" Curve ("theory") "theory": "theory over the curve: smooth sphere, exact solution, envelope";
         Pin "pin" Curve "pin": "keep this curve to compare the next ones with";

@@ -2,7 +2,7 @@
 
 use super::legend::legend;
 use super::parts::is_selected;
-use crate::explorer::{EventSource, Id, Model, Panel, View, Window};
+use crate::explorer::{Id, Model, Panel, View, Window};
 use crate::figure::{Axis, Figure, Sign, Subject, nearest};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Entry};
@@ -76,7 +76,7 @@ pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) 
 
 /// The mark of the selected event stands out, and has its number in the legend where the letter has none.
 fn select_event(model: &Model, chart: &mut Chart<'_>) {
-    if model.events != EventSource::Curve {
+    if !model.events.is_curve() {
         return;
     }
     let number = model.event + 1;

@@ -79,7 +79,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             found.filter_map(|report| report.events.get(model.event)).map(|event| contacts(event, units));
         lines.extend(rings.map(|text| Line::styled(format!(" {}", theme.text(&text)), theme.dim())));
     }
-    let notes = model.curve.iter().filter(|_| model.events == EventSource::Curve);
+    let notes = model.curve.iter().filter(|_| model.events.is_curve());
     let notes = notes.flat_map(|curve| &curve.base.notes);
     lines.extend(notes.map(|note| Line::styled(format!(" {}", theme.text(note)), theme.dim())));
     let fitted = lines.into_iter().map(|line| {
@@ -140,6 +140,7 @@ fn title(model: &Model, keymap: &Keymap) -> String {
     let (next, there) = match model.events.next(model.cycle_wanted.is_some()) {
         EventSource::Curve => ("on the curve", format!(" {on_curve}")),
         EventSource::Walked => ("walked", format!(" {walked}")),
+        EventSource::Folded => ("folds them", String::new()),
         EventSource::Cycle => {
             let count = model.cycle.as_ref().and_then(|cycle| cycle.report()).map(|r| r.events.len());
             ("of the loop", count.map_or_else(String::new, |count| format!(" {count}")))
@@ -159,6 +160,7 @@ fn title(model: &Model, keymap: &Keymap) -> String {
             };
             format!("Events on the curve: {on_curve}{parts}{units} ({key}: {next}{there})")
         }
+        EventSource::Folded => format!("Events on the curve: {on_curve} ({key}: unfolds them)"),
         EventSource::Walked => format!("Events walked: {walked}{units} ({key}: {next}{there})"),
     }
 }
@@ -222,7 +224,7 @@ fn empty(model: &Model, keymap: &Keymap) -> String {
             Some(Err(reason)) => format!(" no loop: {reason}"),
             _ => " computing the loop".to_owned(),
         },
-        (Some(curve), EventSource::Curve) => match (&curve.unloading, &curve.report) {
+        (Some(curve), EventSource::Curve | EventSource::Folded) => match (&curve.unloading, &curve.report) {
             (Err(reason), _) => format!(" no path: {reason}"),
             (Ok(_), report) => format!(" none: {}", report.as_ref().map_or("", |report| &report.stop)),
         },

@@ -14,7 +14,7 @@ pub mod walker;
 use super::app::App;
 use super::layout::{Regions, SMALLEST, Wants, regions};
 use super::overlay::Overlay;
-use crate::explorer::Panel;
+use crate::explorer::{EventSource, Panel};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -74,6 +74,7 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
 pub fn places(app: &App, area: Rect) -> Option<Regions> {
     let model = &app.model;
     let events = model.shown_events().len() + model.shown_inadmissible().len().min(PARTS);
+    let events = (model.events != EventSource::Folded).then_some(events);
     let problem = problem::rows(app, WIDE_SIDE);
     let whole = app.enlarged.then_some(model.panel);
     regions(area, Wants { view: model.view, events, problem, whole })

@@ -1,12 +1,14 @@
 //! Every theme and every marker: nothing is lost without colour, without braille, without Unicode.
 
 use super::Screen;
-use crate::explorer::View;
-use crate::figure::{Role, Subject};
+use crate::explorer::{View, Window};
+use crate::figure::{Bounds, Role, Subject};
 use crate::tui::marks::{glyph, letter, look};
 use crate::tui::theme::{Charts, Palette, Theme};
+use crate::tui::view::{charts, places};
+use ratatui::layout::Rect;
 use ratatui::style::Color;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 const PALETTES: [Palette; 5] =
     [Palette::Dark, Palette::Light, Palette::Mono, Palette::FewDark, Palette::FewLight];
@@ -23,6 +25,78 @@ fn full(preset: &str) -> Screen {
     let mut screen = Screen::new(preset);
     screen.keys("nxnp}pKy\rj\rj\r\x1b");
     screen
+}
+
+/// The cells of a plot that a line of a figure passes, from its points alone.
+fn passed(points: &[(f64, f64)], bounds: &Bounds, plot: Rect) -> HashSet<(u16, u16)> {
+    let cells = |(x, y): (f64, f64)| {
+        let share = |value: f64, [lo, hi]: [f64; 2]| (value - lo) / (hi - lo);
+        (share(x, bounds.x) * f64::from(plot.width), (1.0 - share(y, bounds.y)) * f64::from(plot.height))
+    };
+    let mut passed = HashSet::new();
+    for pair in points.windows(2) {
+        let [from, to] = [cells(pair[0]), cells(pair[1])];
+        let steps = (20.0 * (to.0 - from.0).abs().max((to.1 - from.1).abs())).ceil();
+        if !steps.is_finite() {
+            continue;
+        }
+        for step in 0..=steps as u32 {
+            let share = f64::from(step) / steps.max(1.0);
+            let at = [from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1)];
+            if at[0] >= 0.0 && at[1] >= 0.0 && at[0] < f64::from(plot.width) && at[1] < f64::from(plot.height)
+            {
+                passed.insert((plot.x + at[0] as u16, plot.y + at[1] as u16));
+            }
+        }
+    }
+    passed
+}
+
+#[test]
+fn the_curve_a_pin_and_theory_are_all_seen() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p:set gap.amplitude=0.006\r");
+    let (model, size) = (&screen.app.model, Rect::new(0, 0, 120, 40));
+    let subject = Subject::of(model).unwrap();
+    let figure = subject.figure(View::ForceApproach);
+    let (_, area) = places(&screen.app, size).unwrap().charts[0];
+    let chart = charts::chart(&figure, View::ForceApproach, &Window::WHOLE, screen.app.theme);
+    let plot = chart.plot(area).unwrap();
+    let is_curve = |role: Role| matches!(role, Role::Stable | Role::Unstable);
+    let lines = |wanted: &dyn Fn(Role) -> bool| -> HashSet<(u16, u16)> {
+        let lines = figure.lines.iter().filter(|line| wanted(line.role));
+        lines.flat_map(|line| passed(&line.points, &chart.bounds, plot)).collect()
+    };
+    let all = [
+        (look(Role::Stable, screen.app.theme), lines(&is_curve)),
+        (look(Role::Pin(1), screen.app.theme), lines(&|role| role == Role::Pin(1))),
+        (look(Role::Smooth, screen.app.theme), lines(&|role| role == Role::Smooth)),
+    ];
+    // The states walked stand over the curves, and so do the marks.
+    let over = lines(&|role| role == Role::Walk);
+    let buffer = screen.draw(120, 40);
+    let is_dots =
+        |at: &(u16, u16)| buffer[*at].symbol().chars().all(|c| ('\u{2800}'..='\u{28ff}').contains(&c));
+    let is_marked = |at: &(u16, u16)| over.contains(at) || !(is_dots(at) || buffer[*at].symbol() == " ");
+    let shows = |at: &(u16, u16)| buffer[*at].fg;
+    for (own, (stroke, cells)) in all.iter().enumerate() {
+        let others =
+            || all.iter().enumerate().filter(|(other, _)| *other != own).map(|(_, (_, cells))| cells);
+        let alone: Vec<_> =
+            cells.iter().filter(|at| !is_marked(at) && !others().any(|other| other.contains(at))).collect();
+        let seen = alone.iter().filter(|at| Some(shows(at)) == stroke.style.fg).count();
+        assert!(5 * seen >= 4 * alone.len(), "{own}: {seen} of {}", alone.len());
+        let all_seen = cells.iter().filter(|at| Some(shows(at)) == stroke.style.fg).count();
+        assert!(5 * all_seen >= cells.len(), "{own}: {all_seen} of {}", cells.len());
+    }
+    let [curve, pin, smooth] = all.each_ref().map(|(_, cells)| cells);
+    let shared: Vec<_> =
+        curve.intersection(pin).filter(|at| !smooth.contains(at) && !is_marked(at)).collect();
+    for (stroke, _) in &all[..2] {
+        let seen = shared.iter().filter(|at| Some(shows(at)) == stroke.style.fg).count() as f64;
+        let share = seen / shared.len() as f64;
+        assert!(shared.len() > 50 && (0.4..=0.6).contains(&share), "{seen} of {}", shared.len());
+    }
 }
 
 #[test]
