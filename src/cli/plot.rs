@@ -4,7 +4,7 @@ use super::console::{note, warn};
 use super::measured::{fill, typed};
 use super::problem::Problem;
 use super::{Failure, output};
-use crate::explorer::maps::MapWish;
+use crate::explorer::maps::{MapAxes, MapWish};
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View};
 use crate::figure::measured::Points;
@@ -152,8 +152,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let cycle =
         if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &|_| true)?) } else { None };
     warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
-    let found =
-        (view == View::Map).then(|| MapWish { id: 0, preset: preset.clone() }.run(&|| true)).flatten();
+    let wish = || MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
+    let found = (view == View::Map).then(|| wish().run(&|| true)).flatten();
     let map = found.as_ref().map(|map| map.report());
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };

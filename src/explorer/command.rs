@@ -65,6 +65,11 @@ pub enum Command {
         /// The place that stays where it is, in shares of the window.
         about: (f64, f64),
     },
+    /// Show the map of this key, and what stands up it: another, or what limit points have.
+    Map {
+        x: Key,
+        y: Option<Key>,
+    },
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
     /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).
@@ -145,6 +150,7 @@ impl Command {
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Overlay(_) => Id::Overlays,
+            Self::Map { .. } => Id::Map,
             Self::GoTo { .. } | Self::GoToState(_) => Id::Branches,
             Self::Unpin(_) => Id::Pins,
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,

@@ -12,6 +12,7 @@ use super::job::Job;
 use super::loops::LoopWish;
 use super::maps::MapWish;
 use super::model::Model;
+use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
 use super::saves::Saves;
@@ -81,9 +82,14 @@ fn pinned(number: usize, preset: &Preset, go_on: impl Fn() -> bool) -> Reply {
 }
 
 impl Check {
-    fn run(&self, mut go_on: impl FnMut() -> bool) -> Option<Reply> {
-        let curve = self.curve.checked(&mut go_on)?;
-        Some(Reply::Checked { id: self.id, curve: Arc::new(curve) })
+    fn run(&self, go_on: impl Fn() -> bool) -> Option<Reply> {
+        let curve = Arc::new(self.curve.checked(&mut || go_on())?);
+        let snaps_from = if self.with_onset {
+            Some(Arc::new(SnapsFrom::find(&self.curve.setting.preset, &go_on)?))
+        } else {
+            None
+        };
+        Some(Reply::Checked { id: self.id, curve, snaps_from })
     }
 }
 

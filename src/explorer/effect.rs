@@ -4,6 +4,7 @@ use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
 use super::loops::{LoopData, LoopWish};
 use super::maps::{MapData, MapWish};
+use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::walk::{Made, Outcome, Request};
@@ -50,6 +51,8 @@ pub struct Wish {
 pub struct Check {
     pub id: u64,
     pub curve: Arc<CurveData>,
+    /// Whether it is to be found from which amplitude on the problem snaps.
+    pub with_onset: bool,
 }
 
 /// What came of it.
@@ -63,10 +66,11 @@ pub enum Reply {
         id: u64,
         progress: Progress,
     },
-    /// The same curve with what is not admissible on it.
+    /// The same curve with what is not admissible on it, and where snaps begin if that was asked.
     Checked {
         id: u64,
         curve: Arc<CurveData>,
+        snaps_from: Option<Arc<SnapsFrom>>,
     },
     Loop(Arc<LoopData>),
     Map(Arc<MapData>),

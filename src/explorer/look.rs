@@ -2,9 +2,11 @@
 
 use super::command::Id;
 use super::effect::Effect;
+use super::maps::{MapAxes, can_be_axis};
 use super::model::{Level, Model};
 use super::profile::{Ask, Inside};
 use super::view::{Overlay, Panel, View, Window};
+use pulloff_engine::preset::Key;
 use pulloff_engine::quasistatic::jump::Run;
 use std::sync::Arc;
 
@@ -25,6 +27,34 @@ pub const MIDDLE: (f64, f64) = (0.5, 0.5);
 /// The view `by` places further on.
 pub(super) fn turn_view(model: &mut Model, by: usize) {
     model.view = model.view.further(by);
+}
+
+/// Shows where each limit point happens over the selected value; where that is shown, the map of it and the adhesion.
+pub(super) fn map(model: &mut Model) {
+    let Some((row, _)) = model.selected_knob().filter(|(row, _)| can_be_axis(row)) else {
+        let text =
+            format!("select a number first, or the control: {} goes to Problem", Id::NextPanel.named());
+        return model.tell(Level::Error, text);
+    };
+    let over = MapAxes::over(&row.key);
+    let is_shown = model.view == View::Map && model.map_axes.as_ref() == Some(&over);
+    let axes = if is_shown { MapAxes::beside_adhesion(&row.key, &model.preset) } else { over };
+    show_map(model, axes);
+}
+
+/// Shows the map of these axes; without a second, the limit points over the first.
+pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
+    let over = MapAxes::over(x);
+    let axes = MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x };
+    if axes.x == axes.y {
+        return model.tell(Level::Error, "the two axes of a map are two keys");
+    }
+    show_map(model, axes);
+}
+
+fn show_map(model: &mut Model, axes: MapAxes) {
+    (model.map_axes, model.view) = (Some(axes), View::Map);
+    model.windows[View::Map as usize] = Window::WHOLE;
 }
 
 /// Zooms a view about a place of its window.

@@ -26,6 +26,7 @@
 //! | [`progress`] | how far the computation of a curve has come |
 //! | [`background_jobs`] | pinned curves, admissibility checks, the profile of the current state |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
+//! | [`onset`] | the smallest amplitude at which a problem snaps |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -63,6 +64,7 @@ pub mod maps;
 pub mod model;
 pub mod node;
 pub mod nudge;
+pub mod onset;
 pub mod pins;
 pub mod profile;
 pub mod progress;

@@ -6,8 +6,9 @@ use super::data::Folder;
 use super::history::{History, Mark};
 use super::journal::Journal;
 use super::loops::{self, LoopData, LoopWish};
-use super::maps::{MapData, MapWish};
+use super::maps::{MapAxes, MapData, MapWish};
 use super::node::{Node, NodeKind};
+use super::onset::SnapsFrom;
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
@@ -135,6 +136,10 @@ pub struct Model {
     pub map: Option<Arc<MapData>>,
     /// The newest map asked for.
     pub map_wanted: Option<Box<MapWish>>,
+    /// Where snaps begin, of a problem that can be another by now.
+    pub snaps_from: Option<Arc<SnapsFrom>>,
+    /// What stands on the axes of the map; `None` for what is usual.
+    pub map_axes: Option<MapAxes>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -215,6 +220,8 @@ impl Model {
             cycle_wanted: None,
             map: None,
             map_wanted: None,
+            map_axes: None,
+            snaps_from: None,
             stiffness,
             device: None,
             history: History::default(),
@@ -298,6 +305,11 @@ impl Model {
     /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
     pub fn shows_device(&self) -> bool {
         self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
+    }
+
+    /// The smallest A/λ at which the problem snaps, where it is known.
+    pub fn snaps_from(&self) -> Option<f64> {
+        self.snaps_from.as_ref().filter(|found| found.is_of(&self.preset))?.amplitude_over_wavelength
     }
 
     /// Whether a walk is under way, or the curve that the next one walks on.

@@ -3,7 +3,7 @@
 use super::effect::{Check, Effect, Wish};
 use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
-use super::maps::MapWish;
+use super::maps::{MapAxes, MapWish};
 use super::model::{Awaits, Checking, Model};
 use super::node::NodeKind;
 use super::view::{EventSource, View};
@@ -36,7 +36,8 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
     }
     let id = model.number();
     model.checking = Some(Checking::Asked(id));
-    Some(Effect::Check(Check { id, curve }))
+    let with_onset = !model.snaps_from.as_ref().is_some_and(|found| found.is_of(&model.preset));
+    Some(Effect::Check(Check { id, curve, with_onset }))
 }
 
 /// Asks for the loop of the values as they are, once their curve is there; where the gap has no crests,
@@ -65,12 +66,16 @@ pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
 /// Asks for the map of the values as they are, while it is looked at.
 pub(super) fn want_map(model: &mut Model) -> Option<Effect> {
     let is_shown = model.shown_views().contains(&View::Map) && !model.is_computing();
-    let is_there = model.map.as_ref().is_some_and(|map| map.is_of(&model.preset));
-    let is_asked = model.map_wanted.as_ref().is_some_and(|wanted| wanted.preset == model.preset);
-    if !is_shown || is_there || is_asked {
+    if !is_shown {
         return None;
     }
-    let wish = MapWish { id: model.number(), preset: model.preset.clone() };
+    let axes = model.map_axes.clone().unwrap_or_else(|| MapAxes::usual(&model.preset));
+    let is_there = model.map.as_ref().is_some_and(|map| map.is_of(&model.preset, &axes));
+    let is_asked = |wanted: &MapWish| wanted.preset == model.preset && wanted.axes == axes;
+    if is_there || model.map_wanted.as_deref().is_some_and(is_asked) {
+        return None;
+    }
+    let wish = MapWish { id: model.number(), preset: model.preset.clone(), axes };
     model.map_wanted = Some(Box::new(wish.clone()));
     Some(Effect::Map(Box::new(wish)))
 }

@@ -131,6 +131,10 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             look::overlay(model, overlay);
             Vec::new()
         }
+        Command::Map { x, y } => {
+            look::map_of(model, &x, y);
+            Vec::new()
+        }
         Command::GoTo { node, numbering } => go_to(model, node, numbering),
         Command::GoToState(state) => go_to_state(model, state),
         Command::Travel { id, count, states: false } => travel(model, id, count),
@@ -164,7 +168,8 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             return Vec::new();
         }
         Reply::Walked { id, made, outcome } => walked(model, id, made, outcome).unwrap_or_default(),
-        Reply::Checked { id, curve } => {
+        Reply::Checked { id, curve, snaps_from } => {
+            model.snaps_from = snaps_from.or_else(|| model.snaps_from.take());
             checked(model, id, curve);
             Vec::new()
         }
@@ -239,6 +244,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Whole => look::whole(model),
         Id::CrossHair => look::cross_hair(model),
+        Id::Map => look::map(model),
         Id::Pin => look::pin(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },
         Id::Events => {

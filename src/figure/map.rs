@@ -4,16 +4,18 @@
 //! infinity stands at c/(c + c₀).
 
 use super::bounds::Bounds;
+use super::labels;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::subject::Subject;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::{AxisReport, RowReport};
 use pulloff_engine::report::number::significant;
+use pulloff_engine::report::unload::EventReport;
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
-use std::collections::VecDeque;
 
 /// Where the numbers of an axis stand on it.
 #[derive(Debug, Clone)]
@@ -85,8 +87,8 @@ impl Places {
 /// What a row is drawn as.
 fn role(row: &RowReport) -> (Role, &'static str) {
     match (row.kind, row.stable) {
-        ("fold", Some("inward")) => (Role::Unstable, "maximum, jumps outward"),
-        ("fold", _) => (Role::Stable, "minimum, jumps inward"),
+        ("fold", Some("inward")) => (Role::Unstable, "maximum, stable inward"),
+        ("fold", _) => (Role::Stable, "minimum, stable outward"),
         ("cusp" | "landing", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
         ("landing", _) => (Role::Landings, "line of landings"),
         ("start", _) => (Role::Starts, "limit point at the start"),
@@ -126,72 +128,15 @@ fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
     (lines, marks)
 }
 
-/// The number of snaps in each region of the map, where it is widest.
-///
-/// A region is cells next to each other with one count; its label stands on the cell that is farthest from all others.
-fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
-    /// Nearer to its border than so many cells a region has no room for a number.
-    const ROOM: usize = 2;
-    let Some(counts) = &report.counts else { return Vec::new() };
-    let cells = &counts.snaps;
-    let [width, height] = [counts.x.len(), counts.y.len()];
-    let next = |(i, j): (usize, usize)| {
-        let near = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
-        near.into_iter().filter(move |(i, j)| *i < width && *j < height)
-    };
-    let places = || (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
-    // How many steps it is from each cell to another count, or out of the map.
-    let mut depth = vec![vec![0_usize; width]; height];
-    let on_border = |(i, j): (usize, usize)| {
-        next((i, j)).count() < 4 || next((i, j)).any(|(a, b)| cells[b][a] != cells[j][i])
-    };
-    let mut edge: VecDeque<(usize, usize)> = places().filter(|place| on_border(*place)).collect();
-    for (i, j) in &edge {
-        depth[*j][*i] = 1;
-    }
-    while let Some((i, j)) = edge.pop_front() {
-        for (a, b) in next((i, j)) {
-            if depth[b][a] == 0 {
-                depth[b][a] = depth[j][i] + 1;
-                edge.push_back((a, b));
-            }
-        }
-    }
-    let mut seen = vec![vec![false; width]; height];
-    let mut marks = Vec::new();
-    for place in places() {
-        let Some(count) = cells[place.1][place.0].filter(|_| !seen[place.1][place.0]) else { continue };
-        let mut deepest = place;
-        let mut region = vec![place];
-        seen[place.1][place.0] = true;
-        while let Some((i, j)) = region.pop() {
-            if depth[j][i] > depth[deepest.1][deepest.0] {
-                deepest = (i, j);
-            }
-            for (a, b) in next((i, j)) {
-                if !seen[b][a] && cells[b][a] == Some(count) {
-                    seen[b][a] = true;
-                    region.push((a, b));
-                }
-            }
-        }
-        if depth[deepest.1][deepest.0] >= ROOM {
-            let at = (x.at(counts.x[deepest.0]), y.at(counts.y[deepest.1]));
-            marks.push(Mark { sign: Sign::Snaps(count), at });
-        }
-    }
-    marks
-}
-
 /// All that is drawn of `report` over these axes, with `preset` at its place.
 pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>, Bounds) {
     let (lines, mut marks) = drawn(report, x, y);
-    marks.extend(counts(report, x, y));
-    let number = |key: &str| preset.get(key).and_then(|value| value.as_number());
-    if let (Some(a), Some(b)) = (number(&report.x.key), number(&report.y.key)) {
-        marks.push(Mark { sign: Sign::Preset, at: (x.at(Some(a)), y.at(Some(b))) });
+    marks.extend(labels::counts(report, x, y));
+    if let (Some(x), Some(y)) = (standing(preset, &report.x, x), standing(preset, &report.y, y)) {
+        marks.push(Mark { sign: Sign::Preset, at: (x, y) });
     }
     let bounds = bounds(x, y, &lines);
+    labels::crests(report, x, y, &bounds, &mut marks);
     (lines, marks, bounds)
 }
 
@@ -201,18 +146,76 @@ fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
     Bounds { x: x.ends.unwrap_or(found.x), y: y.ends.unwrap_or(found.y) }
 }
 
-/// The figure of `report` on a screen, with `preset` at its place.
-pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
+/// Where a preset stands on an axis.
+fn standing(preset: &Preset, axis: &AxisReport, places: &Places) -> Option<f64> {
+    if axis.key != COMPLIANCE {
+        return Some(places.at(Some(preset.get(&axis.key)?.as_number()?)));
+    }
+    Some(places.at(match preset.path.control {
+        Control::Displacement => Some(0.0),
+        Control::Stiffness(k) => Some(1.0 / k),
+        Control::Force => None,
+    }))
+}
+
+/// The events of the path, each on its curve of limit points.
+fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> Vec<Mark> {
+    let curve = subject.curve;
+    let Some(x) = standing(&curve.setting.preset, &report.x, x) else { return Vec::new() };
+    let events = curve.report.iter().flat_map(|report| &report.events);
+    let place = |event: &EventReport| match report.y.key.as_str() {
+        "approach" => event.before.approach,
+        "force" => event.before.force,
+        _ => event.control_value,
+    };
+    let sign = |event: &EventReport, number| {
+        if event.after.is_some() { Sign::Event(number) } else { Sign::PullOff }
+    };
+    events
+        .zip(1..)
+        .map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(Some(place(event)))) })
+        .collect()
+}
+
+/// Of the curves of limit points the one that passes the mark of an event.
+fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f64, f64)>> {
+    /// As a share of the axis.
+    const NEAR: f64 = 0.01;
+    let height = bounds.y[1] - bounds.y[0];
+    let off = |line: &Line| {
+        let pairs = line.points.windows(2).filter(|pair| (pair[0].0 - x) * (pair[1].0 - x) <= 0.0);
+        let at = |pair: &[(f64, f64)]| {
+            let [(a, from), (b, to)] = [pair[0], pair[1]];
+            let share = if a == b { 0.5 } else { (x - a) / (b - a) };
+            (from + (to - from) * share - y).abs() / height
+        };
+        pairs.map(at).fold(f64::INFINITY, f64::min)
+    };
+    // An event begins where the control is smallest, whichever way the edge then runs.
+    let lines = lines.iter().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
+    let (off, line) = lines.map(|line| (off(line), line)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (off <= NEAR).then(|| line.points.clone())
+}
+
+/// The figure of `report` on a screen, with the preset at its place.
+pub fn figure(report: &MapReport, subject: &Subject<'_>) -> Figure {
+    let preset = subject.preset;
     let places = |axis| Places::of(axis, preset, report.control, true);
     let (x, y) = (places(&report.x), places(&report.y));
-    let (lines, marks, bounds) = laid(report, preset, &x, &y);
-    let title = match &report.onset {
-        Some(onset) => {
-            let smallest = significant(onset.amplitude_over_wavelength, 4);
-            format!("where snaps begin; under {} at A/λ = {smallest}", report.control)
+    let (mut lines, mut marks, bounds) = laid(report, preset, &x, &y);
+    let is_map = report.counts.is_some();
+    if !is_map {
+        let events = events(report, subject, &x, &y);
+        if let Some((number, mark)) = subject.event.and_then(|n| Some((n, events.get(n.checked_sub(1)?)?)))
+            && let Some(points) = through(&lines, &bounds, mark.at)
+        {
+            lines.push(Line::new(Role::Chosen, format!("event {number}"), points));
         }
-        None => "where snaps begin".to_owned(),
-    };
+        marks.extend(events);
+    }
+    let of = if subject.is_one_disc() { "" } else { ", of the exact equation of one disc" };
+    let what = if is_map { "where snaps begin" } else { "each limit point" };
+    let title = format!("{what}, {} over {}{of}", y.axis.symbol, x.axis.symbol);
     let mut figure = Figure::empty(title, x.axis, y.axis);
     figure.lines = lines;
     figure.marks = marks;
@@ -224,6 +227,10 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
 /// What a preset becomes at a point of the figure, as assignments of its keys.
 pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Key, String)> {
     let assignment = |axis: &AxisReport, place: f64| {
+        // What limit points have is no number of the preset.
+        if axis.key != COMPLIANCE && preset.row(&axis.key).is_none() {
+            return None;
+        }
         let value = Places::of(axis, preset, report.control, true).value(place);
         // Of the number alone no more is meant than a few digits.
         let text = value.map(|value| format!("{:e}", rounded(value)));

@@ -15,6 +15,7 @@
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
 //! | [`contact_map`] | the contacts over the way of the control |
 //! | [`stability`] | the law of stability over the contact radius |
+//! | `labels` | where the labels of a map stand |
 //! | [`map`] | lines of a map of two numbers, limit points over one |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
@@ -26,6 +27,7 @@ pub mod bounds;
 mod contact;
 pub mod contact_map;
 pub mod curves;
+mod labels;
 pub mod loops;
 pub mod map;
 pub mod measured;

@@ -32,6 +32,8 @@ pub enum Role {
     /// The line of the loading device through the walker.
     Device,
     Walk,
+    /// The curve of the selected event, over its line.
+    Chosen,
     Jump,
     /// A line of a map across which the number of snaps stays.
     Unchanged,
@@ -92,6 +94,8 @@ pub enum Sign {
     Swallowtail,
     /// Where the preset stands on a map.
     Preset,
+    /// The crest that a line of a map is of, by its number from the axis.
+    OfCrest(u32),
     /// The number of snaps in the region of a map around it; the last stands for more.
     Snaps(usize),
     /// A computed value, on a line through all of them.

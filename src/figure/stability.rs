@@ -7,7 +7,6 @@ use super::bounds::Bounds;
 use super::map;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
-use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Control;
 use pulloff_engine::stability::Law;
 use pulloff_engine::stability::law::adhesion_of;
@@ -32,13 +31,13 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     } else {
         scale.axis("log γ", "energy per area", Quantity::EnergyPerArea)
     };
-    let is_exact = subject.preset.basis == BasisSpec::Exact;
+    let is_one_disc = subject.is_one_disc();
     let under = match case.control {
         Control::Force => "force",
         Control::Displacement => "displacement",
         Control::Stiffness(_) => "the spring",
     };
-    let of = if is_exact { "" } else { ", of the exact equation of one disc" };
+    let of = if is_one_disc { "" } else { ", of the exact equation of one disc" };
     let title = format!("limit points under {under}: adhesion over contact radius{of}");
     let mut figure = Figure::empty(title, scale.radius_axis("s"), y);
     let Ok(panels) = case.table.up_to(case.start) else {
@@ -97,9 +96,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         );
     }
     // One disc of the exact equation is not the walker's rings, of either kind.
-    if let Some(node) =
-        subject.walk.last().filter(|node| is_exact && !node.has_rings() && subject.is_on_curve(node))
-    {
+    if let Some(node) = subject.walk.last().filter(|node| is_one_disc && subject.is_on_curve(node)) {
         let walker = (scale.radius(node.state.contact_radius), level);
         figure.marks.push(Mark { sign: Sign::Walker, at: walker });
     }
@@ -109,7 +106,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 /// The map of two numbers, where it is known.
 pub fn map(subject: &Subject<'_>) -> Figure {
     match subject.map {
-        Some(Ok(report)) => map::figure(report, subject.preset),
+        Some(Ok(report)) => map::figure(report, subject),
         Some(Err(reason)) => empty_map(&format!("no map: {reason}")),
         None => empty_map("the map is being computed"),
     }

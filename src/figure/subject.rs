@@ -5,8 +5,8 @@ use crate::explorer::branches::{Branch, branches};
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
-use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
-use pulloff_engine::preset::Preset;
+use crate::explorer::{Axes, CurveData, EventSource, Model, Node, Overlays, device};
+use pulloff_engine::preset::{BasisSpec, Preset};
 use pulloff_engine::report::{CycleReport, MapReport};
 
 /// What figures are built from.
@@ -24,6 +24,8 @@ pub struct Subject<'a> {
     pub cycle: Option<&'a CycleReport>,
     /// The map of two numbers, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
+    /// The number of the selected event, from 1, where those of the curve are listed.
+    pub event: Option<usize>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -43,6 +45,7 @@ impl<'a> Subject<'a> {
             device: device::line(model),
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             map: model.map.as_ref().map(|map| map.report()),
+            event: (model.events == EventSource::Curve).then_some(model.event + 1),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -60,6 +63,7 @@ impl<'a> Subject<'a> {
             device: None,
             cycle: None,
             map: None,
+            event: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,
@@ -70,6 +74,12 @@ impl<'a> Subject<'a> {
     /// The divisors of the axes.
     pub fn scale(&self) -> Scale<'a> {
         Scale::of(self.curve, self.axes)
+    }
+
+    /// Whether what is shown is one disc of the exact equation: neither the preset's elements are rings nor the walker's
+    /// contacts.
+    pub fn is_one_disc(&self) -> bool {
+        self.preset.basis == BasisSpec::Exact && !self.walk.last().is_some_and(|node| node.has_rings())
     }
 
     /// What tells the curve from the pinned ones beside it, named as they are; `None` without any.

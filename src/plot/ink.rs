@@ -70,7 +70,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Contact => stroke(BLACK, 2.0, ""),
         Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
         Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
-        Role::Walk => stroke(BLACK, 0.8, ""),
+        Role::Walk | Role::Chosen => stroke(BLACK, 0.8, ""),
         Role::Jump => stroke(VERMILLION, 0.8, ""),
         Role::Unchanged => stroke(GREY, 0.8, "1 2.5"),
         Role::Starts => stroke(GREY, 0.8, "8 2"),
@@ -101,8 +101,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
         Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
         Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
-        // Written as a number.
-        Sign::Snaps(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
+        // Written as numbers.
+        Sign::Snaps(_) | Sign::OfCrest(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
         Sign::Measured { loading: true } => stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach"),
         Sign::Measured { loading: false } => stamp(MarkerShape::Square, GREY, 1.1, "measured retraction"),
         // The axes say what it is.

@@ -150,11 +150,13 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
             .with_legend_box(false);
     }
     for mark in &figure.marks {
-        if let Sign::Snaps(count) = mark.sign {
-            let (x, y) = mark.at;
-            layout = layout
-                .with_annotation(TextAnnotation::new(count.to_string(), x, y).with_font_size(SMALL_LETTERS));
-        }
+        let text = match mark.sign {
+            Sign::Snaps(count) => count.to_string(),
+            Sign::OfCrest(crest) => format!("c{crest}"),
+            _ => continue,
+        };
+        let (x, y) = mark.at;
+        layout = layout.with_annotation(TextAnnotation::new(text, x, y).with_font_size(SMALL_LETTERS));
     }
     if let Some(reason) = &figure.missing {
         let [x, y] = [bounds.x, bounds.y].map(|[lo, hi]| 0.5 * lo + 0.5 * hi);

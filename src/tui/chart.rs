@@ -296,7 +296,13 @@ impl Chart<'_> {
             if self.selected == Some(number) {
                 style = style.add_modifier(Modifier::REVERSED);
             }
-            put(buffer, at.into(), &letter(mark.sign, self.theme), style);
+            // One letter a cell; a longer label ends in the plot.
+            let label = letter(mark.sign, self.theme);
+            let width = u16::try_from(label.chars().count()).unwrap_or(1);
+            let first = at.x.min(plot.right().saturating_sub(width)).max(plot.x);
+            for (x, letter) in (first..plot.right()).zip(label.chars()) {
+                put(buffer, (x, at.y), letter.encode_utf8(&mut [0; 4]), style);
+            }
         }
         if let Some(at) = self.nearest.and_then(|at| self.place(at, plot)) {
             put(buffer, at.into(), "*", self.theme.styles().nearest);

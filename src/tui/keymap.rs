@@ -150,6 +150,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::ZoomOut => &[Char('-')],
         Id::Whole => &[Char('f')],
         Id::CrossHair => &[Char('i')],
+        Id::Map => &[Char('M')],
         Id::Axes => &[Char('a')],
         Id::Events => &[Char('v')],
         Id::Device => &[Char('K')],

@@ -36,7 +36,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
         Role::Unloading => of(styles.loops, Beneath, false, 'u'),
         Role::Inadmissible => of(styles.warning, Tints, false, '!'),
         Role::Contact => of(styles.walk, Shares, false, 'c'),
-        Role::Walk => of(styles.walk, Tints, false, 'w'),
+        Role::Walk | Role::Chosen => of(styles.walk, Tints, false, 'w'),
         Role::Barrier | Role::Level => of(styles.aid, Beneath, true, '='),
         Role::Device => of(styles.aid, Beneath, true, ':'),
         Role::Jump => of(styles.jump, Beneath, true, 'j'),
@@ -69,7 +69,14 @@ pub fn glyph(role: Role, theme: Theme) -> String {
     }
     let tells = matches!(
         role,
-        Role::Contact | Role::Jump | Role::Walk | Role::Barrier | Role::Device | Role::Level | Role::Starts
+        Role::Contact
+            | Role::Jump
+            | Role::Walk
+            | Role::Chosen
+            | Role::Barrier
+            | Role::Device
+            | Role::Level
+            | Role::Starts
     );
     if tells && theme.palette == Palette::Mono {
         return stroke.symbol.to_string();
@@ -99,6 +106,7 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
         Sign::Cusp => "C".to_owned(),
         Sign::Swallowtail => "S".to_owned(),
         Sign::Preset => "+".to_owned(),
+        Sign::OfCrest(crest) => format!("c{crest}"),
         Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)].to_owned(),
         Sign::Measured { loading: true } => ",".to_owned(),
         Sign::Measured { loading: false } => ".".to_owned(),

@@ -105,6 +105,7 @@ commands! {
         ZoomOut "zoom-out" Curve ("place") "wider": "further away";
         Whole "whole" Zoom "whole": "the whole chart again";
         CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
+        Map "map" Curve ("KEY [KEY, control, approach or force]") "map": "where snaps happen over the selected value; again: the map of it and the adhesion";
         Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
         Events "events" Nothing "events": "events on the curve, of the loop with rings, walked, or folded";
         Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";

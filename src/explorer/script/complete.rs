@@ -5,11 +5,13 @@ use super::parse::RUN_TO;
 use super::print::overlay_name;
 use crate::explorer::command::ROWS;
 use crate::explorer::export::ExportKind;
+use crate::explorer::maps::CURVES;
 use crate::explorer::view::Overlay;
 use crate::store::shipped::SHIPPED;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
+use pulloff_engine::stability::COMPLIANCE;
 
 /// A line gone on with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,12 +57,21 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["control"] => owned(["displacement", "force", "stiffness="]),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
         ["pins"] => owned(["all"]),
+        ["map"] => axes(preset),
+        ["map", _] => axes(preset).into_iter().chain(owned(CURVES.map(|(name, _)| name))).collect(),
         ["export"] => owned(ExportKind::ALL.map(ExportKind::name)),
         ["export", _, _] | ["save"] => owned(["replace"]),
         ["save-as", _, ..] => owned(["with-data", "replace"]),
         [name] if *name == RUN_TO.0 => owned(RUN_TO.1),
         _ => Vec::new(),
     }
+}
+
+/// What can stand on an axis of a map.
+fn axes(preset: &Preset) -> Vec<String> {
+    let rows = preset.rows().filter(|row| row.kind.is_number() && preset.get(&row.key).is_some());
+    let groups = GROUPS.iter().map(|row| row.key.to_string());
+    rows.map(|row| row.key.to_string()).chain(groups).chain(owned([COMPLIANCE])).collect()
 }
 
 /// The keys of `preset`, or the words that the key begun takes.
@@ -101,6 +112,8 @@ mod tests {
             ("set gap.shape=po", "set gap.shape=power-law ", 1),
             ("open l", "open lab-", 2),
             ("open lab-3 basis.k", "open lab-3 basis.kind=", 1),
+            ("map gap.am", "map gap.amplitude ", 1),
+            ("map gap.amplitude fo", "map gap.amplitude force ", 1),
             ("export sc", "export script ", 1),
             ("export curve x.csv r", "export curve x.csv replace ", 1),
             ("control f", "control force ", 1),

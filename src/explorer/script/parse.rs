@@ -6,10 +6,12 @@ use super::lexer::{Word, split};
 use super::print::overlay_name;
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
 use crate::explorer::export::{ExportKind, ends_in};
+use crate::explorer::maps::CURVES;
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
 use pulloff_engine::preset::groups::{self, GROUPS};
-use pulloff_engine::preset::{PARAMETERS, former, parameter};
+use pulloff_engine::preset::{Key, PARAMETERS, former, parameter};
+use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::text::{closest, closest_key, quote};
 
 /// The word before a command that may fail.
@@ -75,6 +77,7 @@ fn is_of_screen(id: Id) -> bool {
             | Id::ZoomOut
             | Id::Whole
             | Id::CrossHair
+            | Id::Map
             | Id::Axes
             | Id::Device
             | Id::Overlays
@@ -181,6 +184,11 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
             let names = Overlay::ALL.map(overlay_name);
             Command::Overlay(found.ok_or_else(|| unknown(word, "theory", &names))?)
         }
+        Id::Map if !bare => {
+            let x = axis(rest.need("a key")?, &[])?;
+            let y = rest.next().map(|word| axis(word, &CURVES.map(|(name, _)| name))).transpose()?;
+            Command::Map { x, y }
+        }
         Id::Pins if !bare => {
             let word = rest.need("a number")?;
             Command::Unpin(if word.text == "all" { None } else { Some(count(word, pins::MOST)?) })
@@ -261,14 +269,27 @@ fn assignment(word: &Word) -> Result<Assignment, Fault> {
         );
         return Err(Fault::new(word.column, what));
     };
+    Ok((known(key, word.column)?, text.to_owned()))
+}
+
+/// A key or a group.
+fn known(key: &str, column: usize) -> Result<Key, Fault> {
     if parameter(key).is_none() && groups::row(key).is_none() {
         if let Some(former) = former::key(key) {
-            return Err(Fault::new(word.column, former.to_string()));
+            return Err(Fault::new(column, former.to_string()));
         }
         let known = PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(key, known);
         let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
-        return Err(Fault::new(word.column, format!("unknown key {}{hint}", quote(key))));
+        return Err(Fault::new(column, format!("unknown key {}{hint}", quote(key))));
     }
-    Ok((key.to_owned().into(), text.to_owned()))
+    Ok(key.to_owned().into())
+}
+
+/// What stands on an axis of a map: a key, a group, the compliance, or one of these words.
+fn axis(word: &Word, words: &[&str]) -> Result<Key, Fault> {
+    if word.text == COMPLIANCE || words.contains(&&*word.text) {
+        return Ok(word.text.clone().into());
+    }
+    known(&word.text, word.column)
 }

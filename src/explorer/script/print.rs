@@ -17,6 +17,9 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Travel { count, states: true, .. } => format!(" {count} states"),
         Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
         Command::Assign(all) => assignments(all)?,
+        Command::Map { x, y } => {
+            format!(" {x}{}", y.as_ref().map_or_else(String::new, |y| format!(" {y}")))
+        }
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
         Command::Unpin(None) => " all".to_owned(),
         Command::Unpin(Some(number)) => format!(" {number}"),

@@ -4,6 +4,7 @@ use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
 use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
+use crate::explorer::maps::MapAxes;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
@@ -53,6 +54,8 @@ pub struct Look {
     pub length: f64,
     pub stiffness: Option<f64>,
     pub device: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapAxes>,
 }
 
 impl Look {
@@ -72,6 +75,7 @@ impl Look {
             length: model.length,
             stiffness: model.stiffness,
             device: model.device,
+            map: model.map_axes.clone(),
         }
     }
 
@@ -80,6 +84,7 @@ impl Look {
         (model.panel, model.view, model.axes) = (self.panel, self.view, self.axes);
         (model.events, model.overlays, model.inward) = (self.events, self.overlays, self.inward);
         (model.event, model.device) = (self.event, self.device);
+        model.map_axes = self.map;
         model.parameter = self.parameter.min(model.knobs().len().saturating_sub(1));
         for (view, window) in self.windows.into_iter().filter(|(_, window)| window.is_possible()) {
             model.windows[view as usize] = window;

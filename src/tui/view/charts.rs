@@ -35,7 +35,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
         let found = chart.cross.and_then(|at| nearest(&subject, view, &chart.bounds, at));
         chart.nearest = found.map(|nearest| nearest.at);
     }
-    if view.is_curve() || view == View::Unloading {
+    if view.is_curve() || matches!(view, View::Unloading | View::Map) {
         select_event(model, &mut chart);
     }
     chart.draw(frame, area, selected);

@@ -25,6 +25,7 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
             let glyph = match mark.sign {
                 Sign::Event(_) => "1-9".to_owned(),
                 Sign::Snaps(_) => "0-9".to_owned(),
+                Sign::OfCrest(_) => "c1".to_owned(),
                 sign => letter(sign, theme),
             };
             add(rank, Entry { glyph, style: style(mark.sign, theme), meaning: word.to_owned() });
@@ -41,7 +42,7 @@ fn rank(role: Role) -> u8 {
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
         Role::Unstable | Role::Landings => 1,
         Role::Inadmissible | Role::Level => 2,
-        Role::Walk => 3,
+        Role::Walk | Role::Chosen => 3,
         Role::Pin(_) => 5,
         Role::Smooth | Role::Exact | Role::Envelope => 6,
         Role::Loading | Role::Unloading | Role::Barrier | Role::Device | Role::Contact => 8,
@@ -69,6 +70,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Cusp => (5, "cusp"),
         Sign::Swallowtail => (5, "swallowtail"),
         Sign::Snaps(_) => (6, "snaps"),
+        Sign::OfCrest(_) => (6, "crest"),
         Sign::Measured { loading: true } => (4, "measured approach"),
         Sign::Measured { loading: false } => (4, "measured retraction"),
     })

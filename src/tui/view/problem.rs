@@ -43,6 +43,9 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     // Both are seen in part where they have no room; what is selected, whole.
     let above = if in_groups { 2 } else { ABOVE };
     groups.truncate(height.saturating_sub(parameters.min(above)));
+    // Where there is room for it whatever is selected.
+    let onset = onset(app.theme, model).filter(|_| parameters.min(ABOVE) + groups.len() < height);
+    groups.extend(onset);
     let rows = height - groups.len();
     // By half a window at a time: a line at a time would send the whole list for every key.
     let half = (rows / 2).max(1);
@@ -81,7 +84,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 pub fn rows(app: &App, width: u16) -> usize {
     let all = app.model.knobs();
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
-    parameters + group_lines(app, &all[parameters..], None, width).len()
+    let onset = usize::from(app.model.snaps_from().is_some());
+    parameters + group_lines(app, &all[parameters..], None, width).len() + onset
 }
 
 /// The parameter in this row of the screen, in the panel `area`.
@@ -157,13 +161,8 @@ fn group_lines(
     let mut used = usize::MAX;
     for (name, value, is_chosen) in items {
         let spans = if is_chosen {
-            vec![
-                Span::styled(
-                    format!(">{name} {}{}", short(value, 4), turning(&app.keymap)),
-                    theme.selection(),
-                ),
-                Span::raw(" "),
-            ]
+            // As wide as the others: else the lines would break elsewhere, and the list above scroll.
+            vec![Span::styled(format!(">{name} {}", short(value, 4)), theme.selection()), Span::raw(" ")]
         } else {
             let [name, value] = pair(theme, &format!(" {name} "), &format!("{} ", short(value, 4)));
             vec![name, value]
@@ -181,6 +180,17 @@ fn group_lines(
     }
     lines.extend(shortest);
     lines
+}
+
+/// From which amplitude on the problem snaps, under its control.
+fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
+    let control = match model.preset.path.control {
+        Control::Displacement => "δ",
+        Control::Force => "P",
+        Control::Stiffness(_) => "k",
+    };
+    let text = format!("{} ({control})", short(model.snaps_from()?, 4));
+    Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 
 /// By what mesh and steps are measured, where that is no λ among the parameters: the waves of a formula or of measured
