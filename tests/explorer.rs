@@ -15,7 +15,7 @@ use session::Session;
 
 /// The folder whose profiles are offered.
 fn listed_folder(session: &mut Session) -> Folder {
-    let Some(Question::Profile(folder)) = session.model.question.take() else {
+    let Some(Question::File(_, folder)) = session.model.question.take() else {
         unreachable!("no folder is offered")
     };
     *folder
@@ -546,6 +546,10 @@ fn another_shape_keeps_what_both_know() {
     assert_eq!(value(&session, "gap.parameters.R"), Some(1.1.into()));
 }
 
+fn browse(folder: Option<std::path::PathBuf>) -> Command {
+    Command::Browse { key: "gap.file".into(), folder }
+}
+
 #[test]
 fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     let mut session = Session::new("profile");
@@ -559,7 +563,7 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     radii.swap(3, 7);
     std::fs::write(path("mixed.txt"), rows(&radii)).unwrap();
     std::fs::write(path("bad.csv"), rows(&radii) + "400.0, much\n").unwrap();
-    session.does(Command::Browse(Some(folder.clone())));
+    session.does(browse(Some(folder.clone())));
     let listed = listed_folder(&mut session);
     assert_eq!(listed.files, ["bad.csv", "good.csv", "mixed.txt"]);
     let (before, curve) = (session.model.preset.clone(), session.model.curve.clone().unwrap());
@@ -581,8 +585,8 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     assert!(session.status().contains("saved as scan"), "{}", session.status());
     assert!(!session.model.is_unsaved() && folder.join("presets/good.csv").is_file());
     assert_eq!(session.model.preset.get("gap.file").unwrap().to_string(), "good.csv");
-    session.does(Command::Browse(None));
+    session.does(browse(None));
     assert_eq!(listed_folder(&mut session).path, folder.join("presets"));
-    session.does(Command::Browse(Some(folder.join("gone"))));
+    session.does(browse(Some(folder.join("gone"))));
     assert!(session.status().contains("cannot be listed"), "{}", session.status());
 }

@@ -80,7 +80,7 @@ fn what_a_person_can_mend_is_said_with_status_2() {
             vec!["fit", &path, "lens", "--free", "material.effectiv_modulus"],
             "did you mean material.effective_modulus?",
         ),
-        (vec!["fit", "lens", FREE[0], FREE[1]], "lens: "),
+        (vec!["fit", "fig-9", FREE[0], FREE[1]], "a preset that names one in data.file"),
         (vec!["fit", "none.csv", "lens", FREE[0], FREE[1]], "none.csv"),
         (
             vec!["fit", &path, "fig-9", FREE[0], FREE[1]],

@@ -5,7 +5,7 @@ use crate::preset::measured::rows;
 use crate::preset::profile::parse;
 use crate::preset::read::read_in;
 use crate::preset::{Files, Preset};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The text of a preset that comes with the program.
 pub fn text(name: &str) -> String {
@@ -18,16 +18,24 @@ pub fn preset(name: &str) -> Preset {
 }
 
 /// Files as the program has them: its own data, and the disk.
-pub const FILES: Files = Files(load);
+pub const FILES: Files = Files { rows: load, points };
+
+/// The bytes of a file.
+fn points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
+    let path = place(folder, name);
+    std::fs::read(&path).map_err(|error| format!("{}: cannot read: {error}", path.display()))
+}
+
+fn place(folder: Option<&Path>, name: &str) -> PathBuf {
+    match name.strip_prefix("shipped:") {
+        Some(data) => Path::new(env!("CARGO_MANIFEST_DIR")).join("../presets/data").join(data),
+        None => folder.map_or_else(|| name.into(), |folder| folder.join(name)),
+    }
+}
 
 /// The rows of a file.
 pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
-    let path = match name.strip_prefix("shipped:") {
-        Some(data) => Path::new(env!("CARGO_MANIFEST_DIR")).join("../presets/data").join(data),
-        None => folder.map_or_else(|| name.into(), |folder| folder.join(name)),
-    };
-    let bytes = std::fs::read(&path).map_err(|error| format!("{}: cannot read: {error}", path.display()))?;
-    rows(folder, name, parse(&bytes).map_err(|error| error.to_string())?)
+    rows(folder, name, parse(&points(folder, name)?).map_err(|error| error.to_string())?)
 }
 
 /// A preset that may name files.

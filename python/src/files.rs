@@ -7,10 +7,10 @@ use pulloff_engine::preset::profile::{LARGEST, parse};
 use pulloff_engine::text::{is_unsafe, quote, show_path};
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The files of presets.
-pub const FILES: Files = Files(profile);
+pub const FILES: Files = Files { rows: profile, points };
 
 /// The largest preset or spec, in bytes.
 const LARGEST_TEXT: u64 = 1 << 20;
@@ -35,14 +35,25 @@ pub fn text(path: &Path) -> Result<String, String> {
     String::from_utf8(bytes(path, LARGEST_TEXT)?).map_err(|_| format!("{}: is not UTF-8", show_path(path)))
 }
 
-fn profile(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
-    if name.starts_with(SHIPPED_DATA) {
-        return (Files::SHIPPED.0)(folder, name);
-    }
+fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
     if name.is_empty() || name.chars().any(is_unsafe) {
         return Err(format!("\"{}\" is no name of a file", quote(name)));
     }
-    let path = folder.map_or_else(|| Path::new(name).to_path_buf(), |folder| folder.join(name));
+    Ok(folder.map_or_else(|| Path::new(name).to_path_buf(), |folder| folder.join(name)))
+}
+
+fn points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
+    if name.starts_with(SHIPPED_DATA) {
+        return (Files::SHIPPED.points)(folder, name);
+    }
+    bytes(&place(folder, name)?, LARGEST)
+}
+
+fn profile(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+    if name.starts_with(SHIPPED_DATA) {
+        return (Files::SHIPPED.rows)(folder, name);
+    }
+    let path = place(folder, name)?;
     let columns = parse(&bytes(&path, LARGEST)?);
     rows(folder, name, columns.map_err(|error| words(&format!("{}: {error}", show_path(&path))))?)
 }

@@ -4,15 +4,15 @@ use crate::document::{Document, Report};
 use crate::errors;
 use crate::problem::Problem;
 use crate::running::long;
-use pulloff_engine::fit::{FitError, Options, fit};
-use pulloff_engine::measured::points::stiffness;
-use pulloff_engine::measured::{Asked, Spec, parse};
-use pulloff_engine::preset::Value as PresetValue;
+use pulloff_engine::fit::{FitError, Options, fit_own};
+use pulloff_engine::measured::{Asked, Source};
+use pulloff_engine::preset::{Invalid, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
 use pulloff_engine::report::fit::FitReport;
 use pulloff_engine::report::rows::{RowsError, Table};
 use pyo3::prelude::*;
 use serde_json::Value;
+use std::sync::Arc;
 
 /// The columns of a fit: a row for each value.
 const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
@@ -66,15 +66,15 @@ pub fn fitted(
 ) -> PyResult<(Document, Problem, &'static str, Option<String>)> {
     let mut preset = problem.get().preset.clone();
     let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
-    let spec = columns.map_or_else(|| Ok(Spec::default()), Spec::parse).map_err(|error| refused(&error))?;
-    let measured = parse(data, &spec).map_err(|error| refused(&error))?;
-    let spring = stiffness(measured.stiffness, preset.path.control, &preset.units);
-    let spring = spring.map_err(|error| refused(&error))?;
-    if let Some(k) = measured.stiffness {
-        let laid = preset.set("path.control.stiffness", PresetValue::Number(k));
-        laid.map_err(|invalid| errors::of_value(py, &invalid))?;
+    if let Some(columns) = columns {
+        let set = preset.set(data_keys::COLUMNS, PresetValue::Text(columns.to_owned()));
+        set.map_err(|invalid| refused(&invalid))?;
     }
-    let points = measured.points(&preset.units, spring).map_err(|error| refused(&error))?;
+    let source = Source::new(name.to_owned(), None, data.into());
+    preset.set(data_keys::FILE, PresetValue::Points(Arc::new(source))).map_err(|invalid| match invalid {
+        Invalid::Made { cause, .. } => errors::of_data(py, &cause),
+        invalid => refused(&invalid),
+    })?;
     let options = Options {
         free,
         separate,
@@ -85,13 +85,12 @@ pub fn fitted(
         bootstrap,
         ..Options::default()
     };
-    let made = long(py, progress, |go_on| fit(&preset, &points, &options, &mut |share| go_on(share)))?;
-    let mut made = made.map_err(|error| match error {
+    let made = long(py, progress, |go_on| fit_own(&preset, &options, &mut |share| go_on(share)))?;
+    let made = made.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
         error => refused(&error),
     })?;
-    made.notes = measured.notes.into_iter().chain(std::mem::take(&mut made.notes)).collect();
-    let report = FitReport::new(name, &made, points.abscissa, None);
+    let report = FitReport::new(name, &made, None);
     let (ended, direction) = (report.ended, report.direction.clone());
     Ok((Document::new(report), Problem { preset: made.preset }, ended, direction))
 }

@@ -8,7 +8,7 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::disc::{Basis, Exact, TableError, outside};
 use pulloff_engine::gap::Gap;
 use pulloff_engine::gap::shapes::{Profile, Rows, Smoothing};
-use pulloff_engine::preset::read::{read_holding, read_in};
+use pulloff_engine::preset::read::{Held, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::Losses;
@@ -135,7 +135,8 @@ impl Problem {
             unit: Unit::parse("m", 0).ok(),
             ..Rows::default()
         };
-        let read = read_holding(files::FILES, "from_gap", text, Some(Arc::new(rows)));
+        let read =
+            read_holding(files::FILES, "from_gap", text, Held { rows: Arc::new(rows), ..Held::default() });
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
     }
 

@@ -4,7 +4,7 @@ use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, Reason};
 use crate::print::DrawError;
 use crate::print::FormatError;
-use crate::store::data::MeasuredError;
+use crate::store::data::PointsError;
 use crate::store::file::FileError;
 use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;
@@ -35,7 +35,7 @@ pub enum Failure {
     File(#[from] FileError),
     /// A measured curve cannot be read.
     #[error(transparent)]
-    Measured(#[from] MeasuredError),
+    Points(#[from] PointsError),
     /// The result could not be written to a file.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -163,7 +163,7 @@ impl Failure {
             Self::Session(error) => error.can_be_mended(),
             Self::Case(error) => error.can_be_mended(),
             Self::File(error) => error.can_be_mended(),
-            Self::Measured(error) => error.can_be_mended(),
+            Self::Points(error) => error.can_be_mended(),
             Self::Write(error) => error.can_be_mended(),
             Self::Map(error) => error.can_be_mended(),
             Self::Lines(error) => error.can_be_mended(),

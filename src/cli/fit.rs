@@ -1,17 +1,18 @@
 //! `pulloff fit`: the values of a problem that a measured curve gives, with their errors.
 
+mod table;
+
+use self::table::Table;
 use super::console::{note, warn};
-use super::measured::{fill, typed};
+use super::measured::{attach, typed};
 use super::{Failure, output, problem};
-use crate::store::data::read_measured;
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pulloff_engine::fit::{Fit, FitError, Options, fit};
+use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
 use pulloff_engine::measured::branches::{Asked, Span};
-use pulloff_engine::measured::{Segment, Spec};
-use pulloff_engine::preset::{Preset, write};
+use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::report::fit::{FitReport, residuals};
 use pulloff_engine::report::json;
 use pulloff_engine::text::{quote, show_path};
@@ -27,14 +28,17 @@ use std::time::Duration;
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Files with measured curves, and behind them a preset's name or file (ending in .toml); the wavy sphere when left out
+    /// Files with measured curves, and behind them a preset's name or file (ending in .toml), the wavy sphere when left out; or
+    /// a preset alone that names its curve in data.file
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     paths: Vec<OsString>,
     /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma; also
-    /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt
-    #[arg(long, value_name = "KEY,...", required = true, value_delimiter = ',')]
-    free: Vec<String>,
-    /// Give a key of the preset another value before (repeatable); data.offset, data.baseline and data.tilt are held so
+    /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt; those
+    /// of the preset's data.free when left out
+    #[arg(long, value_name = "KEY,...", value_delimiter = ',')]
+    free: Option<Vec<String>>,
+    /// Give a key of the preset another value before (repeatable); data.offset, data.baseline and data.tilt are held unless
+    /// they are free
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     assignments: Vec<String>,
     /// Fit this key for approach and retraction apart
@@ -93,19 +97,24 @@ enum Branch {
     Retraction,
 }
 
+impl Branch {
+    /// The word of `data.segment`.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Approach => data::SEGMENTS[0],
+            Self::Retraction => data::SEGMENTS[1],
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Robust {
     Huber,
     None,
 }
 
-/// The keys of the instrument that a preset does not have.
-const INSTRUMENT: [&str; 3] = ["data.offset", "data.baseline", "data.tilt"];
-
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (files, loaded, options) = arguments.read()?;
-    let spec = arguments.columns.as_deref().map_or(Ok(Spec::default()), Spec::parse);
-    let spec = spec.map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
     let signal = Arc::new(AtomicUsize::new(0));
     for number in [SIGINT, SIGTERM] {
         // The second ends at once, as ever.
@@ -126,8 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             note(Some(&format!("{shown}: is in the table already")));
             continue;
         }
-        let done = one(path, &spec, &loaded.preset, &options, &signal);
-        let (found, preset) = match done {
+        let found = match one(path, &loaded, &options, &signal) {
             Ok(done) => done,
             // One bad file among many is told, and the others are fitted.
             Err(failure) if files.len() > 1 => {
@@ -140,17 +148,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             }
             Err(failure) => return Err(failure),
         };
-        let report = FitReport::new(&shown, &found.0, found.1, arguments.poisson);
+        let report = FitReport::new(&shown, &found, arguments.poisson);
         warn(&report.warnings);
         if let Some(table) = &mut table {
             table.add(path, Some(table.fingerprint(path)), &report.row())?;
         }
         if let Some(file) = &arguments.residuals {
-            output::write(&residuals(&found.0.residuals), Some(file))?;
+            output::write(&residuals(&found.residuals), Some(file))?;
         }
         if let Some(file) = &arguments.output {
             let folder = file.parent().unwrap_or(Path::new("."));
-            output::write(&write(&preset.placed_in(folder)), Some(file))?;
+            output::write(&write(&found.preset.placed_in(folder)), Some(file))?;
         }
         worst = worst.max(status(&report));
         reports.push(report);
@@ -195,38 +203,30 @@ fn status(report: &FitReport) -> Option<u8> {
     }
 }
 
-/// The fit to one file, with what its x is, and the fitted preset.
-type Done = ((Fit, pulloff_engine::measured::Abscissa), Preset);
-
-fn one(
-    path: &Path,
-    spec: &Spec,
-    preset: &Preset,
-    options: &Options,
-    signal: &AtomicUsize,
-) -> Result<Done, Failure> {
+/// The fit to one file, or to the curve of the preset itself.
+fn one(path: &Path, loaded: &Loaded, options: &Options, signal: &AtomicUsize) -> Result<Fit, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
-    let usage = |error: &dyn std::fmt::Display| Failure::Usage(named(error));
-    let measured = read_measured(path, spec)?;
-    let mut preset = preset.clone();
-    let spring = fill(&mut preset, &measured).map_err(|error| usage(&error))?;
-    let points = measured.points(&preset.units, spring).map_err(|error| usage(&error))?;
+    let mut preset = loaded.preset.clone();
+    if own(&preset) != Some(path.to_owned()) {
+        attach(&mut preset, path)?;
+    }
     let bar = bar();
-    let fitted = fit(&preset, &points, options, &mut |share| {
+    let fitted = fit_own(&preset, options, &mut |share| {
         // A share of a hundred.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
         signal.load(Ordering::Relaxed) == 0
     });
     bar.finish_and_clear();
-    let mut fitted = fitted.map_err(|error| match error {
+    fitted.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
-        error => usage(&error),
-    })?;
-    let notes = measured.notes.into_iter().chain(std::mem::take(&mut fitted.notes)).collect();
-    fitted.notes = notes;
-    let found = fitted.preset.clone();
-    Ok(((fitted, points.abscissa), found))
+        error => Failure::Usage(named(&error)),
+    })
+}
+
+/// The file of the preset's own curve; one that comes with the program by its name.
+fn own(preset: &Preset) -> Option<PathBuf> {
+    preset.data.source.as_ref().map(|source| source.path())
 }
 
 /// Shown on a terminal, once it takes longer than a moment.
@@ -243,22 +243,27 @@ impl Arguments {
     /// The files, the preset and what is asked for.
     fn read(&self) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, files) = match self.paths.split_last() {
-            Some((last, files)) if is_preset(last, files.is_empty()) => (Some(last.clone()), files),
+            Some((last, files)) if is_preset(last) => (Some(last.clone()), files),
             _ => (None, &self.paths[..]),
         };
+        let mut files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+        let mut loaded = problem::Problem { preset, assignments: self.assignments.clone() }.load()?;
+        for (key, flag, text) in [
+            (data::COLUMNS, "--columns", self.columns.clone()),
+            (data::SEGMENT, "--segment", self.segment.map(|branch| branch.word().to_owned())),
+        ] {
+            let set = text.map(|text| loaded.preset.set(key, Value::Text(text)));
+            set.transpose().map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
+        }
+        if files.is_empty() {
+            files.extend(own(&loaded.preset));
+        }
         if files.is_empty() {
             return Err(Failure::Usage(
-                "fit needs a file with a measured curve before the preset".to_owned(),
+                "fit needs a file with a measured curve before the preset, or a preset that names one in data.file"
+                    .to_owned(),
             ));
         }
-        let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        let of_instrument = |text: &String| {
-            let key = text.split_once('=').map_or("", |(key, _)| key.trim());
-            INSTRUMENT.contains(&key)
-        };
-        let (instrument, assignments): (Vec<String>, Vec<String>) =
-            self.assignments.iter().cloned().partition(of_instrument);
-        let loaded = problem::Problem { preset, assignments }.load()?;
         for (file, option) in
             [(&self.output, "-o"), (&self.residuals, "--residuals"), (&self.table, "--table")]
         {
@@ -281,21 +286,15 @@ impl Arguments {
         if let Some(nu) = self.poisson.filter(|nu| !(-1.0..=0.5).contains(nu)) {
             return Err(Failure::Usage(format!("--poisson {nu}: Poisson's ratio is from -1 to 0.5")));
         }
-        let options = self.options(&loaded.preset, &instrument)?;
+        let options = self.options(&loaded.preset)?;
         Ok((files, loaded, options))
     }
 
-    fn options(&self, preset: &Preset, instrument: &[String]) -> Result<Options, Failure> {
+    fn options(&self, preset: &Preset) -> Result<Options, Failure> {
         // Lengths and forces are typed as those of a start are.
         let number = |what: &str, key: &str, text: &str| typed(preset, what, key, text);
         let (length, force) = ("path.start_approach", "path.start_force");
-        let mut asked = Asked {
-            segment: self.segment.map(|branch| match branch {
-                Branch::Approach => Segment::Approach,
-                Branch::Retraction => Segment::Retraction,
-            }),
-            ..Asked::default()
-        };
+        let mut asked = Asked::default();
         for (slot, text, key, what) in
             [(0, &self.sigma_x, length, "--sigma-x"), (1, &self.sigma_force, force, "--sigma-force")]
         {
@@ -328,8 +327,13 @@ impl Arguments {
             }
             *slot = Some(span);
         }
-        let mut options = Options {
-            free: self.free.iter().map(|key| key.trim().to_owned()).filter(|key| !key.is_empty()).collect(),
+        let options = Options {
+            free: match &self.free {
+                Some(free) => {
+                    free.iter().map(|key| key.trim().to_owned()).filter(|key| !key.is_empty()).collect()
+                }
+                None => preset.data.free().map(str::to_owned).collect(),
+            },
             separate: self.separate.is_some(),
             robust: self.robust == Robust::Huber,
             asked,
@@ -338,21 +342,8 @@ impl Arguments {
             bootstrap: self.bootstrap.map(|count| (usize::try_from(count).unwrap_or(usize::MAX), self.seed)),
             ..Options::default()
         };
-        for text in instrument {
-            let (key, value) = text.split_once('=').unwrap_or((text, ""));
-            match key.trim() {
-                "data.offset" => options.offset = Some(number("data.offset", length, value)?),
-                "data.baseline" => options.baseline = Some(number("data.baseline", force, value)?),
-                _ => {
-                    let tilt = value.trim().parse().map_err(|_| {
-                        Failure::Usage(format!(
-                            "data.tilt: \"{}\" is no number (force per length, in base units)",
-                            quote(value)
-                        ))
-                    })?;
-                    options.tilt = Some(tilt);
-                }
-            }
+        if options.free.is_empty() {
+            return Err(Failure::Usage(FitError::NothingFree.to_string()));
         }
         Ok(options)
     }
@@ -369,100 +360,9 @@ impl Arguments {
 }
 
 /// Whether the last argument names a preset and no points.
-fn is_preset(path: &OsString, alone: bool) -> bool {
+fn is_preset(path: &OsString) -> bool {
     let shown = Path::new(path);
     let is_file = shown.is_file() && shown.extension().is_none_or(|ending| ending != "toml");
     let ends = shown.extension().is_some_and(|ending| ending == "toml") || path == stream::STANDARD;
-    ends || (!alone && !is_file && problem::store().resolve(path).is_ok())
-}
-
-/// The table of many files: whole after each.
-struct Table {
-    path: PathBuf,
-    settings: String,
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-/// The last column: what a row was computed from.
-const FINGERPRINT: &str = "fingerprint";
-
-impl Table {
-    /// The table in `path`, or a new one.
-    fn open(path: &Path, settings: &str) -> Result<Self, Failure> {
-        output::csv_only(path)?;
-        let mut table = Self {
-            path: path.to_owned(),
-            settings: settings.to_owned(),
-            header: Vec::new(),
-            rows: Vec::new(),
-        };
-        if !path.exists() {
-            return Ok(table);
-        }
-        let (text, _) = crate::store::file::read_text(path, pulloff_engine::cells::LARGEST)?;
-        let mut reader =
-            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
-        for record in reader.records() {
-            table.rows.push(record?.iter().map(str::to_owned).collect());
-        }
-        if table.rows.is_empty() {
-            return Ok(table);
-        }
-        table.header = table.rows.remove(0);
-        if table.header.first().map(String::as_str) != Some("file")
-            || table.header.last().map(String::as_str) != Some(FINGERPRINT)
-        {
-            return Err(Failure::Usage(format!(
-                "--table {}: holds something else than fits; name another",
-                output::shown(path)
-            )));
-        }
-        Ok(table)
-    }
-
-    /// What a row of `path` is computed from.
-    fn fingerprint(&self, path: &Path) -> String {
-        let bytes = std::fs::read(path).unwrap_or_default();
-        let mut whole = sha256(&bytes);
-        whole.push_str(&self.settings);
-        sha256(whole.as_bytes())[..16].to_owned()
-    }
-
-    /// Whether the file was fitted before, in the same way.
-    fn has(&self, path: &Path) -> bool {
-        let (shown, fingerprint) = (show_path(path), self.fingerprint(path));
-        self.rows.iter().any(|row| row.first() == Some(&shown) && row.last() == Some(&fingerprint))
-    }
-
-    /// Puts a row in, in place of an older one of the same file; one without a fingerprint is tried again by a rerun.
-    fn add(
-        &mut self,
-        path: &Path,
-        fingerprint: Option<String>,
-        [header, row]: &[Vec<String>; 2],
-    ) -> Result<(), Failure> {
-        let shown = show_path(path);
-        self.rows.retain(|row| row.first() != Some(&shown));
-        let mut header = header.clone();
-        header.push(FINGERPRINT.to_owned());
-        if header.len() > self.header.len() || self.header.is_empty() {
-            self.header = header;
-        }
-        let mut row = row.clone();
-        // A file that could not be fitted has its reason, and nothing else.
-        row.resize(self.header.len().max(row.len() + 1) - 1, String::new());
-        row.push(fingerprint.unwrap_or_default());
-        self.rows.push(row);
-        let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-        writer.write_record(&self.header)?;
-        for row in &mut self.rows {
-            let last = row.pop().unwrap_or_default();
-            row.resize(self.header.len() - 1, String::new());
-            row.push(last);
-            writer.write_record(&*row)?;
-        }
-        let bytes = writer.into_inner().map_err(|error| Failure::Usage(error.to_string()))?;
-        output::write_bytes(&bytes, Some(&self.path))
-    }
+    ends || (!is_file && problem::store().resolve(path).is_ok())
 }

@@ -1,19 +1,20 @@
 //! What commands share that read measured curves.
 
 use super::Failure;
-use pulloff_engine::measured::Measured;
-use pulloff_engine::measured::points::stiffness;
-use pulloff_engine::preset::{Preset, Value};
+use crate::store::data::read_points;
+use pulloff_engine::preset::invalid::Invalid;
+use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::units::Quantity;
+use std::path::Path;
+use std::sync::Arc;
 
-/// Gives the preset the spring that the file states, where it has none; the stiffness of the device.
-pub(super) fn fill(preset: &mut Preset, measured: &Measured) -> Result<Option<f64>, String> {
-    let spring = stiffness(measured.stiffness, preset.path.control, &preset.units)
-        .map_err(|error| error.to_string())?;
-    if let Some(k) = measured.stiffness {
-        preset.set("path.control.stiffness", Value::Number(k)).map_err(|invalid| invalid.to_string())?;
-    }
-    Ok(spring)
+/// Gives the preset the measured curve in the file `path`, and the spring that it states where the preset has none.
+pub(super) fn attach(preset: &mut Preset, path: &Path) -> Result<(), Failure> {
+    let source = read_points(path)?;
+    preset.set(data::FILE, Value::Points(Arc::new(source))).map_err(|invalid| match invalid {
+        Invalid::Made { cause, .. } => Failure::Usage(cause),
+        invalid => Failure::Usage(invalid.to_string()),
+    })
 }
 
 /// A number as typed behind `flag`, in SI or reduced units, of what the key `key` measures.

@@ -81,7 +81,8 @@ pub fn spares(file: Option<&Path>, option: &str, loaded: &Loaded) -> Result<(), 
         Shape::Profile(measured) => Some(measured.rows().path()),
         _ => None,
     };
-    for (read, what) in [(preset, "the preset"), (data, "the profile")] {
+    let curve = loaded.preset.data.source.as_ref().map(|source| source.path());
+    for (read, what) in [(preset, "the preset"), (data, "the profile"), (curve, "the measured curve")] {
         if read.and_then(|path| fs::canonicalize(path).ok()).is_some_and(|path| path == file) {
             return Err(Failure::Usage(format!(
                 "{option} {}: is the file of {what} that is read; write to another",

@@ -1,7 +1,7 @@
 //! `pulloff plot`: a view of the explorer as a figure for print.
 
 use super::console::{note, warn};
-use super::measured::{fill, typed};
+use super::measured::{attach, typed};
 use super::problem::Problem;
 use super::{Failure, output};
 use crate::explorer::maps::{MapAxes, MapWish};
@@ -9,18 +9,15 @@ use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View};
 use crate::figure::measured::Points;
 use crate::figure::range::RangeError;
-use crate::figure::{Figure, Range, Subject};
+use crate::figure::{Figure, Range, Sign, Subject};
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Width, series, svg, table};
 use crate::print::{Format, FormatError};
-use crate::store::data::read_measured;
 use crate::store::file::kind_of;
 use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
-use pulloff_engine::measured::Spec;
-use pulloff_engine::measured::branches::Asked;
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::report::CycleReport;
@@ -65,13 +62,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
     measured: Option<PathBuf>,
     /// What the columns of the measured curve are, where its header does not say it: x=1,force=2
-    #[arg(long, value_name = "ROLE=COLUMN,...", requires = "measured")]
+    #[arg(long, value_name = "ROLE=COLUMN,...", conflicts_with = "sweep")]
     columns: Option<String>,
     /// The x of the measured curve at which the approach is zero
-    #[arg(long, value_name = "LENGTH", requires = "measured", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", conflicts_with = "sweep", allow_hyphen_values = true)]
     offset: Option<String>,
     /// The force of the measured curve that is none [default: the median of its free part]
-    #[arg(long, value_name = "FORCE", requires = "measured", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FORCE", conflicts_with = "sweep", allow_hyphen_values = true)]
     baseline: Option<String>,
     /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
@@ -134,7 +131,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     output::spares(arguments.output.as_deref(), "-o", &loaded)?;
     let data = arguments.data_file(&loaded)?;
     let mut preset = loaded.preset;
-    let points = arguments.points(&mut preset)?;
+    arguments.lay_points(&mut preset)?;
     let curve = CurveData::compute(&preset, |_| true)?;
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
     warn(&curve.base.warnings);
@@ -157,20 +154,19 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let map = found.as_ref().map(|map| map.report());
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
+    let measured = Points::of(&preset).and_then(Result::ok);
     let subject = Subject {
+        measured,
         inside: inside.as_ref(),
         cycle: cycle.as_ref(),
         map,
         axes,
         ..Subject::alone(&curve, overlays)
     };
-    let mut figure = subject.figure(view);
-    if points.is_some_and(|points| !points.lay(view, &mut figure, subject.scale())) {
-        return Err(Failure::Usage(format!(
-            "--measured: the file has not the columns of {}; points are drawn in force-approach, radius-force and \
-             radius-approach",
-            view.name()
-        )));
+    let figure = subject.figure(view);
+    let is_drawn = figure.marks.iter().any(|mark| matches!(mark.sign, Sign::Measured { .. }));
+    if arguments.measured.is_some() && !is_drawn {
+        return Err(Failure::Usage(format!("--measured: the file has not the columns of {}", view.name())));
     }
     let figure = arguments.part(figure)?;
     let picture = svg::svg(&figure, arguments.width);
@@ -182,26 +178,30 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 impl Arguments {
-    /// The measured points; the preset gets the spring that their file states.
-    fn points(&self, preset: &mut Preset) -> Result<Option<Points>, Failure> {
-        let Some(path) = &self.measured else { return Ok(None) };
-        let said = self.columns.as_deref().map_or(Ok(Spec::default()), Spec::parse);
-        let said = said.map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
-        let measured = read_measured(path, &said)?;
-        let wrong = |error: String| Failure::Usage(format!("{}: {error}", output::shown(path)));
-        let spring = fill(preset, &measured).map_err(wrong)?;
-        let points = measured.points(&preset.units, spring).map_err(|error| wrong(error.to_string()))?;
-        let branches = points.branches(&Asked::default()).map_err(|error| wrong(error.to_string()))?;
-        let given = |flag: &str, key: &str, text: &Option<String>| {
-            text.as_deref().map(|text| typed(preset, flag, key, text)).transpose()
-        };
-        let offset = given("--offset", "path.start_approach", &self.offset)?.unwrap_or(0.0);
-        let baseline = given("--baseline", "path.start_force", &self.baseline)?;
-        let baseline = baseline.or(branches.baseline).unwrap_or(0.0);
+    /// Gives the preset the measured curve that is asked for, and says what was found in its own.
+    fn lay_points(&self, preset: &mut Preset) -> Result<(), Failure> {
+        if let Some(columns) = &self.columns {
+            let set = preset.set(data::COLUMNS, Value::Text(columns.clone()));
+            set.map_err(|invalid| Failure::Usage(format!("--columns: {invalid}")))?;
+        }
+        if let Some(path) = &self.measured {
+            attach(preset, path)?;
+        }
+        for (flag, key, text) in
+            [("--offset", data::OFFSET, &self.offset), ("--baseline", data::BASELINE, &self.baseline)]
+        {
+            let Some(text) = text else { continue };
+            let number = typed(preset, flag, key, text)?;
+            preset.set(key, number.into()).map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
+        }
+        let Some(source) = &preset.data.source else { return Ok(()) };
+        let wrong = |error: String| Failure::Usage(format!("{}: {error}", output::shown(&source.path())));
+        let measured = source.measured(&preset.data.columns).map_err(wrong)?;
+        let branches = source.branches(&preset.reading()).map_err(wrong)?;
         for text in measured.notes.iter().chain(&branches.notes) {
             note(Some(text));
         }
-        Ok(Some(Points::new(&branches, offset, baseline, spring)))
+        Ok(())
     }
 
     /// The picture of the results of a sweep.

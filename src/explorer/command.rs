@@ -50,8 +50,11 @@ pub enum Command {
     },
     /// Back to the values before those tried.
     TakeBack,
-    /// List the profiles in this folder; without one, in that of the preset's own profile.
-    Browse(Option<PathBuf>),
+    /// List the files for this key in this folder; without one, in that of the preset's own file.
+    Browse {
+        key: Key,
+        folder: Option<PathBuf>,
+    },
     Pick {
         panel: Panel,
         line: Option<usize>,
@@ -144,7 +147,7 @@ impl Command {
             Self::SelectEvent(_) => Id::SelectEvent,
             Self::MoveTo(_) => Id::MoveTo,
             Self::Assign(_) | Self::Turn { .. } => Id::Assign,
-            Self::Set { .. } | Self::Try { .. } | Self::Browse(_) => Id::Edit,
+            Self::Set { .. } | Self::Try { .. } | Self::Browse { .. } => Id::Edit,
             Self::Pick { .. } => Id::NextPanel,
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,

@@ -39,7 +39,11 @@ pub fn run(store: &Store, job: Job) -> Done {
         Job::Names => Done::Named(store.known()),
         Job::Assign { mut preset, assignments } => {
             match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
-                Ok(()) => Done::Assigned(preset),
+                Ok(()) => {
+                    // Found here, its branches need not be found where nobody may wait for them.
+                    let _ = preset.branches();
+                    Done::Assigned(preset)
+                }
                 Err(invalid) => Done::Failed(Reason::mendable(invalid.to_string())),
             }
         }
@@ -53,8 +57,8 @@ pub fn run(store: &Store, job: Job) -> Done {
             Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
             Err(error) => Done::Failed(Reason::of("not deleted: ", &error)),
         },
-        Job::Browse { folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
-            Ok(folder) => Done::Browsed(Box::new(folder)),
+        Job::Browse { key, folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
+            Ok(folder) => Done::Browsed(key, Box::new(folder)),
             Err(reason) => Done::Failed(Reason::mendable(reason)),
         },
         Job::Read { folder, name } => {

@@ -9,7 +9,7 @@ use super::node::Node;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
 use pulloff_engine::gap::shapes::Rows;
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::report::unload::EventReport;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -53,7 +53,9 @@ pub enum Job {
         assignments: Vec<Assignment>,
     },
     Browse {
-        /// The folder; without one, the profile's own.
+        /// The key whose file is chosen.
+        key: Key,
+        /// The folder; without one, that of the key's own file.
         folder: Option<PathBuf>,
         /// The folder that names are relative to; the current one without it.
         own: Option<PathBuf>,
@@ -94,7 +96,7 @@ pub enum Job {
 pub enum Done {
     Listed(Box<Listing>),
     Named(Vec<String>),
-    Browsed(Box<Folder>),
+    Browsed(Key, Box<Folder>),
     Assigned(Box<Preset>),
     Read(Arc<Rows>),
     Opened(Box<Loaded>),

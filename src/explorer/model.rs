@@ -18,7 +18,7 @@ use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
 use pulloff_engine::preset::groups::GROUPS;
-use pulloff_engine::preset::{Preset, Row, Value};
+use pulloff_engine::preset::{Key, Preset, Row, Value, data};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::unload::EventReport;
@@ -45,7 +45,8 @@ impl CurveError {
 #[derive(Debug, Clone)]
 pub enum Question {
     Preset(Box<Listing>),
-    Profile(Box<Folder>),
+    /// A file for this key.
+    File(Key, Box<Folder>),
     SaveAnyway,
     /// Replace the preset of this name; whether with the data of its profile.
     ReplacePreset(String, bool),
@@ -331,8 +332,17 @@ impl Model {
             .chain(texts)
             .chain(GROUPS.iter().map(Row::Borrowed))
             .map(|row| (row.clone(), self.preset.get(&row.key)))
-            .filter(|(row, value)| value.is_some() || row.key == "path.end_contact_radius")
+            .filter(|(row, value)| value.is_some() || self.may_be_typed(&row.key))
             .collect()
+    }
+
+    /// Whether a key without a value is offered all the same.
+    fn may_be_typed(&self, key: &str) -> bool {
+        match key {
+            "path.end_contact_radius" => true,
+            data::OFFSET | data::BASELINE => self.preset.data.source.is_some(),
+            _ => false,
+        }
     }
 
     /// The selected parameter and its value.

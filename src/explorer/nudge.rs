@@ -5,7 +5,7 @@
 
 use super::command::Id;
 use pulloff_engine::preset::schema::Kind;
-use pulloff_engine::preset::{Parameter, Preset, Value};
+use pulloff_engine::preset::{Parameter, Preset, Value, data};
 use pulloff_engine::problem::Control;
 use std::ops::RangeInclusive;
 
@@ -31,6 +31,9 @@ pub fn nudge(
     let share = if amount == Amount::Fine { 0.01 } else { 0.1 };
     let mut changed = preset.clone();
     let value = match (row.kind, preset.get(&row.key)) {
+        (_, value) if matches!(&*row.key, data::OFFSET | data::BASELINE) => {
+            Value::Number(tidy(shifted(preset, &row.key, value, if up { share } else { -share })?))
+        }
         (_, None) => {
             return Err(format!("{} follows from other values; {} types one", row.label, Id::Edit.named()));
         }
@@ -65,6 +68,18 @@ pub fn nudge(
     };
     changed.set(&row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)
+}
+
+/// δ₀ or P₀ moved by a tenth of `share` of the range of the measured curve: either may be 0, and has no scale of its own.
+fn shifted(preset: &Preset, key: &str, value: Option<Value>, share: f64) -> Result<f64, String> {
+    let Some(branches) = preset.branches().transpose()? else {
+        return Err("there is no measured curve to shift".to_owned());
+    };
+    let (range, found) = match key {
+        data::OFFSET => (branches.ranges[0], 0.0),
+        _ => (branches.ranges[1], branches.baseline.unwrap_or(0.0)),
+    };
+    Ok(value.and_then(|value| value.as_number()).unwrap_or(found) + 0.1 * share * range)
 }
 
 /// Stiffnesses over the contact's own; beyond them the device is displacement or force control to a few thousandths.

@@ -7,8 +7,7 @@ use super::maps::{MapAxes, MapWish};
 use super::model::{Awaits, Checking, Model};
 use super::node::NodeKind;
 use super::view::{EventSource, View};
-use pulloff_engine::gap::Shape;
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Key, Preset, Value};
 use pulloff_engine::problem::Control;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -94,6 +93,7 @@ pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
     let Some(node) = model.history.current() else { return Vec::new() };
     let mut preset = node.setting.preset.clone();
     preset.title.clone_from(&model.preset.title);
+    preset.data.clone_from(&model.preset.data);
     preset.path.control = model.preset.path.control;
     change(model, preset)
 }
@@ -106,6 +106,8 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     let same_problem = {
         let mut old = model.preset.clone();
         old.title.clone_from(&preset.title);
+        // Measured points lie behind the curve, and do not change it.
+        old.data.clone_from(&preset.data);
         old == preset
     };
     // The last stiffness is remembered, to come back to it.
@@ -145,20 +147,22 @@ pub(super) fn stop_walk(model: &Model) -> Vec<Effect> {
     model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 
-/// The folder that the name of the preset's own profile is relative to.
-fn own_folder(model: &Model) -> Option<PathBuf> {
-    match &model.preset.gap {
-        Shape::Profile(measured) => measured.rows().folder.clone(),
+/// The folder that the name of the preset's own file of this key is relative to.
+fn own_folder(model: &Model, key: &str) -> Option<PathBuf> {
+    match &model.preset.get(key)? {
+        Value::Profile(rows) => rows.folder.clone(),
+        Value::Points(source) => source.folder.clone(),
         _ => None,
     }
 }
 
-pub(super) fn browse(model: &Model, folder: Option<PathBuf>) -> Effect {
-    file(Job::Browse { folder, own: own_folder(model) })
+pub(super) fn browse(model: &Model, key: Key, folder: Option<PathBuf>) -> Effect {
+    let own = own_folder(model, &key);
+    file(Job::Browse { key, folder, own })
 }
 
-pub(super) fn read(model: &Model, name: String) -> Effect {
-    file(Job::Read { folder: own_folder(model), name })
+pub(super) fn read(model: &Model, key: &str, name: String) -> Effect {
+    file(Job::Read { folder: own_folder(model, key), name })
 }
 
 pub(super) fn file(job: Job) -> Effect {

@@ -117,7 +117,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Set { key, text } => set(model, &key, &text),
         Command::Try { key, text } => try_out(model, &key, &text),
         Command::TakeBack => untry(model),
-        Command::Browse(folder) => vec![browse(model, folder)],
+        Command::Browse { key, folder } => vec![browse(model, key, folder)],
         Command::Pick { panel, line } => {
             pick(model, panel, line);
             Vec::new()
@@ -274,6 +274,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Assign
         | Id::StepLength
         | Id::SelectEvent
+        | Id::Data
         | Id::MoveTo => {}
     }
     Vec::new()

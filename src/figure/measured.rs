@@ -5,6 +5,7 @@ use super::parts::{Figure, Mark, Sign};
 use super::scale::Scale;
 use crate::explorer::View;
 use pulloff_engine::measured::{Abscissa, Branches, Segment};
+use pulloff_engine::preset::Preset;
 
 /// The most points that are drawn; a fit takes all.
 const DRAWN: usize = 3000;
@@ -14,44 +15,53 @@ const DRAWN: usize = 3000;
 pub struct Points(Vec<(Segment, [f64; 3])>);
 
 impl Points {
-    /// The points of `branches` less the offset δ₀ and the baseline P₀; `spring` is the stiffness of the device where x is its way.
-    pub fn new(branches: &Branches, offset: f64, baseline: f64, spring: Option<f64>) -> Self {
+    /// The points of a preset's measured curve, less its offset δ₀ and its baseline P₀; `None` without a curve.
+    /// Errors: Why there are none, in words.
+    pub fn of(preset: &Preset) -> Option<Result<Self, String>> {
+        Some(preset.branches()?.map(|branches| Self::new(&branches, preset)))
+    }
+
+    fn new(branches: &Branches, preset: &Preset) -> Self {
+        let data = &preset.data;
+        let offset = data.offset.unwrap_or(0.0);
+        let (baseline, tilt) = (data.baseline.or(branches.baseline).unwrap_or(0.0), data.tilt.unwrap_or(0.0));
         let of = |x: f64, force: f64, radius: f64| {
-            let force = force - baseline;
-            match (branches.abscissa, spring) {
+            let force = force - baseline - tilt * x;
+            match (branches.abscissa, preset.reading().spring) {
                 (Abscissa::Radius, _) => [f64::NAN, force, x],
                 // δ = Δ − P/k.
                 (Abscissa::Position, Some(k)) => [x - offset - force / k, force, radius],
                 _ => [x - offset, force, radius],
             }
         };
+        let count: usize = branches.list.iter().map(|branch| branch.attached.len() + branch.free.len()).sum();
+        let step = count.div_ceil(DRAWN).max(1);
         let all = branches.list.iter().flat_map(|branch| {
-            let points = branch.attached.iter().chain(&branch.free);
+            let points =
+                [&branch.attached, &branch.free].into_iter().flat_map(|part| part.iter().step_by(step));
             points.map(|point| (branch.segment, of(point.x, point.force, point.radius)))
         });
         Self(all.collect())
     }
 
-    /// Lays them behind the signs of `figure`, as far as it has their columns; whether it has.
-    pub fn lay(&self, view: View, figure: &mut Figure, scale: Scale<'_>) -> bool {
-        if !matches!(view, View::ForceApproach | View::RadiusForce | View::RadiusApproach) {
-            return false;
+    /// Lays them behind the signs of `figure`, as far as its view has their columns.
+    pub fn lay(&self, view: View, figure: &mut Figure, scale: Scale<'_>) {
+        if !(view.is_curve() || matches!(view, View::Unloading | View::Cycle)) {
+            return;
         }
-        let step = self.0.len().div_ceil(DRAWN).max(1);
         let mark = |(segment, place): &(Segment, [f64; 3])| {
             let sign = Sign::Measured { loading: *segment == Segment::Approach };
             let at = scale.place(view, *place);
             (at.0.is_finite() && at.1.is_finite()).then_some(Mark { sign, at })
         };
         // Sorted by branch: each is drawn as one.
-        let marks: Vec<Mark> = self.0.iter().step_by(step).filter_map(mark).collect();
+        let marks: Vec<Mark> = self.0.iter().filter_map(mark).collect();
         if marks.is_empty() {
-            return false;
+            return;
         }
         let Bounds { x, y } = figure.bounds;
         let ends = [(x[0], y[0]), (x[1], y[1])];
         figure.bounds = Bounds::of(ends.into_iter().chain(marks.iter().map(|mark| mark.at)));
         figure.marks.splice(0..0, marks);
-        true
     }
 }

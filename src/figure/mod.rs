@@ -53,7 +53,7 @@ pub use subject::Subject;
 impl Subject<'_> {
     /// The figure of `view`.
     pub fn figure(&self, view: View) -> Figure {
-        match view {
+        let mut figure = match view {
             View::ForceApproach | View::RadiusForce | View::RadiusApproach => curves::figure(self, view),
             View::Unloading => unloading::figure(self),
             View::Cycle => loops::figure(self),
@@ -61,7 +61,11 @@ impl Subject<'_> {
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),
             View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
+        };
+        if let Some(points) = &self.measured {
+            points.lay(view, &mut figure, self.scale());
         }
+        figure
     }
 }
 

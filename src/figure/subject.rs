@@ -1,5 +1,6 @@
 //! What figures are built from.
 
+use super::measured::Points;
 use super::scale::Scale;
 use crate::explorer::branches::{Branch, branches};
 use crate::explorer::model::is_on_curve;
@@ -26,6 +27,8 @@ pub struct Subject<'a> {
     pub map: Option<Result<&'a MapReport, &'a str>>,
     /// The number of the selected event, from 1, where those of the curve are listed.
     pub event: Option<usize>,
+    /// The measured points, where there are any.
+    pub measured: Option<Points>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -46,6 +49,7 @@ impl<'a> Subject<'a> {
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             map: model.map.as_ref().map(|map| map.report()),
             event: (model.events == EventSource::Curve).then_some(model.event + 1),
+            measured: Points::of(&model.preset).and_then(Result::ok),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -64,6 +68,7 @@ impl<'a> Subject<'a> {
             cycle: None,
             map: None,
             event: None,
+            measured: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,

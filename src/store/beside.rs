@@ -1,4 +1,4 @@
-//! The data of a profile copied beside a preset, so that both can be handed on together.
+//! The data of a profile and a measured curve copied beside a preset, so that both can be handed on together.
 
 use super::atomic::{Overwrite, WriteError, write_atomically};
 use super::data::load;
@@ -42,37 +42,54 @@ impl From<String> for DataError {
     }
 }
 
-/// `preset` with its data in `folder`, where they are copied under their own name. Data there already stay if they are the
+/// `preset` with its data in `folder`, where they are copied under their own names. Data there already stay if they are the
 /// same; another file is never replaced. Presets without a file of their own are as they were.
 /// Errors: They are gone, others than those in the preset, or another file has the name.
 pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> {
     let mut copy = preset.clone();
-    let Shape::Profile(measured) = &preset.gap else { return Ok(copy) };
-    let rows = measured.rows();
-    if rows.name.starts_with(SHIPPED_DATA) {
-        return Ok(copy);
+    if let Shape::Profile(measured) = &preset.gap
+        && !measured.rows().name.starts_with(SHIPPED_DATA)
+    {
+        let rows = measured.rows();
+        let from = rows.path();
+        let now = Arc::new(load(rows.folder.as_deref(), &rows.name)?).held_in(&preset.units);
+        if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
+            return Err(others(&from));
+        }
+        let name = copied(folder, &from, &read_bytes(&from, LARGEST)?.0)?;
+        let copied = Arc::new(load(Some(folder), &name)?).held_in(&preset.units);
+        let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
+        copy.gap = Shape::Profile(Arc::new(measured));
     }
-    let from = rows.path();
-    let shown = show_path(&from);
+    if let Some(source) = preset.data.source.as_ref().filter(|source| !source.name.starts_with(SHIPPED_DATA))
+    {
+        let from = source.path();
+        if *read_bytes(&from, LARGEST)?.0 != *source.bytes {
+            return Err(others(&from));
+        }
+        let name = copied(folder, &from, &source.bytes)?;
+        copy.data.source = Some(Arc::new(source.named(name, Some(folder.to_path_buf()))));
+    }
+    Ok(copy)
+}
+
+fn others(path: &Path) -> DataError {
+    format!("{}: holds other rows than were read; choose the file again first", show_path(path)).into()
+}
+
+/// Copies `bytes`, the content of `from`, into `folder` under the name of `from`, which is returned.
+fn copied(folder: &Path, from: &Path, bytes: &[u8]) -> Result<String, DataError> {
     let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
-        return Err(format!("{shown}: is no name of a file").into());
+        return Err(format!("{}: is no name of a file", show_path(from)).into());
     };
-    let now = Arc::new(load(rows.folder.as_deref(), &rows.name)?).held_in(&preset.units);
-    if (&now.radii, &now.gaps) != (&rows.radii, &rows.gaps) {
-        return Err(format!("{shown}: holds other rows than were read; choose the file again first").into());
-    }
-    let (bytes, _) = read_bytes(&from, LARGEST)?;
     let to = folder.join(name);
-    match write_atomically(&to, &bytes, Overwrite::Never) {
+    match write_atomically(&to, bytes, Overwrite::Never) {
         Ok(_) => {}
         Err(WriteError::Exists { .. }) if read_bytes(&to, LARGEST).is_ok_and(|(there, _)| there == bytes) => {
         }
         Err(error) => return Err(error.into()),
     }
-    let copied = Arc::new(load(Some(folder), name)?).held_in(&preset.units);
-    let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
-    copy.gap = Shape::Profile(Arc::new(measured));
-    Ok(copy)
+    Ok(name.to_owned())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::file::{FileError, read_bytes};
 use crate::mend::Mend;
 use pulloff_engine::gap::shapes::Rows;
-use pulloff_engine::measured::{self, Measured, Spec};
+use pulloff_engine::measured::Source;
 use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
 use pulloff_engine::preset::profile::{Columns, LARGEST, TextError, parse};
 use pulloff_engine::preset::read::{self, ReadError};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// The files of this program's presets: its own data, and the disk.
-pub const FILES: Files = Files(load);
+pub const FILES: Files = Files { rows: load, points };
 
 /// Why a file gives no profile. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
@@ -25,23 +25,21 @@ pub enum ProfileError {
     Text { path: String, cause: TextError },
 }
 
-/// Why a file gives no measured curve. Names and paths in it are safe to show.
+/// Why there is no file of a measured curve. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
-pub enum MeasuredError {
+pub enum PointsError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error("{path}: {cause}")]
-    Text { path: String, cause: measured::ReadError },
     /// None that comes with the program, in words.
     #[error("{0}")]
     Shipped(String),
 }
 
-impl Mend for MeasuredError {
+impl Mend for PointsError {
     fn can_be_mended(&self) -> bool {
         match self {
             Self::File(error) => error.can_be_mended(),
-            Self::Text { .. } | Self::Shipped(_) => true,
+            Self::Shipped(_) => true,
         }
     }
 }
@@ -52,27 +50,40 @@ pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
 }
 
-/// Reads the measured curve in the file `path`, or the one that comes with the program, with what a person says of its columns.
-pub fn read_measured(path: &Path, spec: &Spec) -> Result<Measured, MeasuredError> {
+/// The file `path` of a measured curve, or the one of that name that comes with the program; it is not taken apart yet.
+pub fn read_points(path: &Path) -> Result<Source, PointsError> {
     let bytes = match path.to_str().and_then(curve) {
-        Some(text) => text.map_err(MeasuredError::Shipped)?.as_bytes().to_vec(),
+        Some(text) => text.map_err(PointsError::Shipped)?.as_bytes().to_vec(),
         None => read_bytes(path, LARGEST)?.0,
     };
-    measured::parse(&bytes, spec).map_err(|cause| MeasuredError::Text { path: show_path(path), cause })
+    Ok(Source::new(path.to_string_lossy().into_owned(), None, bytes.into()))
+}
+
+/// The bytes of the measured curve `name`, relative to `folder` or to the current folder.
+/// Errors: Why there are none, in words that are safe to show.
+fn points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
+    if name.starts_with(SHIPPED_DATA) {
+        return (Files::SHIPPED.points)(folder, name);
+    }
+    Ok(read_bytes(&place(folder, name)?, LARGEST).map_err(|error| words(&error))?.0)
+}
+
+/// Where the file `name` lies.
+fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
+    if name.is_empty() || name.chars().any(is_unsafe) {
+        return Err(format!("\"{}\" is no name of a file", quote(name)));
+    }
+    Ok(folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name)))
 }
 
 /// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that
 /// begins with [`SHIPPED_DATA`].
 /// Errors: Why there are no rows, in words that are safe to show.
 pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
-    if name.is_empty() || name.chars().any(is_unsafe) {
-        return Err(format!("\"{}\" is no name of a file", quote(name)));
-    }
     if name.starts_with(SHIPPED_DATA) {
-        return (Files::SHIPPED.0)(folder, name);
+        return (Files::SHIPPED.rows)(folder, name);
     }
-    let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    let columns = read_profile(&path).map_err(|error| words(&error))?;
+    let columns = read_profile(&place(folder, name)?).map_err(|error| words(&error))?;
     rows(folder, name, columns)
 }
 

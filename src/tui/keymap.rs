@@ -126,7 +126,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
         // Typed, since each takes a value.
-        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo => &[],
+        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo | Id::Data => &[],
         Id::Undo => &[Char('u')],
         Id::Redo => &[Ctrl('r')],
         Id::Branches => &[Char('B')],

@@ -1,8 +1,9 @@
 //! One value that a fit finds, and what a key measures.
 
 use super::intervals::Bootstrapped;
-use super::problem::{ADHESION, BASELINE, OFFSET, TILT};
+use super::problem::ADHESION;
 use crate::preset::Preset;
+use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::units::Quantity;
 
 /// One fitted value, in base units.

@@ -34,7 +34,7 @@ pub mod start;
 
 pub use fitted::Fitted;
 pub use options::{FitError, Options};
-pub use run::{Fit, fit};
+pub use run::{Fit, fit, fit_own};
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,9 @@
 //! What is asked of a fit, what can be free, and why there is none.
 
-use super::problem::{ADHESION, BASELINE, OFFSET, TILT, Target};
+use super::problem::{ADHESION, Target};
 use crate::measured::branches::Asked;
-use crate::measured::{Abscissa, BranchError, PointsError};
+use crate::measured::{Abscissa, BranchError};
+use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::{Kind, Row};
 use crate::preset::{Preset, Value};
 use crate::text::{closest, greek, quote};
@@ -20,12 +21,6 @@ pub struct Options {
     pub robust: bool,
     /// What is used of the points.
     pub asked: Asked,
-    /// δ₀, P₀ and its slope, where they are given.
-    pub offset: Option<f64>,
-    /// P₀.
-    pub baseline: Option<f64>,
-    /// Its slope.
-    pub tilt: Option<f64>,
     /// Whether starts other than the preset's are tried.
     pub scan: bool,
     /// Whether profile intervals are computed.
@@ -41,9 +36,6 @@ impl Default for Options {
             separate: false,
             robust: true,
             asked: Asked::default(),
-            offset: None,
-            baseline: None,
-            tilt: None,
             scan: true,
             profile: false,
             bootstrap: None,
@@ -56,7 +48,7 @@ impl Default for Options {
 pub enum FitError {
     /// Nothing is free.
     #[error(
-        "nothing is free: name the keys to fit, as in --free material.effective_modulus,material.work_of_adhesion"
+        "nothing is free: name the keys to fit, as in --free material.effective_modulus,material.work_of_adhesion, or in data.free"
     )]
     NothingFree,
     /// A key that is not known, or cannot be fitted.
@@ -70,9 +62,12 @@ pub enum FitError {
     /// The points give no branches.
     #[error(transparent)]
     Branches(#[from] BranchError),
-    /// The columns give no points.
-    #[error(transparent)]
-    Points(#[from] PointsError),
+    /// The preset has no measured curve.
+    #[error("the preset has no measured curve: name a file, or set data.file")]
+    NoData,
+    /// Its file gives no points, in words.
+    #[error("{0}")]
+    Data(String),
     /// Fewer points than parameters ask for.
     #[error(
         "{points} points in contact are too few for {parameters} free keys: at least {needed} are wanted"
@@ -121,7 +116,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let gamma = ["γ", "gamma", "w"].contains(&name).then_some(ADHESION);
     let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
     else {
-        let known = rows.iter().map(|row| &*row.key).chain([OFFSET, BASELINE, TILT]);
+        let known = rows.iter().map(|row| &*row.key);
         let meant = closest(name, known);
         return Err(refused(format!(
             "is no key of this preset{}",

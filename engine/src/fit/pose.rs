@@ -2,9 +2,11 @@
 
 use super::options::{FitError, Options, target};
 use super::path::Reach;
-use super::problem::{ADHESION, BASELINE, Datum, Instrument, Parameter, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
 use crate::gap::Gap;
 use crate::measured::{Abscissa, Branches, Segment};
+use crate::preset::data::BASELINE;
+use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::Start;
 
@@ -24,6 +26,8 @@ pub fn posed(
     notes: &mut Vec<String>,
 ) -> Result<Problem, FitError> {
     let mut bare = preset.clone();
+    // Its own points say nothing of other values.
+    bare.data = DataSpec::default();
     // Values far off would be refused for where the path of the preset starts, which means nothing here.
     (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
     if preset.basis != BasisSpec::Exact {
@@ -31,7 +35,7 @@ pub fn posed(
     }
     let data = data(preset, branches, notes)?;
     let mut targets = targets(preset, branches, options, &data)?;
-    let instrument = instrument(branches, options, &mut targets, notes)?;
+    let instrument = instrument(&preset.data, branches, &mut targets, notes)?;
     let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
     let parameters: Vec<Parameter> = parameters.collect();
     let attached = data.iter().filter(|datum| !datum.free).count();
@@ -99,18 +103,18 @@ fn targets(
 
 /// Where the values between model and instrument start; a baseline that the points show is free too.
 fn instrument(
+    given: &DataSpec,
     branches: &Branches,
-    options: &Options,
     targets: &mut Vec<Target>,
     notes: &mut Vec<String>,
 ) -> Result<Instrument, FitError> {
     let mut instrument = Instrument {
-        offset: options.offset.unwrap_or(0.0),
-        baseline: options.baseline.unwrap_or(0.0),
-        tilt: options.tilt.unwrap_or(0.0),
+        offset: given.offset.unwrap_or(0.0),
+        baseline: given.baseline.unwrap_or(0.0),
+        tilt: given.tilt.unwrap_or(0.0),
     };
     match branches.baseline {
-        Some(found) if options.baseline.is_none() => {
+        Some(found) if given.baseline.is_none() => {
             if !targets.contains(&Target::Baseline) {
                 targets.push(Target::Baseline);
                 notes.push("data.baseline is fitted too, since there is a free part".to_owned());

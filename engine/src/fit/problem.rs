@@ -5,6 +5,7 @@ use super::least_squares::{Evaluated, LeastSquares};
 use super::path::{Path, Place, Reach};
 use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
+use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value};
 use nalgebra::{DMatrix, DVector};
 
@@ -68,13 +69,6 @@ impl Parameter {
         }
     }
 }
-
-/// The key of δ₀.
-pub const OFFSET: &str = "data.offset";
-/// The key of P₀.
-pub const BASELINE: &str = "data.baseline";
-/// The key of its slope.
-pub const TILT: &str = "data.tilt";
 
 /// One point that is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,8 +11,9 @@ use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
 use crate::measured::branches::FLOOR;
-use crate::measured::{Noise, Points, Segment};
+use crate::measured::{Abscissa, Asked, Noise, Points, Segment};
 use crate::preset::Preset;
+use crate::preset::data::{BASELINE, OFFSET, TILT};
 use nalgebra::DVector;
 
 /// Rounds of the last fit.
@@ -34,6 +35,8 @@ pub struct Residual {
 /// A fit.
 #[derive(Debug, Clone)]
 pub struct Fit {
+    /// What x of the points is.
+    pub abscissa: Abscissa,
     /// The values.
     pub parameters: Vec<Fitted>,
     /// Their correlations; `None` where they are not determined.
@@ -74,7 +77,25 @@ pub struct Fit {
     pub residuals: Vec<Residual>,
 }
 
-/// Fits the free keys of `preset`, its device among it, to `points`; `go_on` is told the share that is done, and stops it by
+/// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit_own(
+    preset: &Preset,
+    options: &Options,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Fit, FitError> {
+    let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
+    let points = source.points(&reading).map_err(FitError::Data)?;
+    let asked = Asked { segment: preset.data.segment, ..options.asked };
+    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, go_on)?;
+    let read = source.measured(&reading.columns).map_err(FitError::Data)?;
+    found.notes.splice(0..0, read.notes.iter().cloned());
+    Ok(found)
+}
+
+/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`; `go_on` is told the share that is done, and stops it by
 /// answering no: the best so far is what there is then.
 ///
 /// # Errors
@@ -122,9 +143,10 @@ pub fn fit(
     let known_noise = !from_residuals && !branches.noise.assumed[1];
     let residuals = beside(&problem, &solved);
     let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
-    let fitted_preset = laid(preset, &problem, &found, &mut notes);
+    let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
     let rows = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
     Ok(Fit {
+        abscissa: points.abscissa,
         correlations: what.correlations.map(rows),
         chi_squared: real.iter().map(|r| (r / scale).powi(2)).sum::<f64>() / degrees,
         points: [count(false), count(true)],
@@ -201,16 +223,24 @@ fn values(problem: &Problem, u: &[f64], errors: Option<&DVector<f64>>) -> Vec<Fi
 }
 
 /// `preset` with the values of `found`; its path stays its own.
-fn laid(preset: &Preset, problem: &Problem, found: &Preset, notes: &mut Vec<String>) -> Preset {
+fn laid(
+    preset: &Preset,
+    problem: &Problem,
+    (found, instrument): (&Preset, &Instrument),
+    notes: &mut Vec<String>,
+) -> Preset {
     let mut laid = preset.clone();
     for parameter in &problem.parameters {
-        let key = match &parameter.target {
-            Target::Key(key) => key.as_str(),
-            Target::Adhesion(Segment::Retraction) => ADHESION,
-            _ => continue,
+        let (key, value) = match &parameter.target {
+            Target::Key(key) => (key.as_str(), found.get(key)),
+            Target::Adhesion(Segment::Retraction) => (ADHESION, found.get(ADHESION)),
+            Target::Adhesion(_) => continue,
+            Target::Offset => (OFFSET, Some(instrument.offset.into())),
+            Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
+            Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };
-        if found.get(key).is_some_and(|value| laid.set(key, value).is_err()) {
-            notes.push(format!("{key} could not be laid over the preset, whose path it forbids"));
+        if let Some(Err(invalid)) = value.map(|value| laid.set(key, value)) {
+            notes.push(format!("{key} could not be laid over the preset: {invalid}"));
         }
     }
     laid

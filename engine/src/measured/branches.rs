@@ -353,7 +353,7 @@ fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
             continue;
         }
         let end = &force[force.len() - (force.len() / END_SHARE).max(END_ROWS)..];
-        let limit = BEYOND * scatter(tenth(&force)).max(FLOOR * range(force.iter().copied()));
+        let limit = BEYOND * noise_of(&force).max(FLOOR * range(force.iter().copied()));
         let base = median(end.to_vec())?;
         let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
         let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
@@ -409,7 +409,8 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     let count = (points.len() / END_SHARE).max(END_ROWS);
     let end = &force[force.len() - count..];
     let whole = range(force.iter().copied());
-    let limit = BEYOND * scatter(tenth(&force)).max(FLOOR * whole);
+    let limit = BEYOND * noise_of(&force).max(FLOOR * whole);
+    let goes_on = trends(&force);
     // Without single rows that are off: a median keeps the place of a step.
     let force = filtered(&force);
     let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap_or(0);
@@ -422,7 +423,7 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
         let dropped = within.unwrap_or(0);
         return Branch { segment, attached: points, free: rest[dropped..].to_vec(), dropped };
     }
-    if trends(&force) {
+    if goes_on {
         return Branch { segment, attached: points, free: Vec::new(), dropped: 0 };
     }
     // Without a jump the free part ends where three rows in a row are off.
@@ -454,7 +455,7 @@ fn trends(force: &[f64]) -> bool {
     let end = tenth(force);
     let thirds: Vec<f64> =
         end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
-    range(thirds.iter().copied()) > 2.0 * scatter(end) + FLOOR * range(force.iter().copied())
+    range(thirds.iter().copied()) > 2.0 * noise_of(force) + FLOOR * range(force.iter().copied())
 }
 
 /// The line through a free part, by the medians of its halves.
@@ -482,6 +483,11 @@ impl Line {
     fn at(&self, x: f64) -> f64 {
         self.base + self.slope * x
     }
+}
+
+/// σ of normal noise at the free end of a branch. Of few rows there it is known badly, of all rows never too low.
+fn noise_of(force: &[f64]) -> f64 {
+    scatter(tenth(force)).min(scatter(force))
 }
 
 /// σ of normal noise on what varies slowly from row to row.

@@ -115,6 +115,22 @@ pub fn stiffness(
 }
 
 impl Measured {
+    /// Whether a problem in `units` takes the columns as they are.
+    ///
+    /// # Errors
+    /// [`PointsError::Reduced`].
+    pub fn check_units(&self, units: &UnitSystem) -> Result<(), PointsError> {
+        let named = self.columns.iter().find_map(|column| Some((column, column.unit.as_ref()?)));
+        match named {
+            Some((column, unit)) if *units == UnitSystem::Reduced => Err(PointsError::Reduced {
+                header: self.header,
+                role: column.role.word(),
+                unit: unit.ascii(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// The points of a problem in `units` whose device has the stiffness `spring`, in its base units.
     ///
     /// Of an approach and a position the approach is taken, of a force and a deflection the force.
@@ -122,12 +138,7 @@ impl Measured {
     /// # Errors
     /// [`PointsError`].
     pub fn points(&self, units: &UnitSystem, spring: Option<f64>) -> Result<Points, PointsError> {
-        if *units == UnitSystem::Reduced
-            && let Some(column) = self.columns.iter().find(|column| column.unit.is_some())
-        {
-            let unit = column.unit.as_ref().map_or_else(String::new, crate::units::Unit::ascii);
-            return Err(PointsError::Reduced { header: self.header, role: column.role.word(), unit });
-        }
+        self.check_units(units)?;
         let column = |role| self.columns.iter().find(|column| column.role == role);
         let (abscissa, x) = [
             (Abscissa::Approach, Role::Approach),

@@ -52,6 +52,8 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             _ => Turn::Radius(value),
         }
     });
+    let mut control = given.control("path.control");
+    let data = given.data(&mut control);
     let (end, range) = ("path.end_contact_radius", "material.range_of_action");
     let preset = Preset {
         title: given.text("title"),
@@ -64,12 +66,13 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
         gap,
         basis: given.basis(),
         path: PathSpec {
-            control: given.control("path.control"),
+            control,
             start,
             end_contact_radius: values.contains_key(end).then(|| given.number(end)),
             begin: if given.text("path.begin") == Begin::Touch.name() { Begin::Touch } else { Begin::Disc },
             turn,
         },
+        data,
         files,
     };
     let mut faults = given.collapsed();

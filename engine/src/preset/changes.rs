@@ -2,7 +2,7 @@
 
 use super::groups;
 use super::model::Preset;
-use super::schema::{CHOOSERS, Key, Kind, Parameter, SYSTEMS};
+use super::schema::{CHOOSERS, Fallback, Key, Kind, Parameter, SYSTEMS};
 use super::value::Value;
 use crate::units::UnitSystem;
 
@@ -39,15 +39,26 @@ pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
 pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
     rows.filter_map(|row| {
-        let value = to.get(&row.key).filter(|value| from.get(&row.key).as_ref() != Some(value))?;
+        let value = wanted(from, to, &row).filter(|value| from.get(&row.key).as_ref() != Some(value))?;
         Some((row.key.clone(), typed(&row, &to.units, &value)))
     })
     .collect()
 }
 
+/// The value that `to` has; of a measured curve also the word by which what `now` has is taken away.
+fn wanted(now: &Preset, to: &Preset, row: &Parameter) -> Option<Value> {
+    let taken_away = || match row.fallback {
+        Fallback::Text(word) if row.table() == Some("data") && now.get(&row.key).is_some() => {
+            Some(word.into())
+        }
+        _ => None,
+    };
+    to.get(&row.key).or_else(taken_away)
+}
+
 /// Gives `now` the value that `to` has; false where it has it already or cannot have it yet.
 fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, String)>) -> bool {
-    let Some(value) = to.get(&row.key) else { return false };
+    let Some(value) = wanted(now, to, row) else { return false };
     if now.get(&row.key).as_ref() == Some(&value) {
         return false;
     }
@@ -55,11 +66,11 @@ fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, S
     let mut changed = now.clone();
     // The rows of a file are at hand, and need not be read for this.
     let done = match row.kind {
-        Kind::File => changed.set(&row.key, value.clone()),
+        Kind::File | Kind::Points => changed.set(&row.key, value),
         _ => changed.assign(&row.key, &text),
     };
     // A bare number may count in a unit that `now` still has and `to` has not.
-    let done = done.is_ok() && changed.get(&row.key).as_ref() == Some(&value);
+    let done = done.is_ok() && changed.get(&row.key) == to.get(&row.key);
     if done {
         *now = changed;
         made.push((row.key.clone(), text));
@@ -105,6 +116,14 @@ mod tests {
         from.reset("path.end_contact_radius").unwrap();
         to.assign("path.end_contact_radius", "0.01").unwrap();
         assert!(changes(&from, &to).is_some() && changes(&to, &from).is_none());
+        // A measured curve can be taken away.
+        let (with, mut without) = (preset("lens"), preset("lens"));
+        without.set("data.file", "none".into()).unwrap();
+        without.set("data.free", "".into()).unwrap();
+        let expected = [("data.file", "none"), ("data.free", "")];
+        let expected = expected.map(|(key, text)| (Key::from(key), text.to_owned()));
+        assert_eq!(changes(&with, &without), Some(expected.to_vec()));
+        assert_eq!(changes(&without, &with).unwrap()[0].1, "shipped:lens.csv");
     }
 
     proptest! {

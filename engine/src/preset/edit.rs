@@ -8,15 +8,15 @@
 //! What a text says can follow from what it does not say: a start that is left out follows the radius of curvature. So the
 //! result is read back, and a key that came back otherwise is written out.
 
+use super::data;
 use super::family::{self, PARAMETER_KEYS, is_parameter};
 use super::model::Preset;
-use super::read::{read_holding, read_in};
+use super::read::{Held, read_holding, read_in};
 use super::rows::parameter;
 use super::schema::Key;
 use super::shape::is_range;
 use super::value::Value as Number;
 use super::write::{COMMENTS, FOLLOWING, comment, following, head, line, toml, toml_of_parameter};
-use crate::gap::Shape;
 use crate::problem::Control;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -27,12 +27,8 @@ use toml_edit::{Array, Document, InlineTable, Item, Table, Value};
 /// relative to `folder`.
 #[must_use]
 pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String> {
-    let rows = match &preset.gap {
-        Shape::Profile(measured) => Some(measured.rows()),
-        _ => None,
-    };
     let held = |text: &str| {
-        let read = read_holding(preset.files, "", text, rows.map(std::sync::Arc::clone)).ok();
+        let read = read_holding(preset.files, "", text, Held::by(preset)).ok();
         read.map(|(preset, _)| preset)
     };
     // A text of another profile is read with its own rows.
@@ -270,8 +266,8 @@ impl<'a> Layout<'a> {
                 (Some(leaf), _) => {
                     kept.insert(leaf.section);
                     // The rows of a file may be at hand, whatever it is called.
-                    let is_file = want.key == "gap.file";
-                    if !(if is_file { leaf.string.as_deref() == name(preset) } else { is_same }) {
+                    let is_file = want.key == "gap.file" || want.key == data::FILE;
+                    if !(if is_file { leaf.string == name(preset, &want.key) } else { is_same }) {
                         edits.set(self.text, &leaf.value, &leaf.inner, Some(&want.value))?;
                     }
                 }
@@ -382,12 +378,9 @@ fn key_of(leaf: &Leaf) -> String {
     }
 }
 
-/// The name of the preset's file.
-fn name(preset: &Preset) -> Option<&str> {
-    match &preset.gap {
-        Shape::Profile(measured) => Some(&measured.rows().name),
-        _ => None,
-    }
+/// The name of the preset's file of this key.
+fn name(preset: &Preset, key: &str) -> Option<String> {
+    preset.get(key).map(|value| value.to_string())
 }
 
 fn start_of_line(text: &str, at: usize) -> usize {

@@ -9,6 +9,7 @@ use crate::gap::{
     shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::Measured, shapes::PowerLaw,
     shapes::RandomWaves, shapes::Smoothing,
 };
+use crate::preset::data::DataSpec;
 use crate::problem::{Begin, Control, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
@@ -30,6 +31,7 @@ pub fn wavy() -> Preset {
             begin: Begin::Disc,
             turn: None,
         },
+        data: DataSpec::default(),
         files: FILES,
     }
 }
@@ -79,6 +81,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                     begin: Begin::Disc,
                     turn: None,
                 },
+                data: DataSpec::default(),
                 files: FILES,
             }
         })

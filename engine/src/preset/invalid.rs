@@ -182,9 +182,9 @@ pub enum Invalid {
         /// Why.
         cause: ValueError,
     },
-    /// A gap that cannot be made.
+    /// A gap that cannot be made, or a measured curve that cannot be had.
     #[error("{key}: {cause}")]
-    Gap {
+    Made {
         /// The key.
         key: Key,
         /// Why, in words.
@@ -243,7 +243,7 @@ impl Invalid {
             | Self::EndBeyondStart { key, .. }
             | Self::Rings { key, .. }
             | Self::Units { key, .. }
-            | Self::Gap { key, .. }
+            | Self::Made { key, .. }
             | Self::Unset { key, .. }
             | Self::Unused { key, .. }
             | Self::Beyond { key, .. }

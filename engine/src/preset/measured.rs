@@ -8,9 +8,10 @@
 
 use super::invalid::Invalid;
 use super::profile::Columns;
-use super::schema::{Kind, Parameter};
+use super::schema::{Kind, NONE, Parameter};
 use super::value::Value;
 use crate::gap::shapes::Rows;
+use crate::measured::Source;
 use crate::text::{quote, sanitize, show_path};
 use crate::units::UnitSystem;
 use std::path::Path;
@@ -21,16 +22,25 @@ pub const SHIPPED_DATA: &str = "shipped:";
 /// The longest message of what is wrong with a file.
 const LONGEST_CAUSE: usize = 1000;
 
-/// Where the rows of profiles come from: the engine reads no disk.
+/// Where the files that presets name come from: the engine reads no disk.
 ///
-/// The function is given the folder of the preset, where it has one, and the name of the file, and answers with the rows or
-/// with why there are none, in words that are safe to show; [`rows`] makes them of the columns of a text.
+/// Each function is given the folder of the preset, where it has one, and the name of the file, and answers with why there is
+/// nothing in words that are safe to show.
 #[derive(Debug, Clone, Copy)]
-pub struct Files(pub fn(folder: Option<&Path>, name: &str) -> Result<Rows, String>);
+pub struct Files {
+    /// The rows of a profile; [`rows`] makes them of the columns of a text.
+    pub rows: fn(folder: Option<&Path>, name: &str) -> Result<Rows, String>,
+    /// The bytes of a measured curve.
+    pub points: fn(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String>,
+}
+
+fn nothing<T>(_: Option<&Path>, name: &str) -> Result<T, String> {
+    Err(format!("\"{}\": there are no files here", quote(name)))
+}
 
 impl Files {
     /// No files: a preset that names one is refused.
-    pub const NONE: Self = Self(|_, name| Err(format!("\"{}\": there are no files here", quote(name))));
+    pub const NONE: Self = Self { rows: nothing, points: nothing };
 }
 
 impl Default for Files {
@@ -76,6 +86,11 @@ pub(super) fn shown(rows: &Rows) -> String {
     if rows.name.starts_with(SHIPPED_DATA) { quote(&rows.name) } else { show_path(&rows.path()) }
 }
 
+/// The file of a measured curve as messages name it.
+pub(super) fn shown_file(source: &Source) -> String {
+    if source.name.starts_with(SHIPPED_DATA) { quote(&source.name) } else { show_path(&source.path()) }
+}
+
 /// Whether a preset in `units` takes `rows` as their header has them.
 ///
 /// # Errors
@@ -92,7 +107,7 @@ pub(super) fn in_these_units(rows: &Rows, units: &UnitSystem) -> Result<(), Stri
     }
 }
 
-/// A value as it is kept: the name of a file stands for its rows, which `files` has.
+/// A value as it is kept: the name of a file stands for what it holds, which `files` has.
 pub(super) fn located(
     files: Files,
     row: &Parameter,
@@ -101,8 +116,13 @@ pub(super) fn located(
 ) -> Result<Value, Invalid> {
     match value {
         Value::Text(name) if row.kind == Kind::File => {
-            let cause = |cause| Invalid::Gap { key: row.key.clone(), cause };
-            Ok(Value::Profile(Arc::new(files.0(folder, &name).map_err(cause)?)))
+            let cause = |cause| Invalid::Made { key: row.key.clone(), cause };
+            Ok(Value::Profile(Arc::new((files.rows)(folder, &name).map_err(cause)?)))
+        }
+        Value::Text(name) if row.kind == Kind::Points && name != NONE => {
+            let cause = |cause| Invalid::Made { key: row.key.clone(), cause };
+            let bytes = (files.points)(folder, &name).map_err(cause)?;
+            Ok(Value::Points(Arc::new(Source::new(name, folder.map(Path::to_path_buf), bytes.into()))))
         }
         value => Ok(value),
     }

@@ -29,6 +29,7 @@
 
 pub mod build;
 pub mod changes;
+pub mod data;
 pub mod edit;
 #[cfg(test)]
 mod examples;

@@ -12,6 +12,7 @@ pub(super) use change::put;
 pub use keys::is_of_units;
 pub(super) use keys::unknown_key;
 
+use super::data::DataSpec;
 use super::measured::{self, Files};
 use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
@@ -38,6 +39,8 @@ pub struct Preset {
     pub basis: BasisSpec,
     /// Where to start, what to control, where to end.
     pub path: PathSpec,
+    /// A measured curve beside it.
+    pub data: DataSpec,
     /// Where the rows of another profile would come from.
     pub files: Files,
 }
@@ -125,6 +128,7 @@ impl Preset {
                 begin: Begin::Disc,
                 turn: None,
             },
+            data: DataSpec::default(),
             files: Files::NONE,
         }
     }
@@ -164,28 +168,36 @@ impl Preset {
         self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
     }
 
-    /// The same preset for a file in `folder`: the name of a profile's file becomes relative to it where the file lies in
-    /// it or below, else absolute.
+    /// The same preset for a file in `folder`: the names of the files of its profile and of its measured curve become relative
+    /// to it where they lie in it or below, else absolute.
     #[must_use]
     pub fn placed_in(&self, folder: &Path) -> Self {
         let mut preset = self.clone();
         if let Shape::Profile(measured) = &self.gap {
             let rows = measured.rows();
-            let own = rows.folder.as_deref().unwrap_or(Path::new("."));
-            let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();
-            let stays = rows.name.starts_with(measured::SHIPPED_DATA)
-                || (is_same && Path::new(&rows.name).is_relative());
-            if let (false, Ok(path), Ok(folder)) =
-                (stays, std::path::absolute(own.join(&rows.name)), std::path::absolute(folder))
-                && let Some(name) = path.strip_prefix(folder).unwrap_or(&path).to_str()
-                && !name.starts_with(measured::SHIPPED_DATA)
-            {
-                let moved = Measured::clone(measured).named(name.to_owned());
-                preset.gap = Shape::Profile(Arc::new(moved));
+            if let Some(name) = moved(rows.folder.as_deref(), &rows.name, folder) {
+                preset.gap = Shape::Profile(Arc::new(Measured::clone(measured).named(name)));
             }
+        }
+        if let Some(source) = &self.data.source
+            && let Some(name) = moved(source.folder.as_deref(), &source.name, folder)
+        {
+            preset.data.source = Some(Arc::new(source.named(name, source.folder.clone())));
         }
         preset
     }
+}
+
+/// The name for a preset in `folder` of the file `name`, relative to `own`; `None` where that stays.
+fn moved(own: Option<&Path>, name: &str, folder: &Path) -> Option<String> {
+    let own = own.unwrap_or(Path::new("."));
+    let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();
+    if name.starts_with(measured::SHIPPED_DATA) || (is_same && Path::new(name).is_relative()) {
+        return None;
+    }
+    let path = std::path::absolute(own.join(name)).ok()?;
+    let name = path.strip_prefix(std::path::absolute(folder).ok()?).unwrap_or(&path).to_str()?;
+    (!name.starts_with(measured::SHIPPED_DATA)).then(|| name.to_owned())
 }
 
 #[cfg(test)]

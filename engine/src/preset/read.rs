@@ -16,15 +16,13 @@ mod sheet;
 mod whole;
 
 pub use mistake::{Mistake, Origin, ReadError};
-pub use sheet::line;
+pub use sheet::{Held, line};
 
 use super::measured::Files;
 use super::model::Preset;
-use crate::gap::shapes::Rows;
 use crate::text::show_name;
 use sheet::{Place, Sheet};
 use std::path::Path;
-use std::sync::Arc;
 use toml::de::DeTable;
 
 /// How many mistakes are collected before reading stops.
@@ -71,19 +69,13 @@ pub fn read_in<S: AsRef<str>>(
 }
 
 /// Reads a preset as a session holds it, and says whether it has keys or words of before, which are read as they were
-/// meant. Its profile, where it has one, is `rows`, whatever its file holds by now; no file is read.
+/// meant. Its files hold what `held` says, whatever they hold by now; none is read.
 ///
 /// # Errors
 /// Every mistake found, with its line.
-pub fn read_holding(
-    files: Files,
-    name: &str,
-    text: &str,
-    rows: Option<Arc<Rows>>,
-) -> Result<(Preset, bool), ReadError> {
-    // Without rows the file is not asked for either: a profile that has none is a mistake.
-    let rows = Some(rows.unwrap_or_default());
-    let mut sheet = Sheet { name: show_name(name), files, rows, takes_former: true, ..Sheet::default() };
+pub fn read_holding(files: Files, name: &str, text: &str, held: Held) -> Result<(Preset, bool), ReadError> {
+    let held = Some(held);
+    let mut sheet = Sheet { name: show_name(name), files, held, takes_former: true, ..Sheet::default() };
     match DeTable::parse(text) {
         Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
         Err(error) => sheet.syntax(text, &error),

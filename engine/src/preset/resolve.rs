@@ -51,7 +51,7 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
     }
     if let Some(parameter) = parameter_of(key) {
         return of_parameter(values, parameter, &typed)
-            .map_err(|cause| Invalid::Gap { key: key.clone(), cause });
+            .map_err(|cause| Invalid::Made { key: key.clone(), cause });
     }
     match (quantity(values, key), exponent(values)) {
         (Some(quantity), _) => typed.in_si(quantity, None).map_err(fault),
@@ -61,7 +61,7 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
                  got {typed}",
                 number::short(1.0 - n, 6)
             );
-            Err(Invalid::Gap { key: key.clone(), cause })
+            Err(Invalid::Made { key: key.clone(), cause })
         }
         // Without an exponent there is no gap, which is said elsewhere.
         (None, None) => typed.in_own_si().map_err(fault),

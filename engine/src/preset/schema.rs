@@ -32,7 +32,7 @@ pub const TURN_KEYS: [&str; 3] = ["path.turn_approach", "path.turn_force", "path
 pub const AUTO: &str = "auto";
 /// The word for the exact basis.
 pub const EXACT: &str = "exact";
-/// The word for no smoothing.
+/// The word for no smoothing, and for no measured curve.
 pub const NONE: &str = "none";
 
 /// What kind of value a parameter takes.
@@ -65,6 +65,8 @@ pub enum Kind {
     },
     /// A file with a measured profile.
     File,
+    /// A file with a measured curve, or [`NONE`].
+    Points,
     /// A number above zero, or `none`, or [`AUTO`].
     Smoothing,
     /// One of these words.
@@ -169,7 +171,12 @@ impl Kind {
             Self::Positive | Self::NonNegative | Self::Finite | Self::Between { .. } | Self::Smoothing => {
                 true
             }
-            Self::Integer { .. } | Self::Text { .. } | Self::File | Self::Choice(_) | Self::Control => false,
+            Self::Integer { .. }
+            | Self::Text { .. }
+            | Self::File
+            | Self::Points
+            | Self::Choice(_)
+            | Self::Control => false,
         }
     }
 }
@@ -246,6 +253,7 @@ impl Parameter {
             Kind::Integer { min, max } => format!("a whole number from {min} to {max}"),
             Kind::Between { min, max } => format!("a number from {min:?} to {max:?}"),
             Kind::File => "the name of a file".to_owned(),
+            Kind::Points => format!("the name of a file, or \"{NONE}\""),
             Kind::Smoothing => format!("\"{NONE}\", \"{AUTO}\" or a number from {SMALLEST:?} to {LARGEST:?}"),
             Kind::Text { max_chars } => format!("printable text of at most {max_chars} characters"),
             Kind::Choice(words) => {

@@ -58,7 +58,7 @@ impl Given<'_> {
     }
 
     fn fault(&mut self, key: &str, cause: &impl ToString) -> Shape {
-        self.faults.push(Invalid::Gap { key: key.to_owned().into(), cause: cause.to_string() });
+        self.faults.push(Invalid::Made { key: key.to_owned().into(), cause: cause.to_string() });
         Shape::Sphere { radius_of_curvature: f64::NAN }
     }
 
@@ -187,7 +187,7 @@ impl Given<'_> {
         };
         let rows = match self.value("gap.file") {
             Some(Value::Profile(rows)) => rows,
-            Some(Value::Text(name)) => match self.files.0(None, &name) {
+            Some(Value::Text(name)) => match (self.files.rows)(None, &name) {
                 Ok(rows) => Arc::new(rows),
                 Err(cause) => return self.fault("gap.file", &cause),
             },
@@ -256,7 +256,7 @@ pub(super) fn falls_throughout(preset: &Preset) -> Option<Invalid> {
         .map(|r| gap.jet(r).first)
         .take_while(|slope| !slope.is_nan())
         .all(|slope| slope < 0.0);
-    throughout.then(|| Invalid::Gap {
+    throughout.then(|| Invalid::Made {
         key: key.into(),
         cause: format!(
             "the gap falls from the axis outward{}: no disc of contact lies around the axis; h(r) must rise, {larger}",

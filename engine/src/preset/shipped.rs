@@ -45,7 +45,7 @@ pub fn data(name: &str) -> Option<&'static str> {
 
 /// The rows of the shipped data that `name` means.
 fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
-    let Some(wanted) = name.strip_prefix(SHIPPED_DATA) else { return (Files::NONE.0)(folder, name) };
+    let Some(wanted) = name.strip_prefix(SHIPPED_DATA) else { return (Files::NONE.rows)(folder, name) };
     let text = data(wanted).ok_or_else(|| {
         let known: Vec<String> = DATA.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();
         format!("\"{}\" does not come with the program; there is {}", quote(name), known.join(", "))
@@ -53,9 +53,16 @@ fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
     rows(folder, name, parse(text.as_bytes()).map_err(|error| words(&error))?)
 }
 
+/// The bytes of the shipped curve that `name` means.
+fn shipped_points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
+    curve(name)
+        .unwrap_or_else(|| (Files::NONE.points)(folder, name).map(|_| ""))
+        .map(|text| text.as_bytes().to_vec())
+}
+
 impl Files {
     /// The data that come with the program, and no other file.
-    pub const SHIPPED: Self = Self(shipped_rows);
+    pub const SHIPPED: Self = Self { rows: shipped_rows, points: shipped_points };
 }
 
 /// The preset opened when none is named.
@@ -143,8 +150,12 @@ mod tests {
                     row.key
                 );
             }
-            // Of the rows that mean something here, two of three starts, the turns, the stiffness and the range of action may be
-            // missing.
+            // Of the rows that mean something here, two of three starts, the turns, the stiffness, the range of action and what
+            // is said of a measured curve may be missing.
+            let data = preset
+                .rows()
+                .filter(|row| row.table() == Some("data") && preset.get(&row.key).is_none())
+                .count();
             let kind = preset.get("basis.kind").unwrap().to_string();
             let is_spring = matches!(preset.path.control, Control::Stiffness(_));
             let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
@@ -155,7 +166,7 @@ mod tests {
                 .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
                 .count();
             assert_eq!(
-                preset.values().len() + 7 - usize::from(turns) - usize::from(is_spring),
+                preset.values().len() + 7 + data - usize::from(turns) - usize::from(is_spring),
                 ranges(&preset) + preset.knobs().filter(fits).count() + units
             );
         }

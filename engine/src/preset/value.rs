@@ -4,6 +4,7 @@ use super::former;
 use super::invalid::Invalid;
 use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
 use crate::gap::shapes::Rows;
+use crate::measured::Source;
 use crate::problem::Control;
 use crate::text::closest;
 use crate::text::{is_unsafe, quote};
@@ -28,6 +29,8 @@ pub enum Value {
     Typed(String),
     /// The rows of a measured profile, with the name of their file.
     Profile(Arc<Rows>),
+    /// The file of a measured curve.
+    Points(Arc<Source>),
 }
 
 impl Value {
@@ -39,6 +42,7 @@ impl Value {
             Self::Integer(n) => n.to_string(),
             Self::Text(text) | Self::Typed(text) => toml::Value::String(text.clone()).to_string(),
             Self::Profile(rows) => toml::Value::String(rows.name.clone()).to_string(),
+            Self::Points(source) => toml::Value::String(source.name.clone()).to_string(),
             Self::Control(Control::Stiffness(k)) => format!("{{ stiffness = {k:?} }}"),
             Self::Control(other) => format!("\"{other}\""),
         }
@@ -73,6 +77,7 @@ impl Value {
             Self::Integer(n) => format!("the number {n}"),
             Self::Text(text) | Self::Typed(text) => format!("the text \"{}\"", quote(text)),
             Self::Profile(rows) => format!("the file \"{}\"", quote(&rows.name)),
+            Self::Points(source) => format!("the file \"{}\"", quote(&source.name)),
             Self::Control(control) => format!("the control {control}"),
         }
     }
@@ -85,6 +90,7 @@ impl fmt::Display for Value {
             Self::Integer(n) => write!(f, "{n}"),
             Self::Text(text) | Self::Typed(text) => f.write_str(text),
             Self::Profile(rows) => f.write_str(&rows.name),
+            Self::Points(source) => f.write_str(&source.name),
             Self::Control(control) => write!(f, "{control}"),
         }
     }
@@ -145,7 +151,8 @@ impl Parameter {
             },
             (Kind::Smoothing, Value::Text(word)) if word == AUTO || word == NONE => Ok(Value::Text(word)),
             (Kind::File, Value::Profile(rows)) => Ok(Value::Profile(rows)),
-            (Kind::File, Value::Text(name)) => Ok(Value::Text(name)),
+            (Kind::Points, Value::Points(source)) => Ok(Value::Points(source)),
+            (Kind::File | Kind::Points, Value::Text(name)) => Ok(Value::Text(name)),
             (Kind::Text { max_chars }, Value::Text(text)) => {
                 if text.chars().nth(max_chars).is_some() {
                     Err(self.out_of_range(&format!("\"{}\"", quote(&text))))
@@ -202,7 +209,7 @@ impl Parameter {
         }
         let value = match (self.kind, DeValue::parse(text)) {
             // Text that happens to look like a number is still text.
-            (Kind::Text { .. } | Kind::File, Ok(value)) => match value.get_ref() {
+            (Kind::Text { .. } | Kind::File | Kind::Points, Ok(value)) => match value.get_ref() {
                 DeValue::String(inner) => Value::Text(inner.to_string()),
                 _ => bare(),
             },

@@ -6,7 +6,7 @@ use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Residual};
-use crate::measured::{Abscissa, Segment};
+use crate::measured::Segment;
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -107,7 +107,7 @@ pub struct StartReport {
 impl FitReport {
     /// The document of `fit` to the points of `file`, with E beside E* for Poisson's ratio ν.
     #[must_use]
-    pub fn new(file: &str, fit: &Fit, abscissa: Abscissa, poisson: Option<f64>) -> Self {
+    pub fn new(file: &str, fit: &Fit, poisson: Option<f64>) -> Self {
         let units = &fit.preset.units;
         let is_si = matches!(units, UnitSystem::Si(_));
         let parameters: Vec<ParameterReport> = fit
@@ -163,7 +163,7 @@ impl FitReport {
                 Ending::Rounds => "rounds",
                 Ending::Cancelled => "cancelled",
             },
-            abscissa: abscissa.name(),
+            abscissa: fit.abscissa.name(),
             sigma: [fit.noise.sigma[0], fit.noise.sigma[1]],
             sigma_assumed: [fit.noise.assumed[0], fit.noise.assumed[1]],
             sigma_from_residuals: fit.noise_from_residuals,

@@ -140,6 +140,7 @@ fn json_value(value: &crate::preset::Value) -> Value {
         Preset::Integer(n) => Value::from(*n),
         Preset::Text(text) | Preset::Typed(text) => Value::from(text.as_str()),
         Preset::Profile(rows) => Value::from(rows.name.as_str()),
+        Preset::Points(source) => Value::from(source.name.as_str()),
         Preset::Control(control) => control_json(*control),
     }
 }

@@ -1,17 +1,20 @@
-//! The rows of measured profiles, in files beside the sessions that use them.
+//! The rows of measured profiles, and measured curves, in files beside the sessions that use them.
 //!
 //! A session is written every few seconds, and the rows of its profile stay the same: they are written once, to
-//! `data/HASH.csv` in the folder of sessions, where HASH is the SHA-256 of that file. Sessions with the same rows share it.
+//! `data/HASH.csv` in the folder of sessions, where HASH is the SHA-256 of that file. Sessions with the same rows share it. A
+//! measured curve is kept as its own file is.
 //! The lock of the folder `data` is held from the look at the file until the session that refers to it is written, and
 //! whenever files that no session refers to are removed.
 
 use super::error::{ArchiveError, LARGEST, failed};
+use crate::explorer::session::Aside;
 use crate::store::file::{FileError, read_bytes};
 use crate::store::hash::{DIGITS, sha256};
 use crate::store::lock::{FolderLock, PATIENCE};
 use crate::store::{Overwrite, make_folder, write_atomically};
 use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::text::{quote, show_path};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::fs;
@@ -32,7 +35,7 @@ const HEADER: &str = "r,h";
 pub(super) struct Data {
     folder: PathBuf,
     /// What is in files already, with its hash: rows are written out and hashed once, not with every write.
-    known: Vec<(Arc<Rows>, String)>,
+    known: Vec<(Aside, String)>,
 }
 
 impl Data {
@@ -52,36 +55,49 @@ impl Data {
         FolderLock::acquire(&self.folder, PATIENCE).map_err(failed(&self.folder, "lock it"))
     }
 
-    /// Sees to it that `rows` are in a file, and says the hash that names it.
-    pub(super) fn keep(&mut self, rows: &Arc<Rows>) -> Result<String, ArchiveError> {
-        let known = self.known.iter().find(|(known, _)| Arc::ptr_eq(known, rows));
+    /// Sees to it that `kept` is in a file, and says the hash that names it.
+    pub(super) fn keep(&mut self, kept: &Aside) -> Result<String, ArchiveError> {
+        let known = self.known.iter().find(|(known, _)| is_same(known, kept));
         let known = known.map(|(_, hash)| hash.clone());
         if let Some(hash) = &known
             && self.path(hash).symlink_metadata().is_ok_and(|there| there.is_file())
         {
             return Ok(hash.clone());
         }
-        let text = text(rows);
+        let bytes: Cow<'_, [u8]> = match kept {
+            Aside::Profile(rows) => Cow::Owned(text(rows).into_bytes()),
+            Aside::Curve(source) => Cow::Borrowed(&source.bytes),
+        };
         let hash = known.unwrap_or_else(|| {
-            let hash = sha256(text.as_bytes());
-            self.known.push((Arc::clone(rows), hash.clone()));
+            let hash = sha256(&bytes);
+            self.known.push((kept.clone(), hash.clone()));
             hash
         });
         let path = self.path(&hash);
         // One that was altered is put right.
-        if !read_bytes(&path, LARGEST).is_ok_and(|(there, _)| there == text.as_bytes()) {
-            write_atomically(&path, text.as_bytes(), Overwrite::Always)?;
+        if !read_bytes(&path, LARGEST).is_ok_and(|(there, _)| *there == *bytes) {
+            write_atomically(&path, &bytes, Overwrite::Always)?;
         }
         Ok(hash)
     }
 
     /// r and h of the data with this hash, for the profile `name` of the session in the file `session`.
-    pub(super) fn fetch(
+    pub(super) fn columns(
         &self,
         session: &Path,
         hash: &str,
         name: &str,
     ) -> Result<[Vec<f64>; 2], ArchiveError> {
+        let bytes = self.bytes(session, hash, name)?;
+        columns(&bytes).ok_or_else(|| ArchiveError::Data {
+            path: show_path(session),
+            name: quote(name),
+            why: format!("{} holds no rows r,h", show_path(&self.path(hash))),
+        })
+    }
+
+    /// The data with this hash, for the file `name` of the session in the file `session`.
+    pub(super) fn bytes(&self, session: &Path, hash: &str, name: &str) -> Result<Vec<u8>, ArchiveError> {
         let lost = |why: String| ArchiveError::Data { path: show_path(session), name: quote(name), why };
         if !is_hash(hash) {
             return Err(lost(format!("\"{}\" is no SHA-256", quote(hash))));
@@ -97,7 +113,7 @@ impl Data {
         if sha256(&bytes) != hash {
             return Err(lost(format!("{} was changed: its SHA-256 is not its name", show_path(&path))));
         }
-        columns(&bytes).ok_or_else(|| lost(format!("{} holds no rows r,h", show_path(&path))))
+        Ok(bytes)
     }
 
     /// The bytes of each file of data, by its hash.
@@ -142,6 +158,15 @@ impl Data {
 pub(super) fn named_in(bytes: &[u8]) -> impl Iterator<Item = &str> {
     let words = bytes.split(|byte| !byte.is_ascii_alphanumeric());
     words.filter_map(|word| std::str::from_utf8(word).ok().filter(|word| is_hash(word)))
+}
+
+/// Whether both are the very same, which needs no look at them.
+fn is_same(a: &Aside, b: &Aside) -> bool {
+    match (a, b) {
+        (Aside::Profile(a), Aside::Profile(b)) => Arc::ptr_eq(a, b),
+        (Aside::Curve(a), Aside::Curve(b)) => Arc::ptr_eq(&a.bytes, &b.bytes),
+        _ => false,
+    }
 }
 
 fn is_hash(text: &str) -> bool {

@@ -166,7 +166,10 @@ impl Archive {
         let summary = summary(&bytes).map_err(unreadable)?;
         let mut document = Document::read(&bytes).map_err(unreadable)?;
         let data = Data::beside(self.folder_or()?);
-        document.take_back(|hash, profile| data.fetch(&path, hash, profile))?;
+        document.take_back(
+            |hash, profile| data.columns(&path, hash, profile),
+            |hash, curve| data.bytes(&path, hash, curve),
+        )?;
         let snapshot = document.snapshot().map_err(unreadable)?;
         Ok(Held { claim, summary, snapshot })
     }

@@ -374,3 +374,26 @@ fn a_name_follows_from_that_of_the_preset() {
     }
     assert!(is_well_formed(&format!("{}-{}", base_name(&"a".repeat(200)), u32::MAX)));
 }
+
+#[test]
+fn a_measured_curve_is_kept_as_its_file_beside_the_session() {
+    let mut bench = Bench::new();
+    let path = bench.folder.path().join("curve.csv");
+    let rows: Vec<String> = (0..50).map(|i| format!("{i},{}", i * i)).collect();
+    let text = format!("delta,force\n{}\n", rows.join("\n"));
+    fs::write(&path, &text).unwrap();
+    let name = path.to_str().unwrap().to_owned();
+    let snapshot = bench.does(Command::Assign(vec![("data.file".into(), name)]));
+    let mut claim = bench.archive().begin("scan").unwrap();
+    claim.save(Document::new(&snapshot, Ended::Quit, 0)).unwrap();
+    drop(claim);
+    fs::remove_file(path).unwrap();
+    let folder = bench.archive().folder().unwrap().to_owned();
+    let kept = folder.join("data").join(format!("{}.csv", sha256(text.as_bytes())));
+    assert_eq!(fs::read_to_string(&kept).unwrap(), text);
+    assert!(!fs::read_to_string(folder.join("scan-1.json")).unwrap().contains("48,2304"));
+    assert_eq!(bench.archive().load("scan-1").unwrap().snapshot.preset, snapshot.preset);
+    fs::remove_file(kept).unwrap();
+    let error = bench.archive().load("scan-1").unwrap_err().to_string();
+    assert!(error.contains("curve.csv") && error.contains("is gone"), "{error}");
+}

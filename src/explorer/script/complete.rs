@@ -7,9 +7,10 @@ use crate::explorer::command::ROWS;
 use crate::explorer::export::ExportKind;
 use crate::explorer::maps::CURVES;
 use crate::explorer::view::Overlay;
-use crate::store::shipped::SHIPPED;
+use crate::store::shipped::{CURVES, SHIPPED};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
+use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 use pulloff_engine::stability::COMPLIANCE;
 
@@ -56,6 +57,11 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["set" | "open", ..] => assignments(word, preset),
         ["control"] => owned(["displacement", "force", "stiffness="]),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
+        ["data"] => owned(CURVES.iter().map(|shipped| shipped.name))
+            .into_iter()
+            .map(|name| format!("{SHIPPED_DATA}{name}"))
+            .chain([NONE.to_owned()])
+            .collect(),
         ["pins"] => owned(["all"]),
         ["map"] => axes(preset),
         ["map", _] => axes(preset).into_iter().chain(owned(CURVES.map(|(name, _)| name))).collect(),

@@ -9,6 +9,7 @@ use crate::explorer::export::{ExportKind, ends_in};
 use crate::explorer::maps::CURVES;
 use crate::explorer::pins;
 use crate::explorer::view::Overlay;
+use pulloff_engine::preset::data;
 use pulloff_engine::preset::groups::{self, GROUPS};
 use pulloff_engine::preset::{Key, PARAMETERS, former, parameter};
 use pulloff_engine::stability::COMPLIANCE;
@@ -46,6 +47,7 @@ pub fn for_script(command: &Command) -> Result<(), String> {
     let missing = |what: &str| Err(format!("{} needs {what}", row.name));
     match command {
         Command::Plain(Id::Open) => missing("a preset"),
+        Command::Plain(Id::Data) => missing("a file, or none"),
         Command::Plain(Id::SaveAs) => missing("a name"),
         Command::Plain(Id::Export) => missing("a document and a file"),
         Command::Plain(Id::Branches) => missing("the reduced approach, force and contact radius of a state"),
@@ -177,6 +179,10 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         Id::Control if !bare => {
             let word = rest.need("a control")?;
             Command::Assign(vec![("path.control".into(), word.text.clone())])
+        }
+        Id::Data if !bare => {
+            let word = rest.need("a file")?;
+            Command::Assign(vec![(data::FILE.into(), word.text.clone())])
         }
         Id::Overlays if !bare => {
             let word = rest.need("a theory")?;

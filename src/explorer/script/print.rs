@@ -37,7 +37,7 @@ pub fn line(command: &Command) -> Option<String> {
         | Command::Try { .. }
         | Command::TakeBack
         | Command::Turn { .. }
-        | Command::Browse(_)
+        | Command::Browse { .. }
         | Command::Pick { .. }
         | Command::GoTo { .. }
         | Command::Delete(_)

@@ -4,14 +4,13 @@
 
 use super::number::{Real, floats, reals};
 use super::places::{Places, of_walk};
-use super::problems::{Collector, Place, Problems, Restored};
+use super::problems::{Aside, Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
 use super::unreadable::{BY_COMMANDS, FORMAT, Unreadable};
 use crate::explorer::journal::{Beginning, Kept, Replay};
 use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
-use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -201,21 +200,22 @@ impl Document {
         }
     }
 
-    /// Gives the rows of each profile to `keep`, which says the hash of the file they are in. The document then refers
-    /// to them by it.
+    /// Gives the data of each profile and each measured curve to `keep`, which says the hash of the file they are in. The
+    /// document then refers to them by it.
     /// Errors: That of `keep`.
-    pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Arc<Rows>) -> Result<String, E>) -> Result<(), E> {
+    pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Aside) -> Result<String, E>) -> Result<(), E> {
         self.problems.lay_aside(keep)
     }
 
-    /// Takes the rows of profiles back within: `fetch` gives r and h of the file with a hash; it is told the name of the
-    /// profile too.
-    /// Errors: That of `fetch`.
+    /// Takes the data back within: `columns` gives r and h of the file with a hash, `bytes` all of it; both are told the name
+    /// of the profile or the curve too.
+    /// Errors: Theirs.
     pub fn take_back<E>(
         &mut self,
-        fetch: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+        columns: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+        bytes: impl FnMut(&str, &str) -> Result<Vec<u8>, E>,
     ) -> Result<(), E> {
-        self.problems.take_back(fetch)
+        self.problems.take_back(columns, bytes)
     }
 
     /// As JSON, in one line.

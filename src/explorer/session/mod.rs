@@ -31,5 +31,6 @@ mod tree;
 mod unreadable;
 
 pub use document::{Document, Ended, Summary, summary};
+pub use problems::Aside;
 pub use snapshot::Snapshot;
 pub use unreadable::Unreadable;

@@ -6,6 +6,8 @@ use crate::explorer::setting::Setting;
 use crate::store::FILES;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::measured::Source;
+use pulloff_engine::preset::read::Held;
 use pulloff_engine::preset::{Preset, write};
 use pulloff_engine::quasistatic::Scales;
 use pulloff_engine::units::Unit;
@@ -23,6 +25,8 @@ pub(super) struct Problems {
     settings: Vec<Scaled>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     profiles: Vec<Profile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    curves: Vec<Curve>,
 }
 
 /// A preset as its file.
@@ -31,6 +35,59 @@ struct Text {
     text: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     profile: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    curve: Option<usize>,
+}
+
+/// The file of a measured curve, as it was.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(from = "WrittenCurve", into = "WrittenCurve")]
+enum Curve {
+    /// In the document itself.
+    Within(Arc<Source>),
+    /// In a file of its own, named by its hash.
+    Beside { data: String, name: String, folder: Option<PathBuf> },
+}
+
+/// A measured curve as it is written.
+#[derive(Serialize, Deserialize)]
+struct WrittenCurve {
+    name: String,
+    folder: Option<Place>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    data: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    text: Option<String>,
+}
+
+impl From<Curve> for WrittenCurve {
+    fn from(curve: Curve) -> Self {
+        match curve {
+            Curve::Within(source) => Self {
+                name: source.name.clone(),
+                folder: source.folder.as_deref().map(Place::of),
+                data: None,
+                // It was taken apart, and so is text.
+                text: Some(String::from_utf8_lossy(&source.bytes).into_owned()),
+            },
+            Curve::Beside { data, name, folder } => {
+                Self { name, folder: folder.as_deref().map(Place::of), data: Some(data), text: None }
+            }
+        }
+    }
+}
+
+impl From<WrittenCurve> for Curve {
+    fn from(WrittenCurve { name, folder, data, text }: WrittenCurve) -> Self {
+        let folder = folder.map(Place::path);
+        match data {
+            Some(data) => Self::Beside { data, name, folder },
+            None => {
+                let bytes = text.unwrap_or_default().into_bytes();
+                Self::Within(Arc::new(Source::new(name, folder, bytes.into())))
+            }
+        }
+    }
 }
 
 /// A setting: its preset and δ₀, P₀, s₀, which only the swept curve knows.
@@ -89,6 +146,13 @@ impl Place {
     }
 }
 
+/// What can be kept in a file of its own.
+#[derive(Debug, Clone)]
+pub enum Aside {
+    Profile(Arc<Rows>),
+    Curve(Arc<Source>),
+}
+
 /// Numbers presets and settings while a document is made.
 #[derive(Default)]
 pub(super) struct Collector {
@@ -97,6 +161,7 @@ pub(super) struct Collector {
     /// The settings seen, by where they are: nodes share them.
     settings: HashMap<*const Setting, usize>,
     rows: Vec<Arc<Rows>>,
+    sources: Vec<Arc<Source>>,
 }
 
 impl Collector {
@@ -105,7 +170,8 @@ impl Collector {
             Shape::Profile(measured) => Some(self.profile(measured.rows())),
             _ => None,
         };
-        let text = Text { text: write(preset), profile };
+        let curve = preset.data.source.as_ref().map(|source| self.curve(source));
+        let text = Text { text: write(preset), profile, curve };
         let presets = &mut self.problems.presets;
         *self.texts.entry(text).or_insert_with_key(|text| {
             presets.push(text.clone());
@@ -136,6 +202,18 @@ impl Collector {
         self.rows.push(Arc::clone(rows));
         self.problems.profiles.push(Profile::Within(Arc::clone(rows)));
         self.rows.len() - 1
+    }
+
+    fn curve(&mut self, source: &Arc<Source>) -> usize {
+        let same = |known: &Arc<Source>| {
+            Arc::ptr_eq(known, source) || (known == source && known.folder == source.folder)
+        };
+        if let Some(known) = self.sources.iter().position(same) {
+            return known;
+        }
+        self.sources.push(Arc::clone(source));
+        self.problems.curves.push(Curve::Within(Arc::clone(source)));
+        self.sources.len() - 1
     }
 
     pub(super) fn finish(self) -> Problems {
@@ -190,14 +268,20 @@ pub(super) struct Restored {
 }
 
 impl Problems {
-    /// Gives the rows within to `keep`, which says the hash of the file they are in, and holds no more than that.
+    /// Gives the data within to `keep`, which says the hash of the file they are in, and holds no more than that.
     pub(super) fn lay_aside<E>(
         &mut self,
-        mut keep: impl FnMut(&Arc<Rows>) -> Result<String, E>,
+        mut keep: impl FnMut(&Aside) -> Result<String, E>,
     ) -> Result<(), E> {
+        for curve in &mut self.curves {
+            if let Curve::Within(source) = curve {
+                let data = keep(&Aside::Curve(Arc::clone(source)))?;
+                *curve = Curve::Beside { data, name: source.name.clone(), folder: source.folder.clone() };
+            }
+        }
         for profile in &mut self.profiles {
             if let Profile::Within(rows) = profile {
-                let data = keep(rows)?;
+                let data = keep(&Aside::Profile(Arc::clone(rows)))?;
                 let Rows { name, folder, unit, notes, .. } = &**rows;
                 let (name, folder, unit) = (name.clone(), folder.clone(), unit.clone());
                 let rows = Rows { name, folder, unit, notes: notes.clone(), ..Rows::default() };
@@ -207,14 +291,22 @@ impl Problems {
         Ok(())
     }
 
-    /// The way back: `fetch` gives the columns in the file of a hash; it is told the profile's name too.
+    /// The way back: `columns` gives those in the file of a hash, `bytes` all of it; both are told what a person calls it.
     pub(super) fn take_back<E>(
         &mut self,
-        mut fetch: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+        mut columns: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
+        mut bytes: impl FnMut(&str, &str) -> Result<Vec<u8>, E>,
     ) -> Result<(), E> {
+        for curve in &mut self.curves {
+            if let Curve::Beside { data, name, folder } = curve {
+                let bytes = bytes(data, name)?;
+                let source = Source::new(std::mem::take(name), folder.take(), bytes.into());
+                *curve = Curve::Within(Arc::new(source));
+            }
+        }
         for profile in &mut self.profiles {
             if let Profile::Beside { data, rows } = profile {
-                let [radii, gaps] = fetch(data, &rows.name)?;
+                let [radii, gaps] = columns(data, &rows.name)?;
                 *profile = Profile::Within(Arc::new(Rows { radii, gaps, ..std::mem::take(rows) }));
             }
         }
@@ -229,14 +321,21 @@ impl Problems {
             Profile::Beside { .. } => Err(missing("column of a profile")),
         };
         let profiles = self.profiles.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
+        let within = |curve| match curve {
+            Curve::Within(source) => Ok(source),
+            Curve::Beside { .. } => Err(missing("measured curve")),
+        };
+        let curves = self.curves.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
         let preset = |saved: &Text| {
-            let rows = saved.profile.map(|at| profiles.get(at).cloned().ok_or_else(|| missing("profile")));
-            let preset = pulloff_engine::preset::read::read_holding(
-                FILES,
-                "a preset in it",
-                &saved.text,
-                rows.transpose()?,
-            );
+            let mut held = Held::default();
+            if let Some(at) = saved.profile {
+                held.rows = profiles.get(at).cloned().ok_or_else(|| missing("profile"))?;
+            }
+            if let Some(at) = saved.curve {
+                held.points = curves.get(at).cloned().ok_or_else(|| missing("measured curve"))?;
+            }
+            let preset =
+                pulloff_engine::preset::read::read_holding(FILES, "a preset in it", &saved.text, held);
             preset.map_err(|error| Unreadable::Damaged(error.to_string()))
         };
         let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;

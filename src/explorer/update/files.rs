@@ -1,7 +1,7 @@
 //! Opening, saving and exporting: what is asked, and what becomes of the answers.
 
 use super::travel::shelve;
-use super::values::rows_came;
+use super::values::{assigned, rows_came};
 use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
 use crate::explorer::export::{ExportKind, Page, ends_in};
@@ -83,11 +83,8 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             model.tell(Level::Info, format!("deleted {path}; what is on the screen stays"));
             model.question = Some(Question::Preset(listing));
         }
-        Done::Browsed(folder) => model.question = Some(Question::Profile(folder)),
-        Done::Assigned(preset) => {
-            model.untried = None;
-            return change(model, *preset);
-        }
+        Done::Browsed(key, folder) => model.question = Some(Question::File(key, folder)),
+        Done::Assigned(preset) => return assigned(model, *preset),
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let mut opened = Model::new(*loaded);
@@ -132,7 +129,17 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
 
 /// `preset` with the rows of the profile where they were copied to, if `saved` names another file with the same rows.
 fn with_copied_data(preset: &Preset, saved: &Preset) -> Option<Preset> {
-    let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap) else { return None };
-    let same = (&now.rows().radii, &now.rows().gaps) == (&then.rows().radii, &then.rows().gaps);
-    (same && now.smoothing() == then.smoothing()).then(|| Preset { gap: saved.gap.clone(), ..preset.clone() })
+    let mut copied = preset.clone();
+    if let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap)
+        && (&now.rows().radii, &now.rows().gaps) == (&then.rows().radii, &then.rows().gaps)
+        && now.smoothing() == then.smoothing()
+    {
+        copied.gap = saved.gap.clone();
+    }
+    if let (Some(now), Some(then)) = (&preset.data.source, &saved.data.source)
+        && now.bytes == then.bytes
+    {
+        copied.data.source = Some(Arc::clone(then));
+    }
+    (copied != *preset).then_some(copied)
 }

@@ -97,7 +97,11 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let Some(row) = preset.row(key) else { return Vec::new() };
     let result = match preset.typed(&row, text) {
         // A file is read by those who may wait for it.
-        Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, name)],
+        Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, key, name)],
+        Ok(Value::Text(name)) if row.kind == Kind::Points => {
+            let assignments = vec![(row.key.clone(), name)];
+            return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
+        }
         value => value.and_then(|value| set_in_range(&mut preset, key, value)),
     };
     match result {
@@ -198,7 +202,8 @@ fn before_tried(model: &Model) -> &Preset {
 /// Other values for some keys, as one change; those of a file wait for who may read it.
 pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Effect> {
     let mut preset = before_tried(model).clone();
-    let is_file = |key: &str| preset.row(key).is_some_and(|row| row.kind == Kind::File);
+    let is_file =
+        |key: &str| preset.row(key).is_some_and(|row| matches!(row.kind, Kind::File | Kind::Points));
     if assignments.iter().any(|(key, _)| is_file(key)) {
         return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
     }
@@ -237,6 +242,31 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
             model.tell(Level::Error, invalid.to_string());
             Vec::new()
         }
+    }
+}
+
+/// What came of assignments that read a file: a measured curve is told of, with what was found in it.
+pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
+    model.untried = None;
+    let (before, after) = (&model.preset.data, &preset.data);
+    if (&before.source, &before.columns) != (&after.source, &after.columns) {
+        tell_points(model, &preset);
+    }
+    change(model, preset)
+}
+
+fn tell_points(model: &mut Model, preset: &Preset) {
+    let (Some(source), Some(branches)) = (&preset.data.source, preset.branches()) else { return };
+    let path = source.path();
+    let name = path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()));
+    match branches {
+        Ok(branches) => {
+            let rows: usize = branches.list.iter().map(|b| b.attached.len() + b.free.len()).sum();
+            let read = format!("{name}: {rows} points");
+            let said: Vec<String> = std::iter::once(read).chain(branches.notes.iter().cloned()).collect();
+            model.tell(Level::Info, said.join("; "));
+        }
+        Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),
     }
 }
 

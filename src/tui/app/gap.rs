@@ -5,11 +5,11 @@ use crate::explorer::data::Folder;
 use crate::explorer::{Command, Effect, update};
 use crate::figure::Figure;
 use crate::figure::shape::undeformed;
-use crate::store::shipped::DATA;
+use crate::store::shipped::{CURVES, DATA};
 use crate::tui::overlay::{Action, Item, Prompt, Purpose};
-use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
-use pulloff_engine::preset::{Key, Value};
+use pulloff_engine::preset::schema::NONE;
+use pulloff_engine::preset::{Key, Value, data};
 use pulloff_engine::text::show_path;
 
 /// What each shape is, in a few words.
@@ -47,30 +47,49 @@ impl App {
         self.prompt("h(r) as a formula: the curve follows", note, text, Purpose::Formula(key))
     }
 
-    /// The profiles of a folder, and the ways out of it.
-    pub(super) fn choose_profile(&mut self, folder: &Folder) {
-        let key: Key = "gap.file".into();
-        let go = |text: String, path| Item::new(text, Action::Command(Command::Browse(Some(path))));
+    /// Asks for a file for this key.
+    pub(super) fn browse(&mut self, key: Key) -> Vec<Effect> {
+        self.run(Command::Browse { key, folder: None })
+    }
+
+    /// The files of a folder, and the ways out of it.
+    pub(super) fn choose_file(&mut self, key: &Key, folder: &Folder) {
+        let is_curve = *key == data::FILE;
+        let go = |text: String, path| {
+            let command = Command::Browse { key: key.clone(), folder: Some(path) };
+            Item::new(text, Action::Command(command))
+        };
         let up = folder.path.parent().map(|parent| go("../".to_owned(), parent.to_owned()));
         let below = folder.folders.iter().map(|name| go(format!("{name}/"), folder.path.join(name)));
-        let files = folder.files.iter().map(|name| Item::new(name.clone(), set(&key, folder.name_of(name))));
-        let shipped = DATA.iter().map(|data| {
+        let files = folder.files.iter().map(|name| Item::new(name.clone(), set(key, folder.name_of(name))));
+        let shipped = if is_curve { CURVES } else { DATA }.iter().map(|data| {
             let name = format!("{SHIPPED_DATA}{}", data.name);
-            Item::new(name.clone(), set(&key, name))
+            Item::new(name.clone(), set(key, name))
         });
-        let note = "a file with the columns r and h";
-        let prompt = Prompt::new("Read a profile", note, String::new(), Purpose::Value(key.clone()));
+        let (title, asks, note) = if is_curve {
+            (
+                "Measured curves in",
+                "Read a measured curve",
+                "a file with the force over the approach, the position or s",
+            )
+        } else {
+            ("Profiles in", "Read a profile", "a file with the columns r and h")
+        };
+        let prompt = Prompt::new(asks, note, String::new(), Purpose::Value(key.clone()));
         let path = Item::new("a path ...", Action::Prompt(Box::new(prompt)));
         let selected =
             usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
-        let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).collect();
-        self.choose(&format!("Profiles in {}", show_path(&folder.path)), items, selected);
+        let has_curve = is_curve && self.model.preset.data.source.is_some();
+        let none = has_curve.then(|| Item::new("none: take the curve away", set(key, NONE)));
+        let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).chain(none);
+        self.choose(&format!("{title} {}", show_path(&folder.path)), items.collect(), selected);
     }
 
-    /// Whether the gap has a file of its own, which can be saved with the preset.
+    /// Whether the preset has a file of its own, which can be saved with it.
     pub(super) fn has_data(&self) -> bool {
-        let Shape::Profile(measured) = &self.model.preset.gap else { return false };
-        !measured.rows().name.starts_with(SHIPPED_DATA)
+        let preset = &self.model.preset;
+        let names = ["gap.file", data::FILE].into_iter().filter_map(|key| preset.get(key));
+        names.map(|name| name.to_string()).any(|name| !name.starts_with(SHIPPED_DATA))
     }
 
     /// What choosing a line would make of the gap, where it is a shape that is chosen.

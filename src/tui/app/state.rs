@@ -16,6 +16,7 @@ use crate::tui::overlay::{
 use crate::tui::theme::Theme;
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::Value;
+use pulloff_engine::preset::data;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::with_unit;
@@ -175,7 +176,7 @@ impl App {
     pub(super) fn raise_questions(&mut self) {
         match self.model.question.take() {
             None => {}
-            Some(Question::Profile(folder)) => self.choose_profile(&folder),
+            Some(Question::File(key, folder)) => self.choose_file(&key, &folder),
             Some(Question::Preset(listing)) => self.choose_preset(&listing),
             Some(Question::SaveAnyway) => {
                 let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
@@ -272,6 +273,7 @@ impl App {
             Id::Save if self.model.source.path().is_none() => self.ask_name(),
             Id::SaveAs => self.ask_name(),
             Id::Export => self.ask_export(),
+            Id::Data => self.browse(data::FILE.into()),
             Id::Copy => self.ask_copy(),
             Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
             Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
@@ -349,7 +351,7 @@ impl App {
         match (&*row.key, row.kind) {
             ("gap.shape", Kind::Choice(words)) => return self.ask_shape(words),
             ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
-            (_, Kind::File) => return self.run(Command::Browse(None)),
+            (_, Kind::File | Kind::Points) => return self.browse(row.key.clone()),
             _ => {}
         }
         let units = &self.model.preset.units;

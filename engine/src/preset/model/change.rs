@@ -3,6 +3,7 @@
 use super::Preset;
 use crate::gap::Shape;
 use crate::preset::build::build;
+use crate::preset::data;
 use crate::preset::family::{self, parameter_key};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
@@ -83,6 +84,22 @@ impl Preset {
             }
             key if key == CHOOSERS[2] && value.to_string() != SYSTEMS[1] => {
                 values.retain(|key, _| !family::is_unit(key));
+            }
+            data::FILE if data::is_none(&value) => {
+                values.remove(data::FILE);
+                return;
+            }
+            // A device without a stiffness becomes the spring that the file states.
+            data::FILE => {
+                let states = match &value {
+                    Value::Points(source) => {
+                        source.measured(&self.data.columns).is_ok_and(|of| of.stiffness.is_some())
+                    }
+                    _ => false,
+                };
+                if states && !matches!(self.path.control, Control::Stiffness(_)) {
+                    values.remove("path.control");
+                }
             }
             key => {
                 let rivals = rivals(key);
@@ -189,14 +206,14 @@ impl Preset {
         Ok(())
     }
 
-    /// A value as it is to be checked: the file of a profile is read from the folder of the one before.
+    /// A value as it is to be checked: a file is read from the folder of the one before.
     fn located(&self, row: &Parameter, value: Value) -> Result<Value, Invalid> {
-        match &self.gap {
-            Shape::Profile(before) => {
-                measured::located(self.files, row, value, before.rows().folder.as_deref())
-            }
-            _ => Ok(value),
-        }
+        let folder = match (&self.gap, row.kind) {
+            (_, Kind::Points) => self.data.source.as_ref().and_then(|source| source.folder.as_deref()),
+            (Shape::Profile(before), _) => before.rows().folder.as_deref(),
+            _ => return Ok(value),
+        };
+        measured::located(self.files, row, value, folder)
     }
 }
 

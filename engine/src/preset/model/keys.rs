@@ -1,6 +1,7 @@
 //! The preset by dotted key: its values and its rows.
 
 use super::{BasisSpec, Preset, start_key, turn_key};
+use crate::preset::data;
 use crate::preset::family;
 use crate::preset::former;
 use crate::preset::groups;
@@ -20,7 +21,7 @@ impl Preset {
     /// to follow from others.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
-        let Self { title, units, material, gap, basis, path, files: _ } = self;
+        let Self { title, units, material, gap, basis, path, data, files: _ } = self;
         Some(match key {
             "format" => FORMAT.into(),
             "title" => title.as_str().into(),
@@ -57,6 +58,13 @@ impl Preset {
             },
             "path.begin" => path.begin.name().into(),
             "path.end_contact_radius" => path.end_contact_radius?.into(),
+            data::FILE => Value::Points(std::sync::Arc::clone(data.source.as_ref()?)),
+            data::COLUMNS => Some(&*data.columns).filter(|columns| !columns.is_empty())?.into(),
+            data::FREE => Some(&*data.free).filter(|free| !free.is_empty())?.into(),
+            data::SEGMENT => data.segment?.name().into(),
+            data::OFFSET => data.offset?.into(),
+            data::BASELINE => data.baseline?.into(),
+            data::TILT => data.tilt?.into(),
             key if path.turn.and_then(turn_key) == Some(key) => path.turn?.value().into(),
             key if key == start_key(path.start) => path.start.value().into(),
             _ => return None,

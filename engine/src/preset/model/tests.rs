@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::RandomWaves};
+use crate::measured::Source;
 use crate::preset::examples::{any_gap, wavy};
 use crate::preset::rows::parameter;
 use crate::preset::schema::{Applies, FORMAT, Fallback, Kind, PARAMETERS};
@@ -35,14 +36,25 @@ fn another(key: &str) -> Value {
         "gap.file" => {
             Value::Profile(Arc::new(crate::fixtures::load(None, "shipped:rough-sphere.csv").unwrap()))
         }
+        "data.file" => Value::Points(Arc::new(points())),
+        "data.columns" => "x=1,force=2".into(),
+        "data.free" => "E*,gamma".into(),
+        "data.segment" => "approach".into(),
         _ => Value::Number(0.75),
     }
+}
+
+/// Numbers without a header.
+fn points() -> Source {
+    let rows: String = (0..10).map(|i| format!("{i} {}\n", i * i)).collect();
+    Source::new("points.txt".to_owned(), None, rows.into_bytes().into())
 }
 
 #[test]
 fn the_table_is_total() {
     // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
-    let Preset { title: _, units: _, material, gap, basis, path, files: _ } = wavy();
+    let Preset { title: _, units: _, material, gap, basis, path, data, files: _ } = wavy();
+    let DataSpec { source: _, columns: _, offset: _, baseline: _, tilt: _, segment: _, free: _ } = data;
     let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
@@ -107,6 +119,13 @@ fn the_table_is_total() {
         "path.turn_approach",
         "path.turn_force",
         "path.turn_contact_radius",
+        "data.file",
+        "data.columns",
+        "data.free",
+        "data.segment",
+        "data.offset",
+        "data.baseline",
+        "data.tilt",
         "display.length",
         "display.force",
         "display.stress",

@@ -66,8 +66,9 @@ impl Sheet {
                         Place::File(_) => self.folder.as_deref(),
                         Place::Assignment(_) => None,
                     };
-                    let value = value.and_then(|value| match &self.rows {
-                        Some(rows) if row.kind == Kind::File => Ok(Value::Profile(Arc::clone(rows))),
+                    let value = value.and_then(|value| match &self.held {
+                        Some(held) if row.kind == Kind::File => Ok(Value::Profile(Arc::clone(&held.rows))),
+                        Some(held) if row.kind == Kind::Points => Ok(Value::Points(Arc::clone(&held.points))),
                         _ => located(self.files, &row, row.check(value)?, folder),
                     });
                     self.put(&row, value, origin);

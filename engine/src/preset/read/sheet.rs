@@ -1,7 +1,10 @@
 //! The layers laid down so far: what is known of each key, and where it came from.
 
 use super::mistake::{Mistake, Origin};
+use crate::gap::Shape;
 use crate::gap::shapes::Rows;
+use crate::measured::Source;
+use crate::preset::Preset;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured::Files;
 use crate::preset::model::put;
@@ -20,6 +23,36 @@ pub(super) struct Entry {
     pub(super) origin: Origin,
 }
 
+/// What the files of a preset hold. One that has none holds nothing, which is a mistake where a key names it.
+#[derive(Debug, Clone)]
+pub struct Held {
+    /// The rows of its profile.
+    pub rows: Arc<Rows>,
+    /// Its measured curve.
+    pub points: Arc<Source>,
+}
+
+impl Default for Held {
+    fn default() -> Self {
+        Self { rows: Arc::default(), points: Arc::new(Source::new(String::new(), None, Arc::new([]))) }
+    }
+}
+
+impl Held {
+    /// What those of `preset` hold.
+    #[must_use]
+    pub fn by(preset: &Preset) -> Self {
+        let mut held = Self::default();
+        if let Shape::Profile(measured) = &preset.gap {
+            held.rows = Arc::clone(measured.rows());
+        }
+        if let Some(source) = &preset.data.source {
+            held.points = Arc::clone(source);
+        }
+        held
+    }
+}
+
 /// The layers laid down so far.
 #[derive(Default)]
 pub(super) struct Sheet {
@@ -28,8 +61,8 @@ pub(super) struct Sheet {
     pub(super) files: Files,
     /// The folder of the file.
     pub(super) folder: Option<PathBuf>,
-    /// The rows of its profile, where they are known and no file is to be read.
-    pub(super) rows: Option<Arc<Rows>>,
+    /// What its files hold, where that is known and no file is to be read.
+    pub(super) held: Option<Held>,
     /// Whether keys and words of before are read as they were meant, as a session holds them.
     pub(super) takes_former: bool,
     /// Whether there were any.

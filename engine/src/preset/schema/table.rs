@@ -4,6 +4,7 @@ use super::{
     Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
     SYSTEMS, TURN_KEYS,
 };
+use crate::preset::data;
 use crate::problem::Begin;
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
@@ -253,6 +254,47 @@ pub static PARAMETERS: &[Parameter] = &[
     .or(Fallback::Described(TURN)),
     length(TURN_KEYS[2], "s turn", "outermost radius of contact at which it turns round", Kind::Positive)
         .or(Fallback::Described(TURN)),
+    row(
+        data::FILE,
+        "data",
+        "file with a measured curve, laid behind the chart and fitted; relative to the preset's own folder",
+        Kind::Points,
+    )
+    .or(Fallback::Text(NONE)),
+    row(
+        data::COLUMNS,
+        "columns",
+        "what its columns are, where its header does not say it: x=1,force=2",
+        Kind::Text { max_chars: 200 },
+    )
+    .or(Fallback::Text("")),
+    row(
+        data::FREE,
+        "free",
+        "keys that a fit may change, dotted or by their letters: E*,gamma,data.offset",
+        Kind::Text { max_chars: 300 },
+    )
+    .or(Fallback::Text("")),
+    row(data::SEGMENT, "segment", "the branch of it that is used alone", Kind::Choice(&data::SEGMENTS))
+        .or(Fallback::Described("none: both are used")),
+    length(data::OFFSET, "delta0", "x of the measured curve at which the approach is zero", Kind::Finite)
+        .or(Fallback::Described("0")),
+    measured(
+        data::BASELINE,
+        "P0",
+        "force of the measured curve that is none",
+        Kind::Finite,
+        ("force", Quantity::Force),
+    )
+    .or(Fallback::Described("the median of its free part; 0 without one")),
+    measured(
+        data::TILT,
+        "tilt",
+        "slope of that force over x",
+        Kind::Finite,
+        ("force / length", Quantity::ForcePerLength),
+    )
+    .or(Fallback::Described("0")),
     display(0, "lengths", "unit in which lengths are shown", "um"),
     display(1, "forces", "unit in which forces are shown", "uN"),
     display(2, "stresses", "unit in which stresses are shown", "kPa"),

@@ -18,6 +18,16 @@ fn keys_and_labels_are_unique_ascii_and_grouped() {
     assert!(said(START_KEYS[0], START_OVER_CURVATURE) && said("path.end_contact_radius", END_OVER_START));
     assert_eq!(
         tables().collect::<Vec<_>>(),
-        ["material", "gap", "basis", "path", "path.control", "display", "gap.parameters", "gap.waves"]
+        [
+            "material",
+            "gap",
+            "basis",
+            "path",
+            "path.control",
+            "data",
+            "display",
+            "gap.parameters",
+            "gap.waves"
+        ]
     );
 }

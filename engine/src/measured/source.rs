@@ -1,0 +1,107 @@
+//! The file of a measured curve as a preset holds it: its bytes, taken apart once for each way of reading them.
+
+use super::branches::{Asked, Branches};
+use super::points::Points;
+use super::read::{Measured, parse};
+use super::role::Spec;
+use crate::units::UnitSystem;
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How the points of a file are made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// What a person says of the columns; empty leaves it to the header.
+    pub columns: String,
+    /// The units of the problem.
+    pub units: UnitSystem,
+    /// The stiffness of its device, where that is a spring, in base units.
+    pub spring: Option<f64>,
+    /// What is used of the points.
+    pub asked: Asked,
+}
+
+/// A file of measured points. Equal where the name and the bytes are.
+pub struct Source {
+    /// The file as a person wrote it.
+    pub name: String,
+    /// The folder that a relative `name` is relative to.
+    pub folder: Option<PathBuf>,
+    /// All of it.
+    pub bytes: Arc<[u8]>,
+    columns: Mutex<Option<(String, Arc<Measured>)>>,
+    branches: Mutex<Option<(Reading, Arc<Branches>)>>,
+}
+
+impl Source {
+    /// The file `name`, relative to `folder`, that holds `bytes`.
+    #[must_use]
+    pub fn new(name: String, folder: Option<PathBuf>, bytes: Arc<[u8]>) -> Self {
+        Self { name, folder, bytes, columns: Mutex::default(), branches: Mutex::default() }
+    }
+
+    /// The same points from a file of this name.
+    #[must_use]
+    pub fn named(&self, name: String, folder: Option<PathBuf>) -> Self {
+        Self::new(name, folder, Arc::clone(&self.bytes))
+    }
+
+    /// Where the file lies.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
+        self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
+    }
+
+    /// Its columns, as `columns` says or as its header does.
+    ///
+    /// # Errors
+    /// What is wrong with `columns` or with the file, in words.
+    pub fn measured(&self, columns: &str) -> Result<Arc<Measured>, String> {
+        let mut last = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, measured)) = last.as_ref().filter(|(of, _)| of == columns) {
+            return Ok(Arc::clone(measured));
+        }
+        let spec = Spec::parse(columns).map_err(|error| error.to_string())?;
+        let measured = Arc::new(parse(&self.bytes, &spec).map_err(|error| error.to_string())?);
+        *last = Some((columns.to_owned(), Arc::clone(&measured)));
+        Ok(measured)
+    }
+
+    /// Its points in the units of a problem, in the order of the file.
+    ///
+    /// # Errors
+    /// As [`measured`](Self::measured) and [`Measured::points`].
+    pub fn points(&self, reading: &Reading) -> Result<Points, String> {
+        let measured = self.measured(&reading.columns)?;
+        measured.points(&reading.units, reading.spring).map_err(|error| error.to_string())
+    }
+
+    /// Their branches.
+    ///
+    /// # Errors
+    /// As [`points`](Self::points) and [`Points::branches`].
+    pub fn branches(&self, reading: &Reading) -> Result<Arc<Branches>, String> {
+        let mut last = self.branches.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, branches)) = last.as_ref().filter(|(of, _)| of == reading) {
+            return Ok(Arc::clone(branches));
+        }
+        let points = self.points(reading)?;
+        let branches = Arc::new(points.branches(&reading.asked).map_err(|error| error.to_string())?);
+        *last = Some((reading.clone(), Arc::clone(&branches)));
+        Ok(branches)
+    }
+}
+
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && (Arc::ptr_eq(&self.bytes, &other.bytes) || self.bytes == other.bytes)
+    }
+}
+
+impl fmt::Debug for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, folder, bytes, .. } = self;
+        write!(f, "Source {{ name: {name:?}, folder: {folder:?}, {} bytes }}", bytes.len())
+    }
+}

@@ -1,0 +1,116 @@
+//! A measured curve in the explorer: laid behind the chart, shifted, taken away, kept with preset, session and script.
+
+#[path = "support/session.rs"]
+mod session;
+
+use pulloff::explorer::model::Question;
+use pulloff::explorer::script::parse;
+use pulloff::explorer::session::{Document, Ended, Snapshot};
+use pulloff::explorer::{Command, Id, View};
+use pulloff::figure::{Mark, Sign, Subject};
+use pulloff_engine::preset::data;
+use session::Session;
+
+/// Does a line of a script.
+fn says(session: &mut Session, line: &str) {
+    let command = parse(line).unwrap().unwrap();
+    session.does(command);
+}
+
+/// The measured points of a view, of the approach and of the retraction.
+fn drawn(session: &Session, view: View) -> [Vec<(f64, f64)>; 2] {
+    let figure = Subject::of(&session.model).unwrap().figure(view);
+    [true, false].map(|approach| {
+        let is = |mark: &&Mark| mark.sign == Sign::Measured { loading: approach };
+        figure.marks.iter().filter(is).map(|mark| mark.at).collect()
+    })
+}
+
+#[test]
+fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
+    let mut session = Session::new("lens");
+    let curve = session.model.curve.clone().unwrap();
+    for view in View::ALL {
+        let count: usize = drawn(&session, view).iter().map(Vec::len).sum();
+        let expected = match view {
+            View::ForceApproach | View::Unloading | View::Cycle => 700,
+            // There is no radius among the columns.
+            _ => 0,
+        };
+        assert_eq!(count, expected, "{view:?}");
+    }
+    let before = drawn(&session, View::ForceApproach);
+    // The curve is not computed again for what lies behind it.
+    session.set(data::OFFSET, "5 um");
+    let shifted = drawn(&session, View::ForceApproach);
+    for (a, b) in before.iter().flatten().zip(shifted.iter().flatten()) {
+        assert!((a.0 - b.0 - 5.0).abs() < 1e-9 && a.1 == b.1, "{a:?} {b:?}");
+    }
+    assert!(std::sync::Arc::ptr_eq(&curve, session.model.curve.as_ref().unwrap()));
+    // Turned by a key: a thousandth of the range, from wherever it is.
+    let knob = |key: &'static str| Command::Turn { id: Id::More, key: key.into() };
+    let range = session.model.preset.branches().unwrap().unwrap().ranges;
+    session.does(knob(data::OFFSET)).does(knob(data::BASELINE));
+    let value = |session: &Session, key| session.model.preset.get(key).unwrap().as_number().unwrap();
+    assert!((value(&session, data::OFFSET) - 5e-6 - 1e-3 * range[0]).abs() < 1e-4 * range[0]);
+    let free = session.model.preset.branches().unwrap().unwrap().baseline.unwrap();
+    assert!((value(&session, data::BASELINE) - free - 1e-3 * range[1]).abs() < 1e-4 * range[1]);
+    says(&mut session, "data none");
+    assert_eq!(session.model.preset.data.source, None);
+    assert!(drawn(&session, View::ForceApproach).iter().all(Vec::is_empty));
+    session.does(Id::Undo);
+    assert_eq!(drawn(&session, View::ForceApproach)[0].len(), 350);
+    // A file that is none leaves all as it was, and says why.
+    let path = session.folder.path().join("bad.csv");
+    std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
+    says(&mut session, &format!("data {}", path.display()));
+    assert!(
+        session.status().contains("line 3: column 2: the force \"x\" is no number"),
+        "{}",
+        session.status()
+    );
+    assert_eq!(drawn(&session, View::ForceApproach)[0].len(), 350);
+    session.does(Command::Browse { key: data::FILE.into(), folder: Some(session.folder.path().to_owned()) });
+    let Some(Question::File(key, folder)) = session.model.question.take() else { panic!("no folder") };
+    assert_eq!((&*key, &*folder.files), (data::FILE, &["bad.csv".to_owned()][..]));
+}
+
+#[test]
+fn many_points_are_thinned_for_drawing_alone() {
+    let mut session = Session::new("wavy-sphere");
+    let rows: Vec<String> =
+        (0..20_000).map(|i| 2e-5 * f64::from(i)).map(|x| format!("{x},{}", x * x)).collect();
+    let path = session.folder.path().join("many.csv");
+    std::fs::write(&path, format!("delta,force\n{}\n", rows.join("\n"))).unwrap();
+    says(&mut session, &format!("data {}", path.display()));
+    assert!(session.status().contains("many.csv: 20000 points"), "{}", session.status());
+    let count: usize = drawn(&session, View::ForceApproach).iter().map(Vec::len).sum();
+    assert!((2000..=3000).contains(&count), "{count}");
+}
+
+#[test]
+fn a_session_and_a_script_carry_the_points_whatever_became_of_the_file() {
+    let mut session = Session::new("wavy-sphere");
+    let path = session.folder.path().join("curve.csv");
+    let rows: Vec<String> =
+        (0..50).map(|i| format!("{},{}", 0.01 * f64::from(i), 0.1 * f64::from(i * i))).collect();
+    std::fs::write(&path, format!("delta,force\n{}\n", rows.join("\n"))).unwrap();
+    says(&mut session, &format!("data {}", path.display()));
+    session.set(data::OFFSET, "0.1").does(Command::Steps(2));
+    let lines = session.model.script().unwrap();
+    assert!(lines.iter().any(|line| line.contains("data.file=")), "{lines:?}");
+    let mut again = Session::new("wavy-sphere");
+    for line in &lines {
+        says(&mut again, line);
+    }
+    assert_eq!(again.model.preset, session.model.preset);
+    let document = Document::new(&Snapshot::of(&session.model), Ended::Quit, 0).json().unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let back = Document::read(&document).unwrap().snapshot().unwrap();
+    assert_eq!(back.preset, session.model.preset);
+    let before = drawn(&session, View::ForceApproach);
+    let (mut model, effects) = back.resume(None);
+    session.driver.settle(&mut model, effects);
+    session.model = model;
+    assert_eq!(drawn(&session, View::ForceApproach), before);
+}
