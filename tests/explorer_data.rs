@@ -114,3 +114,69 @@ fn a_session_and_a_script_carry_the_points_whatever_became_of_the_file() {
     session.model = model;
     assert_eq!(drawn(&session, View::ForceApproach), before);
 }
+
+#[test]
+fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
+    let mut session = Session::new("lens");
+    let before = session.model.preset.clone();
+    session.does(Id::Fit);
+    assert!(session.status().starts_with("fitted: χ² "), "{}", session.status());
+    let value = |session: &Session, key: &str| session.model.preset.get(key).unwrap().as_number().unwrap();
+    let (modulus, adhesion) = ("material.effective_modulus", "material.work_of_adhesion");
+    for (key, truth) in [(modulus, 1e6), (adhesion, 0.05), (data::OFFSET, 12.3e-6), (data::BASELINE, 4e-6)] {
+        let (found, error) = (value(&session, key), session.model.standard_error(key).unwrap());
+        assert!((found - truth).abs() < 4.0 * error && error < 0.05 * truth, "{key}: {found} ± {error}");
+    }
+    assert_eq!(session.model.curve.as_ref().unwrap().setting.preset.material, session.model.preset.material);
+    // Another value has no error; u takes the whole fit back.
+    let fitted = session.model.preset.clone();
+    session.set(adhesion, "60 mJ/m^2");
+    assert!(
+        session.model.standard_error(adhesion).is_none() && session.model.standard_error(modulus).is_some()
+    );
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, fitted);
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, before);
+    // The residuals of the first guess are far from noise, those of the fit are noise.
+    let largest = |session: &mut Session| {
+        session.model.view = View::Residuals;
+        session.does(Id::Up);
+        drawn(session, View::Residuals).concat().iter().map(|at| at.1.abs()).fold(0.0, f64::max)
+    };
+    assert!(largest(&mut session) > 20.0);
+    session.does(Id::Redo);
+    assert!(largest(&mut session) < 8.0);
+}
+
+#[test]
+fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
+    let mut session = Session::new("lens");
+    let select = |session: &mut Session, key: &str| {
+        session.model.parameter = session.model.knobs().iter().position(|(row, _)| row.key == key).unwrap();
+        session.does(Id::Free);
+    };
+    let free = |session: &Session| session.model.preset.data.free().map(str::to_owned).collect::<Vec<_>>();
+    select(&mut session, "gap.radius_of_curvature");
+    assert_eq!(free(&session), ["E*", "gamma", "data.offset", "gap.radius_of_curvature"]);
+    let before = session.model.preset.clone();
+    session.does(Id::Fit);
+    assert!(
+        session.status().starts_with("not determined, and not taken: R +10 %, E* −4.7 %, γ −9.1 %"),
+        "{}",
+        session.status()
+    );
+    assert_eq!(session.model.preset, before);
+    select(&mut session, "gap.radius_of_curvature");
+    select(&mut session, "material.effective_modulus");
+    assert_eq!(free(&session), ["gamma", "data.offset"]);
+    select(&mut session, "basis.kind");
+    assert!(session.status().contains("which alone can be fitted"), "{}", session.status());
+    says(&mut session, "data none");
+    session.does(Id::Fit);
+    assert!(
+        session.status().starts_with("not fitted: the preset has no measured curve"),
+        "{}",
+        session.status()
+    );
+}

@@ -75,7 +75,7 @@ impl Late {
                 | Effect::StopPins
                 | Effect::Pin(..) => {}
                 // Nothing that is walked depends on it.
-                Effect::Loop(_) | Effect::Map(_) => continue,
+                Effect::Loop(_) | Effect::Map(_) | Effect::Distances(_) => continue,
             }
             self.pending.push_back(effect);
         }

@@ -7,6 +7,7 @@
 
 use pulloff_engine::case::Case;
 use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Begin, Control, Start};
 use pulloff_engine::report::unload::{EventReport, StateReport};
@@ -49,6 +50,7 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     };
     Preset {
         title: String::new(),
+        data: DataSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material {
@@ -310,6 +312,7 @@ fn unloading_agrees_with_a_walk_on_the_explicit_curve() {
 fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f64) -> Preset {
     Preset {
         title: String::new(),
+        data: DataSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion: gamma, range_of_action: None },

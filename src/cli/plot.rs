@@ -4,6 +4,7 @@ use super::console::{note, warn};
 use super::measured::{attach, typed};
 use super::problem::Problem;
 use super::{Failure, output};
+use crate::explorer::fitting::FitWish;
 use crate::explorer::maps::{MapAxes, MapWish};
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::{Axes, CurveData, Overlays, View};
@@ -155,8 +156,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
     let measured = Points::of(&preset).and_then(Result::ok);
+    let distances = (view == View::Residuals && preset.data.source.is_some())
+        .then(|| FitWish { id: 0, preset: preset.clone() }.distances().found);
     let subject = Subject {
         measured,
+        distances: distances.as_ref(),
         inside: inside.as_ref(),
         cycle: cycle.as_ref(),
         map,

@@ -44,7 +44,7 @@ pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
                 Id::NextLimit.named()
             )
         }
-        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
+        Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Free => {
             format!("select a parameter first: {} goes to the Problem panel", Id::NextPanel.named())
         }
         Id::Whole => "the whole chart is shown".to_owned(),

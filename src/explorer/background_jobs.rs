@@ -11,6 +11,8 @@ pub enum BackgroundJob {
     Pins(usize),
     /// The admissibility of the curve's states is checked.
     Check,
+    /// A fit is running and has come so far, in per cent.
+    Fit(u8),
     /// The profile of the walker's state is computed; it is short and cannot be cancelled.
     Inside,
 }
@@ -23,7 +25,9 @@ impl BackgroundJob {
             .profile_wanted
             .as_ref()
             .is_some_and(|wanted| model.profile.as_ref().is_none_or(|shown| shown.id < wanted.id));
-        if pins > 0 {
+        if let Some(fitting) = &model.fitting {
+            Some(Self::Fit(fitting.percent))
+        } else if pins > 0 {
             Some(Self::Pins(pins))
         } else if matches!(model.checking, Some(Checking::Asked(_))) && !model.is_computing() {
             Some(Self::Check)
@@ -38,6 +42,9 @@ impl BackgroundJob {
             Self::Pins(1) => format!("computing a pinned curve; {} gives up", Id::Cancel.named()),
             Self::Pins(count) => format!("computing {count} pinned curves; {} gives up", Id::Cancel.named()),
             Self::Check => format!("checking admissibility; {} gives up", Id::Cancel.named()),
+            Self::Fit(percent) => {
+                format!("fitting, {percent} %; {} takes the best so far", Id::Cancel.named())
+            }
             Self::Inside => "computing the state".to_owned(),
         }
     }

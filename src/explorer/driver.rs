@@ -8,6 +8,7 @@
 use super::curve::{CurveData, ProblemCurve};
 use super::effect::{Check, Effect, Reply, Wish};
 use super::files;
+use super::fitting::FitWish;
 use super::job::Job;
 use super::loops::LoopWish;
 use super::maps::MapWish;
@@ -61,6 +62,8 @@ impl Inline {
                 wish.is_shown.then(|| wish.run(&|| true)).flatten().map(|found| Reply::Loop(Arc::new(found)))
             }
             Effect::Map(wish) => wish.run(&|| true).map(|found| Reply::Map(Arc::new(found))),
+            Effect::Fit(wish) => Some(Reply::Fitted { id: wish.id, result: wish.fit(&mut |_| true) }),
+            Effect::Distances(wish) => Some(Reply::Distances(Arc::new(wish.distances()))),
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -70,7 +73,7 @@ impl Inline {
                 });
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
-            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopPins => None,
+            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopFit(_) | Effect::StopPins => None,
             Effect::Pin(number, preset) => Some(pinned(number, &preset, || true)),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
@@ -119,6 +122,9 @@ pub struct Workers {
     profile: Arc<Slot<Box<Ask>>>,
     loops: Arc<Slot<Box<LoopWish>>>,
     maps: Arc<Slot<Box<MapWish>>>,
+    fits: Arc<Slot<Box<FitWish>>>,
+    distances: Arc<Slot<Box<FitWish>>>,
+    fits_stopped: Arc<AtomicU64>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
@@ -190,6 +196,12 @@ impl Workers {
         thread::Builder::new().name("loop".to_owned()).spawn(move || loop_lane(&slot, &send))?;
         let (slot, send) = (Arc::clone(&maps), reply.clone());
         thread::Builder::new().name("map".to_owned()).spawn(move || map_lane(&slot, &send))?;
+        let (fits, distances) = (Slot::empty(), Slot::empty());
+        let fits_stopped = Arc::new(AtomicU64::new(0));
+        let (slot, stop, send) = (Arc::clone(&fits), Arc::clone(&fits_stopped), reply.clone());
+        thread::Builder::new().name("fit".to_owned()).spawn(move || fit_lane(&slot, &stop, &send))?;
+        let (slot, send) = (Arc::clone(&distances), reply.clone());
+        thread::Builder::new().name("distances".to_owned()).spawn(move || distance_lane(&slot, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -207,7 +219,21 @@ impl Workers {
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, loops, maps, walks, files, pins, pins_given_up, stopped, given_up })
+        Ok(Self {
+            curve,
+            profile,
+            loops,
+            maps,
+            fits,
+            distances,
+            fits_stopped,
+            walks,
+            files,
+            pins,
+            pins_given_up,
+            stopped,
+            given_up,
+        })
     }
 
     /// Hands every effect to its lane, in order.
@@ -227,6 +253,9 @@ impl Workers {
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Loop(wish) => self.loops.put(wish),
             Effect::Map(wish) => self.maps.put(wish),
+            Effect::Fit(wish) => self.fits.put(wish),
+            Effect::StopFit(id) => drop(self.fits_stopped.fetch_max(id, Ordering::AcqRel)),
+            Effect::Distances(wish) => self.distances.put(wish),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Pin(number, preset) => {
@@ -303,6 +332,31 @@ fn map_lane(slot: &Slot<Box<MapWish>>, reply: &dyn Fn(Reply)) {
         if let Some(found) = wish.run(&go_on) {
             reply(Reply::Map(Arc::new(found)));
         }
+    }
+}
+
+fn fit_lane(slot: &Slot<Box<FitWish>>, stopped: &AtomicU64, reply: &dyn Fn(Reply)) {
+    loop {
+        let wish = slot.take();
+        let id = wish.id;
+        let mut told = 0;
+        let result = wish.fit(&mut |share| {
+            // A share of a hundred; every fifth is enough for who waits.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
+            if percent >= told + 5 {
+                told = percent;
+                reply(Reply::Fitting { id, percent });
+            }
+            stopped.load(Ordering::Acquire) < id
+        });
+        reply(Reply::Fitted { id, result });
+    }
+}
+
+fn distance_lane(slot: &Slot<Box<FitWish>>, reply: &dyn Fn(Reply)) {
+    loop {
+        reply(Reply::Distances(Arc::new(slot.take().distances())));
     }
 }
 

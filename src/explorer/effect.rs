@@ -1,6 +1,7 @@
 //! Effects: the work that the model asks for. Replies: what came of it.
 
 use super::curve::{CurveData, ProblemCurve};
+use super::fitting::{Distances, FitWish};
 use super::job::{Done, Job};
 use super::loops::{LoopData, LoopWish};
 use super::maps::{MapData, MapWish};
@@ -9,6 +10,7 @@ use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::walk::{Made, Outcome, Request};
 use crate::mend::Reason;
+use pulloff_engine::fit::Fit;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
 
@@ -25,6 +27,12 @@ pub enum Effect {
     Loop(Box<LoopWish>),
     /// Compute a map of two numbers; an older one still waiting is forgotten.
     Map(Box<MapWish>),
+    /// Fit the free keys of a preset to its measured curve.
+    Fit(Box<FitWish>),
+    /// End the fit of this number with the best so far.
+    StopFit(u64),
+    /// Find the distances of measured points; an older wish still waiting is forgotten.
+    Distances(Box<FitWish>),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
@@ -74,6 +82,16 @@ pub enum Reply {
     },
     Loop(Arc<LoopData>),
     Map(Arc<MapData>),
+    /// A fit has come so far, in per cent.
+    Fitting {
+        id: u64,
+        percent: u8,
+    },
+    Fitted {
+        id: u64,
+        result: Result<Arc<Fit>, Reason>,
+    },
+    Distances(Arc<Distances>),
     Profile(Arc<Inside>),
     Walked {
         id: u64,

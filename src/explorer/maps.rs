@@ -187,6 +187,8 @@ impl MapData {
         if self.axes != *axes {
             return false;
         }
+        // Measured points do not change it.
+        let preset = &Preset { data: self.preset.data.clone(), ..preset.clone() };
         let Ok(report) = &self.report else { return self.preset == *preset };
         let mut moved = self.preset.clone();
         for axis in [&report.x, &report.y] {

@@ -54,6 +54,7 @@ pub mod driver;
 pub mod effect;
 pub mod export;
 pub mod files;
+pub mod fitting;
 pub mod follow;
 pub mod history;
 pub mod job;

@@ -3,6 +3,7 @@
 use super::command::{Command, FIRST_LENGTH};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
+use super::fitting::{Distances, FitWish, Fitting};
 use super::history::{History, Mark};
 use super::journal::Journal;
 use super::loops::{self, LoopData, LoopWish};
@@ -17,6 +18,7 @@ use super::undo::{Place, Undo};
 use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
+use pulloff_engine::fit::Fit;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Key, Preset, Row, Value, data};
 use pulloff_engine::problem::Control;
@@ -141,6 +143,14 @@ pub struct Model {
     pub snaps_from: Option<Arc<SnapsFrom>>,
     /// What stands on the axes of the map; `None` for what is usual.
     pub map_axes: Option<MapAxes>,
+    /// The fit that is running.
+    pub fitting: Option<Fitting>,
+    /// The last fit that was taken; the values may be others by now.
+    pub fit: Option<Arc<Fit>>,
+    /// The distances of the measured points; they can be those of values before.
+    pub distances: Option<Arc<Distances>>,
+    /// The newest distances asked for.
+    pub distances_wanted: Option<Box<FitWish>>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -223,6 +233,10 @@ impl Model {
             map_wanted: None,
             map_axes: None,
             snaps_from: None,
+            fitting: None,
+            fit: None,
+            distances: None,
+            distances_wanted: None,
             stiffness,
             device: None,
             history: History::default(),

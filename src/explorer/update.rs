@@ -20,6 +20,7 @@ mod walk;
 use super::availability::{is_available, why_unavailable};
 use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
+use super::fitting::{fit, fit_came, mark, want_distances};
 use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
@@ -62,6 +63,7 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
+    effects.extend(want_distances(model));
     effects
 }
 
@@ -187,6 +189,19 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Reply::Fitting { id, percent } => {
+            if let Some(fitting) = model.fitting.as_mut().filter(|fitting| fitting.id == id) {
+                fitting.percent = percent;
+            }
+            return Vec::new();
+        }
+        Reply::Fitted { id, result } => recorded(model, |model| fit_came(model, id, result)),
+        Reply::Distances(found) => {
+            if model.distances_wanted.as_ref().is_some_and(|wanted| found.id <= wanted.id) {
+                model.distances = Some(found);
+            }
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -206,6 +221,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
+    effects.extend(want_distances(model));
     effects
 }
 
@@ -228,6 +244,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Double => scale_length(model, 2.0),
         Id::Undo | Id::Redo => return travel(model, id, 1),
         Id::Control => return change_control(model),
+        Id::Free => return mark(model),
+        Id::Fit => return fit(model),
         Id::Less | Id::More | Id::MuchLess | Id::MuchMore => return turn(model, id, None),
         Id::Edit => return select(model),
         Id::Up if model.panel == Panel::Charts => look::go(model, 0.0, 1.0),
@@ -258,6 +276,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Save => return save_back(model),
         Id::Cancel if model.walking.is_some() => return stop(model),
         Id::Cancel if model.is_computing() => return give_up(model),
+        Id::Cancel if model.fitting.is_some() => return fit(model),
         Id::Cancel if model.cross.is_some() => model.cross = None,
         Id::Cancel => return background_jobs::give_up(model),
         Id::Quit => model.quit = true,

@@ -88,11 +88,13 @@ pub enum View {
     Stability,
     /// Lines in two numbers at which snaps begin or end.
     Map,
+    /// The distances of the measured points from the curve.
+    Residuals,
 }
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::ForceApproach,
         Self::RadiusForce,
         Self::RadiusApproach,
@@ -105,6 +107,7 @@ impl View {
         Self::ContactMap,
         Self::Stability,
         Self::Map,
+        Self::Residuals,
     ];
 
     /// Its name.
@@ -122,6 +125,7 @@ impl View {
             Self::ContactMap => "contact-map",
             Self::Stability => "stability",
             Self::Map => "map",
+            Self::Residuals => "residuals",
         }
     }
 
@@ -151,7 +155,7 @@ impl View {
     pub fn companions(self) -> [Self; 3] {
         use View::{
             Contact, ContactMap, Cycle, Energy, ForceApproach, Gap, Map, Pressure, RadiusApproach,
-            RadiusForce, Stability, Unloading,
+            RadiusForce, Residuals, Stability, Unloading,
         };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
@@ -160,6 +164,7 @@ impl View {
             Contact => [ForceApproach, Gap, Pressure],
             Stability => [RadiusApproach, ForceApproach, Unloading],
             Map => [Stability, ForceApproach, Unloading],
+            Residuals => [ForceApproach, RadiusForce, Pressure],
             RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
@@ -308,7 +313,7 @@ mod tests {
             view = view.further(1);
         }
         assert_eq!(view, View::ForceApproach);
-        assert_eq!(view.further(View::ALL.len() - 1), View::Map);
+        assert_eq!(view.further(View::ALL.len() - 1), View::Residuals);
     }
 
     #[test]

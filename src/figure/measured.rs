@@ -8,7 +8,7 @@ use pulloff_engine::measured::{Abscissa, Branches, Segment};
 use pulloff_engine::preset::Preset;
 
 /// The most points that are drawn; a fit takes all.
-const DRAWN: usize = 3000;
+pub const DRAWN: usize = 3000;
 
 /// Measured points as δ, P and s in base units, not a number where one is not measured.
 #[derive(Debug, Clone, PartialEq)]

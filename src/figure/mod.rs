@@ -20,6 +20,7 @@
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
 //! | [`measured`] | measured points behind a curve |
+//! | [`residuals`] | how far those points are from it |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
@@ -34,6 +35,7 @@ pub mod measured;
 pub mod parts;
 pub mod range;
 pub mod reading;
+pub mod residuals;
 pub mod scale;
 pub mod shape;
 pub mod stability;
@@ -60,6 +62,7 @@ impl Subject<'_> {
             View::ContactMap => contact_map::figure(self),
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),
+            View::Residuals => residuals::figure(self),
             View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
         };
         if let Some(points) = &self.measured {

@@ -7,6 +7,8 @@ use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::{Axes, CurveData, EventSource, Model, Node, Overlays, device};
+use pulloff_engine::fit::run::Residual;
+use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{BasisSpec, Preset};
 use pulloff_engine::report::{CycleReport, MapReport};
 
@@ -29,6 +31,8 @@ pub struct Subject<'a> {
     pub event: Option<usize>,
     /// The measured points, where there are any.
     pub measured: Option<Points>,
+    /// Their distances from the curve, or why there are none, where they are known.
+    pub distances: Option<&'a Result<(Abscissa, Vec<Residual>), String>>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -50,6 +54,7 @@ impl<'a> Subject<'a> {
             map: model.map.as_ref().map(|map| map.report()),
             event: (model.events == EventSource::Curve).then_some(model.event + 1),
             measured: Points::of(&model.preset).and_then(Result::ok),
+            distances: model.distances.as_ref().map(|distances| &distances.found),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -69,6 +74,7 @@ impl<'a> Subject<'a> {
             map: None,
             event: None,
             measured: None,
+            distances: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,

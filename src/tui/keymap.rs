@@ -136,6 +136,8 @@ fn usual(id: Id) -> &'static [Key] {
         Id::More => &[Char('>'), Char('.')],
         Id::MuchLess => &[Char('{')],
         Id::MuchMore => &[Char('}')],
+        Id::Free => &[Char('*')],
+        Id::Fit => &[Char('F')],
         Id::Edit => &[Named(KeyCode::Enter)],
         Id::Up => &[Named(KeyCode::Up), Char('k')],
         Id::Down => &[Named(KeyCode::Down), Char('j')],

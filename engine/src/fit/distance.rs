@@ -27,12 +27,16 @@ pub struct Nearest {
 pub struct Scaled<'a> {
     path: &'a Path,
     corners: Vec<Place>,
+    /// The ends of the boxes around [`BOXED`] stretches each.
+    boxes: Vec<[Place; 2]>,
     weights: Place,
 }
 
 /// The way along a curve at which the foot is found, in units of noise.
 const FOUND: f64 = 1e-8;
 const STEPS: usize = 60;
+/// Stretches of the polyline that are passed over together where their box is too far away.
+const BOXED: usize = 16;
 
 fn minus(a: Place, b: Place) -> Place {
     std::array::from_fn(|i| a[i] - b[i])
@@ -52,12 +56,25 @@ fn sum(a: f64, x: Place, b: f64, y: Place) -> Place {
     std::array::from_fn(|i| a * x[i] + b * y[i])
 }
 
+/// The squared distance of a point from a box; 0 within.
+fn from_box(m: Place, [lo, hi]: &[Place; 2]) -> f64 {
+    let off: Place = std::array::from_fn(|i| (lo[i] - m[i]).max(m[i] - hi[i]).max(0.0));
+    dot(off, off)
+}
+
 impl<'a> Scaled<'a> {
     /// `path` with the coordinates times `weights`, 1/σ, or 0 for one that is not measured.
     #[must_use]
     pub fn new(path: &'a Path, weights: Place) -> Self {
-        let corners = path.vertices.iter().map(|vertex| scaled(vertex.at, weights)).collect();
-        Self { path, corners, weights }
+        let corners: Vec<Place> = path.vertices.iter().map(|vertex| scaled(vertex.at, weights)).collect();
+        let around = |from: usize| {
+            let some = &corners[from..(from + BOXED + 1).min(corners.len())];
+            some.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[lo, hi], at| {
+                [std::array::from_fn(|i| lo[i].min(at[i])), std::array::from_fn(|i| hi[i].max(at[i]))]
+            })
+        };
+        let boxes = (0..corners.len().saturating_sub(1)).step_by(BOXED).map(around).collect();
+        Self { path, corners, boxes, weights }
     }
 
     /// The foot of the point `m`, in units of noise; `None` where the path is nothing.
@@ -65,16 +82,13 @@ impl<'a> Scaled<'a> {
     pub fn nearest(&self, m: Place) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let mut best = (f64::INFINITY, 0, 0.0);
-        for (i, pair) in self.corners.windows(2).enumerate() {
-            if vertices[i].piece != vertices[i + 1].piece {
-                continue;
-            }
-            let (along, from) = (minus(pair[1], pair[0]), minus(m, pair[0]));
-            let share = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
-            let off = sum(1.0, from, if share.is_finite() { -share } else { 0.0 }, along);
-            let distance = dot(off, off);
-            if distance < best.0 {
-                best = (distance, i, share);
+        let away: Vec<f64> = self.boxes.iter().map(|ends| from_box(m, ends)).collect();
+        let first = (0..away.len()).min_by(|&a, &b| away[a].total_cmp(&away[b]))?;
+        self.search(m, first, &mut best);
+        for (i, away) in away.iter().enumerate() {
+            // Of places that are equally near the first on the path counts.
+            if i != first && *away <= best.0 {
+                self.search(m, i, &mut best);
             }
         }
         let (distance, at, share) = best;
@@ -94,6 +108,24 @@ impl<'a> Scaled<'a> {
                 self.told(piece, foot, minus(m, c), along)
             }
             Piece::Arc(_) => self.on_arc(m, at, share),
+        }
+    }
+
+    /// Looks for a place nearer than `best`, its squared distance, its stretch and its share of that, in one box.
+    fn search(&self, m: Place, boxed: usize, best: &mut (f64, usize, f64)) {
+        let vertices = &self.path.vertices;
+        let from = boxed * BOXED;
+        for (i, pair) in self.corners.windows(2).enumerate().skip(from).take(BOXED) {
+            if vertices[i].piece != vertices[i + 1].piece {
+                continue;
+            }
+            let (along, from) = (minus(pair[1], pair[0]), minus(m, pair[0]));
+            let share = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
+            let off = sum(1.0, from, if share.is_finite() { -share } else { 0.0 }, along);
+            let distance = dot(off, off);
+            if distance < best.0 || (distance <= best.0 && i < best.1) {
+                *best = (distance, i, share);
+            }
         }
     }
 

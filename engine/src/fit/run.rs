@@ -4,7 +4,7 @@ use super::determined::determined;
 use super::fitted::Fitted;
 use super::intervals::{block, bootstrap, profile};
 use super::judge::{doubts, of_spring};
-use super::least_squares::Ending;
+use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
@@ -95,6 +95,21 @@ pub fn fit_own(
     Ok(found)
 }
 
+/// What x is, and the distances of the points of a preset's own measured curve from its curve as it is.
+///
+/// # Errors
+/// [`FitError`].
+pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitError> {
+    let source = preset.data.source.as_ref().ok_or(FitError::NoData)?;
+    let branches = source.branches(&preset.reading()).map_err(FitError::Data)?;
+    // A baseline that nobody says is the median of the free part, where a fit begins.
+    let problem = posed(preset, &branches, &Options::default(), &mut Vec::new())?;
+    let u: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+    let residuals = LeastSquares::residuals(&problem, &u).ok_or(FitError::NoStart)?;
+    let scale = problem.scale(&residuals);
+    Ok((branches.abscissa, beside(&problem, &residuals, scale)))
+}
+
 /// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`; `go_on` is told the share that is done, and stops it by
 /// answering no: the best so far is what there is then.
 ///
@@ -141,7 +156,7 @@ pub fn fit(
     let scale = if from_residuals { solved.scale } else { 1.0 };
     let degrees = (real.len() - u.len().min(real.len())).max(1) as f64;
     let known_noise = !from_residuals && !branches.noise.assumed[1];
-    let residuals = beside(&problem, &solved);
+    let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
     let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
     let rows = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
@@ -247,12 +262,11 @@ fn laid(
 }
 
 /// The points with their distances.
-fn beside(problem: &Problem, solved: &Solved) -> Vec<Residual> {
+fn beside(problem: &Problem, residuals: &DVector<f64>, scale: f64) -> Vec<Residual> {
     let per = problem.per_point();
-    let residuals = &solved.minimum.at.residuals;
     let of = |(i, datum): (usize, &Datum)| {
         let largest = (0..per).map(|k| residuals[per * i + k].abs()).fold(0.0, f64::max);
-        let outlier = largest > OUTLIER * solved.scale;
+        let outlier = largest > OUTLIER * scale;
         Residual { datum: *datum, residual: residuals[per * i], outlier }
     };
     problem.data.iter().enumerate().map(of).collect()

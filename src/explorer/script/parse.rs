@@ -55,6 +55,9 @@ pub fn for_script(command: &Command) -> Result<(), String> {
         Command::Plain(Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Edit) => {
             Err(format!("{} needs a selection on the screen; a script says set KEY=VALUE", row.name))
         }
+        Command::Plain(Id::Free) => {
+            Err(format!("{} needs a selection on the screen; a script says set data.free=KEY,...", row.name))
+        }
         command if is_of_screen(command.id()) => {
             Err(format!("{} only changes what a screen shows", row.name))
         }

@@ -52,7 +52,8 @@ impl Turn {
                 | Id::Less
                 | Id::More
                 | Id::MuchLess
-                | Id::MuchMore,
+                | Id::MuchMore
+                | Id::Free,
             )
             | Command::StepLength(_)
             | Command::Set { .. }

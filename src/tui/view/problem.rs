@@ -1,6 +1,7 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
 use super::parts::{is_selected, pair, panel};
+use crate::explorer::fitting::is_free;
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -72,7 +73,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
             let turning = (i == model.parameter && selected).then_some(&*keys);
-            knob_line(theme, units, row, value.as_ref(), turning, inner.width)
+            let fit = (is_free(&model.preset, &row.key), model.standard_error(&row.key));
+            knob_line(theme, units, (row, value.as_ref()), fit, turning, inner.width)
         })
         .collect();
     lines.resize(rows, Line::default());
@@ -106,13 +108,14 @@ fn turning(keymap: &Keymap) -> String {
 fn knob_line(
     theme: Theme,
     units: &UnitSystem,
-    row: &Parameter,
-    value: Option<&Value>,
+    (row, value): (&Parameter, Option<&Value>),
+    (is_free, error): (bool, Option<f64>),
     turning: Option<&str>,
     width: u16,
 ) -> Line<'static> {
     let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
-    let label = format!("{mark}{:<9} ", theme.symbols(&row.label));
+    let name = theme.symbols(&row.label);
+    let label = format!("{mark}{:<9} ", if is_free { format!("{name}*") } else { name });
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
     // As many digits as there is room for, so that no unit is cut.
     let shown = |x, most: usize| {
@@ -122,7 +125,15 @@ fn knob_line(
     };
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => shown(*x, 7),
+        Some(Value::Number(x)) => match error {
+            // As many digits as the error leaves a meaning.
+            Some(error) => {
+                let own = |x| row.shown(units, x).number;
+                let between = theme.text("±");
+                format!("{} {between}{}", shown(*x, 5), short(own(error).abs(), 2))
+            }
+            None => shown(*x, 7),
+        },
         Some(Value::Control(Control::Stiffness(k))) => {
             format!("k {}", shown(*k, 5))
         }

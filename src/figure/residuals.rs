@@ -1,0 +1,61 @@
+//! How far the measured points are from the curve, in standard deviations of their noise, over x.
+//!
+//! The distance is that from the curve itself, along its normal, as a fit has it. Noise is scattered about zero; what keeps
+//! its sign for long is not described by the model.
+
+use super::bounds::Bounds;
+use super::measured::DRAWN;
+use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::subject::Subject;
+use pulloff_engine::fit::run::Residual;
+use pulloff_engine::measured::{Abscissa, Segment};
+use pulloff_engine::units::Quantity;
+
+/// Deviations between which nearly all of normal noise lies.
+const USUAL: f64 = 3.0;
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>) -> Figure {
+    let scale = subject.scale();
+    let x = match subject.distances.and_then(|found| found.as_ref().ok()) {
+        Some((Abscissa::Radius, _)) => scale.length("s"),
+        Some((Abscissa::Position, _)) => scale.length("Δ"),
+        _ => scale.length("δ"),
+    };
+    let mut figure =
+        Figure::empty("distances of the points from the curve".to_owned(), x, Axis::pure("r/σ".to_owned()));
+    let residuals = match subject.distances {
+        Some(Ok((_, residuals))) => residuals,
+        Some(Err(reason)) => {
+            figure.missing = Some(format!("no residuals: {reason}"));
+            return figure;
+        }
+        None if subject.preset.data.source.is_none() => {
+            figure.missing = Some("no measured curve: :data FILE lays one behind the chart".to_owned());
+            return figure;
+        }
+        None => {
+            figure.missing = Some("no residuals yet".to_owned());
+            return figure;
+        }
+    };
+    let offset = subject.preset.data.offset.unwrap_or(0.0);
+    let at = |residual: &Residual| {
+        (scale.shown(Quantity::Length, residual.datum.point.x - offset), residual.residual)
+    };
+    let step = residuals.len().div_ceil(DRAWN).max(1);
+    for segment in [Segment::Approach, Segment::Retraction] {
+        let of = residuals.iter().filter(|residual| residual.datum.segment == segment);
+        let sign = Sign::Measured { loading: segment == Segment::Approach };
+        let marks = of.step_by(step).map(|residual| Mark { sign, at: at(residual) });
+        figure.marks.extend(marks.filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()));
+    }
+    let places = || figure.marks.iter().map(|mark| mark.at);
+    let [lo, hi] =
+        places().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], (x, _)| [lo.min(x), hi.max(x)]);
+    if lo <= hi {
+        figure.bounds = Bounds::of(places().chain([(lo, -USUAL), (hi, USUAL)]));
+        figure.lines.push(Line::new(Role::Zero, "", vec![(lo, 0.0), (hi, 0.0)]));
+    }
+    figure
+}
