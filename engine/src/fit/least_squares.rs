@@ -156,6 +156,10 @@ pub fn minimize(
     /// The first damping, its smallest change and the largest that is tried.
     const FIRST: f64 = 1e-3;
     const LARGEST: f64 = 1e16;
+    /// So many rounds, each better by a share of the cost that no value shows, are the end.
+    const IDLE: usize = 6;
+    const SHOWN: f64 = 1e-10;
+    let mut idle = 0;
     let c = settings.huber;
     let counts = problem.counts();
     let mut u = start.to_vec();
@@ -195,10 +199,11 @@ pub fn minimize(
             if let Some(cost) = found.filter(|cost| *cost < best || (is_last && *cost <= best))
                 && let Some(evaluated) = problem.evaluate(&next)
             {
+                idle = if best - cost <= SHOWN * best { idle + 1 } else { 0 };
                 (u, at, best) = (next, evaluated, cost);
                 mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));
                 growth = 2.0;
-                if is_last {
+                if is_last || idle >= IDLE {
                     return end(u, at, best, Ending::Converged, round + 1);
                 }
                 break;

@@ -297,9 +297,11 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
 #[ignore = "a thousand fits, some minutes without optimization"]
 fn a_thousand_intervals_hold_the_truth_as_often_as_they_say() {
     for [share, bias] in coverage(0..1000, false) {
+        println!("{share} of 1000 intervals hold the truth, mean error {bias} sigma");
         assert!((0.93..=0.97).contains(&share) && bias.abs() < 0.1, "{share} {bias}");
     }
     for [share, bias] in coverage(0..1000, true) {
+        println!("with outliers {share}, mean error {bias} sigma");
         assert!(bias.abs() <= 0.2, "{share} {bias}");
     }
 }

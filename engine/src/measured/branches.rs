@@ -367,15 +367,17 @@ fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
 }
 
 /// Whether x stands still at the beginning or the end of the file while P goes on: a way never does, the force of bodies apart
-/// does.
+/// does, but for its noise.
 fn stands_still(x: &[f64], force: &[f64]) -> bool {
     /// The share of the rows at either end, and the shares of both ranges there.
     const ROWS: usize = 20;
-    const STILL: f64 = 0.01;
-    const GOES_ON: f64 = 0.03;
+    const STILL: f64 = 0.015;
+    const GOES_ON: f64 = 0.02;
     let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
     let share = |of: &[f64], rows: std::ops::Range<usize>| {
-        range(of[rows].iter().copied()) / range(of.iter().copied())
+        let (first, last) = of[rows].split_at(count / 2);
+        let middles = [first, last].map(|half| median(half.to_vec()).unwrap_or(0.0));
+        (middles[0] - middles[1]).abs() / range(of.iter().copied())
     };
     [0..count, x.len() - count..x.len()]
         .into_iter()

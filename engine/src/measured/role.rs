@@ -73,7 +73,20 @@ impl Segment {
 const NAMES: [(Role, &[&str]); 6] = [
     (
         Role::Approach,
-        &["approach", "indentation", "delta", "δ", "displacement", "depth", "tip position", "penetration"],
+        &[
+            "approach",
+            "indentation",
+            "indentation depth",
+            "delta",
+            "δ",
+            "displacement",
+            "displacement into surface",
+            "depth",
+            "tip position",
+            "tip sample separation",
+            "penetration",
+            "penetration depth",
+        ],
     ),
     (
         Role::Position,
@@ -88,10 +101,14 @@ const NAMES: [(Role, &[&str]); 6] = [
             "z piezo",
             "piezo height",
             "extension",
+            "stage position",
+            "piezo position",
+            "zsensor",
+            "z sensor",
         ],
     ),
-    (Role::Deflection, &["deflection", "defl", "bending"]),
-    (Role::Force, &["force", "load", "p", "f", "normal force"]),
+    (Role::Deflection, &["deflection", "defl", "bending", "cantilever deflection"]),
+    (Role::Force, &["force", "load", "p", "f", "normal force", "normal load", "load on sample"]),
     (Role::Radius, &["contact radius", "radius", "s", "a"]),
     (Role::Segment, &["segment", "branch", "direction", "phase"]),
 ];

@@ -138,6 +138,9 @@ fn flipped_signs_are_turned_and_said_and_swapped_columns_refused() {
     }
     let swapped: Vec<_> = rows.iter().map(|(x, p, back)| (*p, *x, *back)).collect();
     assert!(branches(&csv(&swapped)) == Err(BranchError::Swapped));
+    // Under noise the force of bodies apart stands still no less.
+    let noisy: Vec<_> = jkr(5e-4).iter().map(|(x, p, back)| (*p, *x, *back)).collect();
+    assert!(branches(&csv(&noisy)) == Err(BranchError::Swapped));
 }
 
 #[test]
