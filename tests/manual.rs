@@ -34,7 +34,7 @@ const PARTS: [&str; 12] = [
     "preset keys",
     "output: -h",
     "output: cycle fig-9-weak",
-    "output: fit shipped:lens.csv lens --free E*,gamma,data.offset",
+    "output: fit lens",
     "output: presets list",
     "output: sweep quantities",
     "output: trace wavy-sphere | head -1",

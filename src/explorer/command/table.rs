@@ -89,7 +89,7 @@ commands! {
         MuchLess "much-less" Parameter "much less": "the selected value, much less";
         MuchMore "much-more" Parameter "much more": "the selected value, much more";
         Free "free" Parameter "free": "let a fit change the selected value, or no longer";
-        Fit "fit" Nothing "fit": "fit the free values to the measured curve; again, or Esc, ends with the best so far";
+        Fit "fit" Nothing "fit": "fit the free values to the measured curve; Esc takes the best so far";
         Edit "edit" Nothing ("value") "type value": "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there";
         Data "data" Nothing ("file, or none") "data": "a measured curve behind the chart, to compare and to fit; none takes it away";
         Assign "set" Nothing ("KEY=VALUE ...") "set": "other values for some keys, as one change";
