@@ -128,6 +128,12 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
         assert!((found - truth).abs() < 4.0 * error && error < 0.05 * truth, "{key}: {found} ± {error}");
     }
     assert_eq!(session.model.curve.as_ref().unwrap().setting.preset.material, session.model.preset.material);
+    // A script leads to the same values without a fit.
+    let mut again = Session::new("lens");
+    for line in session.model.script().unwrap() {
+        says(&mut again, &line);
+    }
+    assert_eq!(again.model.preset, session.model.preset);
     // Another value has no error; u takes the whole fit back.
     let fitted = session.model.preset.clone();
     session.set(adhesion, "60 mJ/m^2");

@@ -73,6 +73,8 @@ impl Late {
                 | Effect::File(_)
                 | Effect::StopCurve(_)
                 | Effect::StopPins
+                | Effect::Fit(_)
+                | Effect::StopFit(_)
                 | Effect::Pin(..) => {}
                 // Nothing that is walked depends on it.
                 Effect::Loop(_) | Effect::Map(_) | Effect::Distances(_) => continue,

@@ -7,7 +7,7 @@ use crate::explorer::command::ROWS;
 use crate::explorer::export::ExportKind;
 use crate::explorer::maps::CURVES;
 use crate::explorer::view::Overlay;
-use crate::store::shipped::{CURVES, SHIPPED};
+use crate::store::shipped::{self, SHIPPED};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
@@ -57,7 +57,7 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["set" | "open", ..] => assignments(word, preset),
         ["control"] => owned(["displacement", "force", "stiffness="]),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
-        ["data"] => owned(CURVES.iter().map(|shipped| shipped.name))
+        ["data"] => owned(shipped::CURVES.iter().map(|shipped| shipped.name))
             .into_iter()
             .map(|name| format!("{SHIPPED_DATA}{name}"))
             .chain([NONE.to_owned()])
