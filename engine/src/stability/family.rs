@@ -12,7 +12,7 @@ use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
 use crate::quasistatic::start::{StartError, contact_radius};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The values of the numbers left open, as shares of their axes.
 pub type At<'a> = &'a [f64];
@@ -49,8 +49,30 @@ pub struct Family {
     /// The table of the gap where no axis changes it.
     own: Option<Arc<Table>>,
     kept: Kept<Shape>,
+    /// The preset as it is.
+    base: Arc<Made>,
+    /// The last members made, with the bits of the numbers that change their gaps.
+    made: Mutex<Vec<(Vec<u64>, Arc<Made>)>>,
     /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path.
     pub radii: [f64; 2],
+}
+
+/// Members kept: the differences of one place ask for three gaps.
+const KEPT: usize = 4;
+
+/// A preset whose gap is a member's, with what follows from it; what leaves the gap alone is not set.
+#[derive(Debug)]
+struct Made {
+    preset: Preset,
+    reduced: Reduced,
+    table: OnceLock<Arc<Table>>,
+}
+
+impl Made {
+    fn of(preset: Preset, length: f64) -> Arc<Self> {
+        let reduced = preset.problem().reduced_by(length);
+        Arc::new(Self { preset, reduced, table: OnceLock::new() })
+    }
 }
 
 /// Why there is no family.
@@ -139,6 +161,8 @@ impl Family {
             ends: None,
             own: None,
             kept: Mutex::default(),
+            base: Made::of(preset.clone(), length),
+            made: Mutex::default(),
             radii: [0.0; 2],
         };
         family.roles = family.axes.iter().map(|axis| family.role(axis)).collect::<Result<_, _>>()?;
@@ -151,14 +175,14 @@ impl Family {
             } else {
                 let axis = family.axes[linear].clone();
                 let [lo, hi] = axis.range.map(|value| family.with(&[(&axis, value)]));
-                family.ends = Some([family.table(&lo?)?, family.table(&hi?)?]);
+                let [lo, hi] = [Made::of(lo?, length), Made::of(hi?, length)];
+                family.ends = Some([family.table(&lo)?, family.table(&hi)?]);
             }
         } else if !others {
-            family.own = Some(family.table(&family.preset)?);
+            family.own = Some(family.table(&family.base)?);
         }
-        let base = family.preset.clone();
-        let start = family.start_of(&base, family.reduced(&base).work_of_adhesion)?;
-        family.radii = [base.end_contact_radius(start * length) / length, start];
+        let start = family.start_of(&family.base, family.base.reduced.work_of_adhesion)?;
+        family.radii = [preset.end_contact_radius(start * length) / length, start];
         Ok(family)
     }
 
@@ -175,24 +199,38 @@ impl Family {
         Ok(preset)
     }
 
-    /// The whole preset of a member.
-    ///
-    /// # Errors
-    /// A value is out of its range.
-    pub fn preset_at(&self, at: At<'_>) -> Result<Preset, Invalid> {
-        let values: Vec<(&Axis, f64)> =
-            self.axes.iter().zip(at).map(|(axis, share)| (axis, axis.value(*share))).collect();
-        self.with(&values)
+    /// The gap at these shares: the last ones are kept.
+    fn made(&self, at: At<'_>) -> Result<Arc<Made>, FamilyError> {
+        let values: Vec<(&Axis, f64)> = (0..self.axes.len())
+            .filter(|k| !self.keeps_gap(*k))
+            .map(|k| (&self.axes[k], self.axes[k].value(at[k])))
+            .collect();
+        if values.is_empty() {
+            return Ok(Arc::clone(&self.base));
+        }
+        let key: Vec<u64> = values.iter().map(|(_, value)| value.to_bits()).collect();
+        let lock = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, made)) = lock().iter().find(|(known, _)| *known == key) {
+            return Ok(Arc::clone(made));
+        }
+        let made = Made::of(self.with(&values)?, self.length);
+        let mut kept = lock();
+        if kept.len() >= KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, Arc::clone(&made)));
+        Ok(made)
     }
 
-    fn reduced(&self, preset: &Preset) -> Reduced {
-        preset.problem().reduced_by(self.length)
-    }
-
-    fn table(&self, preset: &Preset) -> Result<Arc<Table>, TableError> {
-        let reduced = self.reduced(preset);
-        let reach = self.reach(preset);
-        Table::shared(&self.kept, &preset.gap, &reduced.gap, reach, &mut || true)
+    fn table(&self, made: &Made) -> Result<Arc<Table>, TableError> {
+        let reach = self.reach(&made.preset);
+        if let Some(table) = made.table.get() {
+            table.up_to(reach)?;
+            return Ok(Arc::clone(table));
+        }
+        let gap = &made.reduced.gap;
+        let table = Table::shared(&self.kept, &made.preset.gap, gap, reach, &mut || true)?;
+        Ok(Arc::clone(made.table.get_or_init(|| table)))
     }
 
     fn reach(&self, preset: &Preset) -> f64 {
@@ -203,15 +241,15 @@ impl Family {
     }
 
     /// The contact radius at the start, reduced.
-    fn start_of(&self, preset: &Preset, work_of_adhesion: f64) -> Result<f64, FamilyError> {
-        let reduced = self.reduced(preset);
+    fn start_of(&self, made: &Made, work_of_adhesion: f64) -> Result<f64, FamilyError> {
+        let reduced = made.reduced.clone();
         let (length, force) = (reduced.units.length, reduced.units.force);
-        let wanted = match preset.path.start {
+        let wanted = match made.preset.path.start {
             Start::ContactRadius(s) => return Ok(s / length),
             Start::Approach(delta) => Start::Approach(delta / length),
             Start::Force(p) => Start::Force(p / force),
         };
-        let basis = Exact::new(self.table(preset)?, self.reach(preset));
+        let basis = Exact::new(self.table(made)?, self.reach(&made.preset));
         let reduced = Reduced { work_of_adhesion, ..reduced };
         Ok(contact_radius(&reduced, &basis, wanted, &mut || true)?)
     }
@@ -235,7 +273,9 @@ impl Family {
             let [a, b, m] =
                 [lo, hi, middle].map(|value| self.with(&[&corner[..], &[(axis, value)]].concat()));
             let (a, b, m) = (a?, b?, m?);
-            let factor = |preset: &Preset, value: f64| self.reduced(preset).work_of_adhesion / value;
+            let factor = |preset: &Preset, value: f64| {
+                preset.problem().reduced_by(self.length).work_of_adhesion / value
+            };
             let same = |preset: &Preset| preset.material == b.material && preset.path == b.path;
             let proportional = (factor(&m, middle) / factor(&b, hi) - 1.0).abs() <= ROUNDING;
             let role = if a.gap == b.gap && a.path == b.path && factor(&b, hi) > 0.0 && proportional {
@@ -299,28 +339,23 @@ impl Family {
     /// The member at these shares: its adhesion and device, and its preset where some number asks for it.
     pub fn member(&self, at: At<'_>) -> Result<Member<'_>, FamilyError> {
         let value = |k: usize| self.axes[k].value(at[k]);
-        let asks: Vec<(&Axis, f64)> = (0..self.axes.len())
-            .filter(|k| self.roles[*k] == Role::Other)
-            .map(|k| (&self.axes[k], value(k)))
-            .collect();
-        let (mut source, made) = if asks.is_empty() {
-            (None, None)
-        } else {
-            let preset = self.with(&asks)?;
-            let source = match self.reduced(&preset).gap.form() {
+        let (mut source, made) = if self.roles.contains(&Role::Other) {
+            let made = self.made(at)?;
+            let source = match made.reduced.gap.form() {
                 Form::Waves { curvature, waves } => Source::Waves { curvature, waves },
-                _ => Source::One(self.table(&preset)?.up_to(self.radii[1].max(self.reach(&preset)))?),
+                _ => Source::One(self.table(&made)?.up_to(self.radii[1].max(self.reach(&made.preset)))?),
             };
-            (Some(source), Some(preset))
+            (Some(source), made)
+        } else {
+            (None, Arc::clone(&self.base))
         };
-        let reduced = self.reduced(made.as_ref().unwrap_or(&self.preset));
-        let mut work_of_adhesion = reduced.work_of_adhesion;
-        let mut control =
-            made.as_ref().unwrap_or(&self.preset).path.control.in_units(reduced.units.stiffness);
+        let units = made.reduced.units;
+        let mut work_of_adhesion = made.reduced.work_of_adhesion;
+        let mut control = made.preset.path.control.in_units(units.stiffness);
         for (k, role) in self.roles.iter().enumerate() {
             match role {
                 Role::Adhesion(factor) => work_of_adhesion = factor * value(k),
-                Role::Device => control = device(value(k)).in_units(reduced.units.stiffness),
+                Role::Device => control = device(value(k)).in_units(units.stiffness),
                 Role::Linear => {
                     if let Some([lo, hi]) = &self.ends {
                         let [from, to] = self.axes[k].range;
@@ -339,7 +374,7 @@ impl Family {
             let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
             Source::One(own.up_to(reach)?)
         };
-        Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control, made })
+        Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control })
     }
 }
 
@@ -378,7 +413,6 @@ pub struct Member<'a> {
     pub work_of_adhesion: f64,
     /// The device.
     pub control: Control,
-    made: Option<Preset>,
 }
 
 impl Member<'_> {
@@ -420,10 +454,12 @@ impl Member<'_> {
     /// The gap cannot be tabulated.
     pub fn law(&self, at: At<'_>) -> Result<Law, FamilyError> {
         let family = self.family;
-        let panels = match (&self.source, &self.made) {
-            (Source::One(panels), _) => Arc::clone(panels),
-            (_, Some(preset)) => family.table(preset)?.up_to(family.radii[1])?,
-            (_, None) => family.table(&family.preset_at(at)?)?.up_to(family.radii[1])?,
+        let panels = match &self.source {
+            Source::One(panels) => Arc::clone(panels),
+            _ => {
+                let made = family.made(at)?;
+                family.table(&made)?.up_to(family.radii[1])?
+            }
         };
         Ok(Law { panels, control: self.control })
     }
@@ -434,14 +470,10 @@ impl Member<'_> {
     /// [`FamilyError`].
     pub fn ground(&self, at: At<'_>) -> Result<(Exact, Reduced, [f64; 2]), FamilyError> {
         let family = self.family;
-        let preset = match (&self.made, &self.source) {
-            (Some(preset), _) => preset.clone(),
-            (None, Source::One(_)) => family.preset.clone(),
-            (None, _) => family.preset_at(at)?,
-        };
-        let start = family.start_of(&preset, self.work_of_adhesion)?;
-        let end = preset.end_contact_radius(start * family.length) / family.length;
-        let reduced = Reduced { work_of_adhesion: self.work_of_adhesion, ..family.reduced(&preset) };
-        Ok((Exact::new(family.table(&preset)?, start), reduced, [end, start]))
+        let made = family.made(at)?;
+        let start = family.start_of(&made, self.work_of_adhesion)?;
+        let end = made.preset.end_contact_radius(start * family.length) / family.length;
+        let reduced = Reduced { work_of_adhesion: self.work_of_adhesion, ..made.reduced.clone() };
+        Ok((Exact::new(family.table(&made)?, start), reduced, [end, start]))
     }
 }
