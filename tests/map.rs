@@ -60,13 +60,12 @@ fn the_counts_are_those_of_a_sweep_and_it_is_drawn_over_one() {
         json["counts"][key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
     let (x, y) = (numbers("x"), numbers("y"));
-    // Every sixth of both.
-    let some = |all: &[f64]| all.iter().step_by(6).map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
+    let all = |all: &[f64]| all.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
     let spec = format!(
         "preset = \"wavy-sphere\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"groups.amplitude_over_wavelength\"\nvalues = [{}]\n\
          [[axis]]\nkey = \"groups.adhesion\"\nvalues = [{}]\n",
-        some(&x),
-        some(&y)
+        all(&x),
+        all(&y)
     );
     fs::write(folder.join("sweep.toml"), spec).unwrap();
     text(folder, &["sweep", "sweep.toml", "-o", "sweep.csv"]);
@@ -86,7 +85,7 @@ fn the_counts_are_those_of_a_sweep_and_it_is_drawn_over_one() {
         assert_eq!(ours.to_bits(), snaps.to_bits(), "{row:?}");
         compared += 1;
     }
-    assert!(compared > 50, "{compared}");
+    assert_eq!(compared, x.len() * y.len());
     text(folder, &[&["map", "wavy-sphere"][..], &MAP, &["--over", "sweep.csv", "-o", "over.svg"]].concat());
     let picture = fs::read_to_string(folder.join("over.svg")).unwrap();
     assert!(picture.contains("line of cusps") && picture.contains("line of landings"));
@@ -102,6 +101,63 @@ fn limit_points_over_one_number() {
 }
 
 #[test]
+fn files_are_replaced_only_when_told_and_figures_are_of_their_format() {
+    let home = tempfile::tempdir().unwrap();
+    let folds = ["map", "--x-key", "groups.adhesion=log:0.005..0.2", "--y", "approach"];
+    fs::write(home.path().join("a.csv"), "mine").unwrap();
+    let again = pulloff(home.path(), &[&folds[..], &["-o", "a.csv"]].concat());
+    assert_eq!(again.status.code(), Some(2));
+    text(home.path(), &[&folds[..], &["-o", "a.csv", "--overwrite"]].concat());
+    let rows = fs::read_to_string(home.path().join("a.csv")).unwrap();
+    assert!(rows.starts_with("line,kind,crest,"), "{rows}");
+    // A logarithmic axis begins where it was told to, and -o - is standard output.
+    assert_eq!(text(home.path(), &[&folds[..], &["-o", "-"]].concat()), rows);
+    let numbers = rows.lines().skip(1).filter_map(|row| row.split(',').nth(4)?.parse::<f64>().ok());
+    let [lo, hi] = numbers.fold([f64::INFINITY, 0.0], |[lo, hi]: [f64; 2], x| [lo.min(x), hi.max(x)]);
+    assert!((lo / 0.005 - 1.0).abs() < 1e-9 && (hi / 0.2 - 1.0).abs() < 1e-9, "{lo} {hi}");
+    let document: serde_json::Value = {
+        text(home.path(), &[&folds[..], &["-o", "a.json"]].concat());
+        serde_json::from_slice(&fs::read(home.path().join("a.json")).unwrap()).unwrap()
+    };
+    assert_eq!(
+        (&document["x"]["logarithmic"], &document["counts"]),
+        (&true.into(), &serde_json::Value::Null)
+    );
+    assert_eq!(document["rows"].as_array().unwrap().len(), rows.lines().count() - 1);
+    text(home.path(), &[&folds[..], &["-o", "a.png"]].concat());
+    assert!(fs::read(home.path().join("a.png")).unwrap().starts_with(b"\x89PNG"));
+    let pdf = pulloff(home.path(), &[&folds[..], &["-o", "a.pdf"]].concat());
+    if cfg!(feature = "pdf") {
+        assert!(fs::read(home.path().join("a.pdf")).unwrap().starts_with(b"%PDF"));
+    } else {
+        let said = String::from_utf8_lossy(&pdf.stderr).into_owned();
+        assert!(pdf.status.code() == Some(2) && said.contains("writes no PDF"), "{said}");
+        assert!(!home.path().join("a.pdf").exists());
+    }
+}
+
+#[test]
+fn results_of_another_sweep_are_not_drawn_under_the_lines() {
+    let home = tempfile::tempdir().unwrap();
+    let spec = "preset = \"wavy-sphere\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [1e-4, 2e-4]\n\
+                [[axis]]\nkey = \"groups.adhesion\"\nvalues = [0.01, 0.02]\n";
+    fs::write(home.path().join("sweep.toml"), spec).unwrap();
+    text(home.path(), &["sweep", "sweep.toml", "-o", "sweep.csv"]);
+    for (more, words) in [
+        (
+            &["--over", "sweep.csv", "-o", "a.svg"][..],
+            "is a sweep over gap.amplitude and groups.adhesion, not over",
+        ),
+        (&["--over", "sweep.csv", "-o", "a.csv"], "under the lines of a figure"),
+        (&["--over", "none.csv", "-o", "a.svg"], "none.csv"),
+    ] {
+        let output = pulloff(home.path(), &[&["map", "wavy-sphere"][..], &MAP, more].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(words), "{more:?}: {said}");
+    }
+}
+
+#[test]
 fn refusals_name_what_is_wrong_and_keep_files() {
     let home = tempfile::tempdir().unwrap();
     fs::write(home.path().join("there.csv"), "mine").unwrap();
@@ -114,6 +170,10 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("groups.adhesion=1..0.5"), "from a number to a larger one"),
         (over("groups.adhesion=log:0..1"), "begins above zero"),
         (over("basis.kind=1..2"), "an axis is a number"),
+        (over("gap.amplitude=nan..1"), "gap.amplitude = NaN is out of range"),
+        (over("gap.amplitude=0..inf"), "gap.amplitude = inf is out of range"),
+        (over("compliance=-1..inf"), "only a compliance goes on to infinity"),
+        (over("path.start_contact_radius=0.2..20"), "at most 10 x the radius of curvature"),
         (
             [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.csv".into()]].concat(),
             "exists already",
