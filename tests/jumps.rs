@@ -6,6 +6,7 @@
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
 use pulloff::explorer::{CurveData, NodeKind};
 use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Begin, Control, Start};
 use pulloff_engine::quasistatic::Turn;
@@ -17,6 +18,7 @@ const START: f64 = 0.45;
 fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Control) -> Preset {
     Preset {
         title: String::new(),
+        data: DataSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
