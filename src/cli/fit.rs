@@ -340,7 +340,6 @@ impl Arguments {
             scan: !self.no_scan,
             profile: self.profile,
             bootstrap: self.bootstrap.map(|count| (usize::try_from(count).unwrap_or(usize::MAX), self.seed)),
-            ..Options::default()
         };
         if options.free.is_empty() {
             return Err(Failure::Usage(FitError::NothingFree.to_string()));

@@ -147,9 +147,10 @@ mod tests {
     /// A folder with a table without units, one in micrometres, and one of an instrument that states its spring.
     fn folder() -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
-        let rows: String = (0..20).map(|i| format!("{}\t{}\n", -i, 0.1 * f64::from(i))).collect();
+        let rows: Vec<String> = (0..20).map(|i| format!("{}\t{}", -i, 0.1 * f64::from(i))).collect();
+        let rows = rows.join("\n");
         let put = |name: &str, head: &str| {
-            std::fs::write(folder.path().join(name), format!("{head}{rows}")).unwrap()
+            std::fs::write(folder.path().join(name), format!("{head}{rows}")).unwrap();
         };
         put("plain.txt", "delta\tforce\n");
         put("units.txt", "delta [um]\tforce [uN]\n");

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Presets, settings and the rows of profiles, by number.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Problems {
-    presets: Vec<Text>,
+    presets: Vec<Saved>,
     settings: Vec<Scaled>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     profiles: Vec<Profile>,
@@ -31,7 +31,7 @@ pub(super) struct Problems {
 
 /// A preset as its file.
 #[derive(Debug, PartialEq, Eq, Hash, Clone, Serialize, Deserialize)]
-struct Text {
+struct Saved {
     text: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     profile: Option<usize>,
@@ -80,13 +80,11 @@ impl From<Curve> for WrittenCurve {
 impl From<WrittenCurve> for Curve {
     fn from(WrittenCurve { name, folder, data, text }: WrittenCurve) -> Self {
         let folder = folder.map(Place::path);
-        match data {
-            Some(data) => Self::Beside { data, name, folder },
-            None => {
-                let bytes = text.unwrap_or_default().into_bytes();
-                Self::Within(Arc::new(Source::new(name, folder, bytes.into())))
-            }
+        if let Some(data) = data {
+            return Self::Beside { data, name, folder };
         }
+        let bytes = text.unwrap_or_default().into_bytes();
+        Self::Within(Arc::new(Source::new(name, folder, bytes.into())))
     }
 }
 
@@ -157,7 +155,7 @@ pub enum Aside {
 #[derive(Default)]
 pub(super) struct Collector {
     problems: Problems,
-    texts: HashMap<Text, usize>,
+    texts: HashMap<Saved, usize>,
     /// The settings seen, by where they are: nodes share them.
     settings: HashMap<*const Setting, usize>,
     rows: Vec<Arc<Rows>>,
@@ -171,7 +169,7 @@ impl Collector {
             _ => None,
         };
         let curve = preset.data.source.as_ref().map(|source| self.curve(source));
-        let text = Text { text: write(preset), profile, curve };
+        let text = Saved { text: write(preset), profile, curve };
         let presets = &mut self.problems.presets;
         *self.texts.entry(text).or_insert_with_key(|text| {
             presets.push(text.clone());
@@ -326,7 +324,7 @@ impl Problems {
             Curve::Beside { .. } => Err(missing("measured curve")),
         };
         let curves = self.curves.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
-        let preset = |saved: &Text| {
+        let preset = |saved: &Saved| {
             let mut held = Held::default();
             if let Some(at) = saved.profile {
                 held.rows = profiles.get(at).cloned().ok_or_else(|| missing("profile"))?;
