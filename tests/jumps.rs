@@ -31,7 +31,6 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
             begin: Begin::Disc,
             turn: None,
         },
-        data: pulloff_engine::preset::data::DataSpec::default(),
     }
 }
 
