@@ -83,7 +83,6 @@ pub fn fitted(
         scan,
         profile,
         bootstrap,
-        ..Options::default()
     };
     let made = long(py, progress, |go_on| fit_own(&preset, &options, &mut |share| go_on(share)))?;
     let made = made.map_err(|error| match error {

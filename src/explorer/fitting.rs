@@ -3,6 +3,7 @@
 //! Both take longer than a frame and are done by a worker. A fit ends with one change of the values, which is taken back as
 //! one command; what it says of them stands beside them for as long as they are what it found.
 
+use super::command::Id;
 use super::model::{Level, Model};
 use super::requests::change;
 use super::{Effect, View};
@@ -104,6 +105,12 @@ pub fn is_free(preset: &Preset, key: &str) -> bool {
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
     if let Some(fitting) = &model.fitting {
         return vec![Effect::StopFit(fitting.id)];
+    }
+    if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
+        let text =
+            format!("nothing is free to be fitted: {} lets the selected value change", Id::Free.named());
+        model.tell(Level::Error, text);
+        return Vec::new();
     }
     let wish = FitWish { id: model.number(), preset: model.preset.clone() };
     model.fitting = Some(Fitting { id: wish.id, preset: wish.preset.clone(), percent: 0 });

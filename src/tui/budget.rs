@@ -195,6 +195,8 @@ fn a_step_costs_less_than_one_and_a_half_kilobytes() {
         ("fig-1-hertz", (120, 40), 3, 1500),
         ("fig-3-jkr", (120, 40), 0, 1500),
         ("fig-10-force", (120, 40), 0, 1500),
+        // With measured points behind the curve.
+        ("lens", (120, 40), 0, 1500),
     ] {
         let bytes = costliest_step(preset, size, THEMES[0], views);
         assert!(bytes < most, "{bytes} bytes for {preset} at {size:?}");

@@ -114,26 +114,28 @@ fn knob_line(
     width: u16,
 ) -> Line<'static> {
     let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
+    // A standard error is worth more than the signs that the value can be turned.
+    let ends = if error.is_some() { "" } else { ends };
+    let error = error.map_or_else(String::new, |error| {
+        theme.text(&format!(" ±{}", short(row.shown(units, error).number.abs(), 2)))
+    });
     let name = theme.symbols(&row.label);
-    let label = format!("{mark}{:<9} ", if is_free { format!("{name}*") } else { name });
+    let label = format!("{mark}{:<9} ", if is_free { format!("{name}?") } else { name });
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
+    let room_of_number = room.saturating_sub(error.chars().count());
     // As many digits as there is room for, so that no unit is cut.
     let shown = |x, most: usize| {
         let shown = row.shown(units, x);
         let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
-        (4..=most).rev().map(text).find(|text| text.chars().count() <= room).unwrap_or_else(|| text(3))
+        (4..=most)
+            .rev()
+            .map(text)
+            .find(|text| text.chars().count() <= room_of_number)
+            .unwrap_or_else(|| text(3))
     };
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => match error {
-            // As many digits as the error leaves a meaning.
-            Some(error) => {
-                let own = |x| row.shown(units, x).number;
-                let between = theme.text("±");
-                format!("{} {between}{}", shown(*x, 5), short(own(error).abs(), 2))
-            }
-            None => shown(*x, 7),
-        },
+        Some(Value::Number(x)) => shown(*x, 7) + &error,
         Some(Value::Control(Control::Stiffness(k))) => {
             format!("k {}", shown(*k, 5))
         }

@@ -292,6 +292,25 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
 }
 
 #[test]
+fn free_values_and_their_errors_are_seen_in_the_panel() {
+    let mut screen = Screen::new("lens");
+    let before = screen.text(100, 30);
+    assert!(
+        before.contains("E*?") && before.contains("measured approach") && !before.contains('±'),
+        "{before}"
+    );
+    screen.keys("F");
+    let after = screen.text(100, 30);
+    assert!(after.contains(" kPa ±0.66") && after.contains("fitted: χ²"), "{after}");
+    let narrow = screen.text(80, 24);
+    assert!(narrow.contains("kPa ±0.66"), "{narrow}");
+    screen.app.theme = PLAIN;
+    assert!(screen.text(100, 30).contains(" kPa +-0.66"), "{}", screen.text(100, 30));
+    screen.keys("u");
+    assert!(!screen.text(100, 30).contains(" kPa +-"));
+}
+
+#[test]
 fn zooming_keeps_the_walker_in_place_and_fit_shows_all_again() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("nx");
