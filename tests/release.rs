@@ -1,0 +1,96 @@
+//! What is handed out: `scripts/release.sh` packs a program, and its Debian package is installed and removed.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn run(command: &mut Command) -> Output {
+    command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"))
+}
+
+fn release(folder: &Path, parts: &str) -> Output {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/release.sh");
+    let mut command = Command::new("bash");
+    run(command.arg(script).arg(folder).env("PROGRAM", env!("CARGO_BIN_EXE_pulloff")).env("PARTS", parts))
+}
+
+fn file(folder: &Path, ending: &str) -> String {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(ending)).collect::<Vec<_>>().concat()
+}
+
+#[test]
+fn the_archive_holds_the_program_with_its_papers_and_its_sum() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = release(folder.path(), "tar");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let archive = file(folder.path(), ".tar.gz");
+    let listed = run(Command::new("tar").arg("-tzf").arg(folder.path().join(&archive)));
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    for name in [
+        "/bin/pulloff",
+        "/share/man/man1/pulloff.1",
+        "/share/bash-completion/completions/pulloff",
+        "/share/zsh/vendor-completions/_pulloff",
+        "/share/fish/vendor_completions.d/pulloff.fish",
+        "/share/doc/pulloff/LICENSE-MIT",
+        "/share/doc/pulloff/LICENSE-APACHE",
+    ] {
+        assert!(listed.lines().any(|line| line.ends_with(name)), "{name} is not in {listed}");
+    }
+    let sums = run(Command::new("sha256sum").arg("-c").arg("SHA256SUMS").current_dir(folder.path()));
+    assert!(sums.status.success() && !sums.stdout.is_empty());
+    // Unpacked, it runs.
+    run(Command::new("tar").arg("-xzf").arg(&archive).current_dir(folder.path()));
+    let program = folder.path().join(archive.trim_end_matches(".tar.gz")).join("bin/pulloff");
+    assert!(run(Command::new(program).arg("--version")).status.success());
+}
+
+#[test]
+fn the_package_is_installed_and_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = release(folder.path(), "deb");
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    if done.status.code() == Some(3) {
+        assert!(said.contains("dpkg-deb is not here"), "{said}");
+        eprintln!("LEFT OUT: {said}");
+        return;
+    }
+    assert!(done.status.success(), "{said}");
+    // Into a root of its own, with a list of packages of its own.
+    let root = folder.path().join("root");
+    for below in ["var/lib/dpkg/info", "var/lib/dpkg/updates", "var/log"] {
+        fs::create_dir_all(root.join(below)).unwrap();
+    }
+    for list in ["status", "available"] {
+        fs::write(root.join("var/lib/dpkg").join(list), "").unwrap();
+    }
+    let dpkg = |arguments: &[&str]| {
+        let mut command = Command::new("dpkg");
+        command.arg(format!("--root={}", root.display())).args(["--force-not-root", "--force-bad-path"]);
+        let done = run(command.args(arguments).current_dir(folder.path()));
+        assert!(done.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+    };
+    let program = root.join("usr/bin/pulloff");
+    dpkg(&["-i", &file(folder.path(), ".deb")]);
+    assert!(run(Command::new(&program).arg("--version")).status.success());
+    assert!(root.join("usr/share/man/man1/pulloff.1.gz").exists());
+    dpkg(&["-r", "pulloff"]);
+    assert!(!program.exists() && !root.join("usr/share/doc/pulloff").exists());
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_with_a_sentence() {
+    let has = |program: &str| Command::new(program).arg("--version").output().is_ok();
+    if has("maturin") && has("zig") {
+        eprintln!("LEFT OUT: the toolchain of the wheels is here, and building them takes long");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let done = release(folder.path(), "wheels");
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(3), "{said}");
+    assert!(said.contains("maturin and zig are needed"), "{said}");
+}
