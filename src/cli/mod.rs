@@ -29,6 +29,7 @@ mod problem;
 mod run;
 mod sessions;
 mod sweep;
+mod sweep_status;
 mod trace;
 mod unload;
 mod verify;

@@ -1,15 +1,18 @@
 //! `pulloff sweep`: many problems into one file, and shards of it joined.
 
+use super::sweep_status::Reporter;
 use super::{Failure, output};
 use crate::store::stream;
-use crate::sweep::{Existing, Output, OutputError, Shard, Summary, merge, run as compute, spec};
+use crate::sweep::{
+    Existing, Means, Output, OutputError, Shard, Summary, check, merge, run as compute, spec,
+};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pulloff_engine::report::number::{short, significant};
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::Design;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
-use pulloff_engine::text::show_name;
+use pulloff_engine::text::{quote, show_name, show_path};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::fmt::Write as _;
@@ -47,6 +50,12 @@ enum Command {
         #[arg(long)]
         overwrite: bool,
     },
+    /// Look at results without computing: whether they are whole and of the sweep beside them
+    Check {
+        /// The results, of a sweep or of a shard
+        #[arg(value_name = "RESULTS.csv")]
+        results: PathBuf,
+    },
     /// List the quantities that a sweep can compute
     Quantities,
 }
@@ -66,6 +75,12 @@ struct Sweep {
     /// Compute the part i of n alone, such as 3/8
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
+    /// Give a row up after this time, such as 10s or 2min; its error says so
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    row_limit: Option<Duration>,
+    /// Say in this file how far it is: JSON, replaced as a whole about every second
+    #[arg(long, value_name = "FILE")]
+    status: Option<PathBuf>,
     /// Replace results that are there
     #[arg(long)]
     overwrite: bool,
@@ -90,10 +105,52 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             say(&format!("{rows} rows of {shards} shards in {}", stream::shown(output)));
             Ok(ExitCode::SUCCESS)
         }
+        (Some(Command::Check { results }), _) => {
+            output::write(&checked(results)?, None)?;
+            Ok(ExitCode::SUCCESS)
+        }
         (None, Some(sweep)) => sweep.run(),
         // clap asks for the arguments first.
         (None, None) => Err(Failure::Usage("sweep needs SPEC.toml and -o RESULTS.csv".to_owned())),
     }
+}
+
+/// A time such as 10s, 500ms or 2min; a bare number counts seconds.
+fn time(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("\"{}\" is no time above 0 such as 10s, 500ms or 2min", quote(text));
+    let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let factor = match unit {
+        "s" | "" => 1.0,
+        "ms" => 1e-3,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let seconds = number.trim().parse::<f64>().map_err(|_| wrong())? * factor;
+    Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero()).ok_or_else(wrong)
+}
+
+/// What results are, in words.
+fn checked(results: &Path) -> Result<String, Failure> {
+    let found = check(results)?;
+    let shard =
+        if found.shard == Shard::WHOLE { String::new() } else { format!(" of shard {}", found.shard) };
+    let state = if found.rows == found.of { "complete" } else { "the same command goes on from there" };
+    let mut text = format!("{}: {} of {} rows{shard}, {state}\n", show_path(results), found.rows, found.of);
+    let faults: Vec<String> = found.faults.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
+    // Writing to a String cannot fail.
+    let _ = write!(
+        text,
+        "hash     {}\ncolumns  {}\nerrors   {}\n",
+        found.identity,
+        found.columns.join(", "),
+        if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }
+    );
+    if found.is_torn {
+        text.push_str("The last line is torn: the next run cuts it off.\n");
+    }
+    Ok(text)
 }
 
 fn existing(overwrite: bool) -> Existing {
@@ -153,10 +210,15 @@ impl Sweep {
         let stop = Stop::catch().map_err(cannot_catch)?;
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let jobs = self.jobs.map_or_else(cores, usize::from);
-        let bar = bar(self.shard.len(spec.rows), results.rows);
+        let [before, of] = [results.rows, self.shard.len(spec.rows)];
+        let files = [&*self.spec, &*self.output];
+        let mut status = Reporter::begin(self.status.as_deref(), files, self.shard, [before, of])?;
+        let bar = bar(of, before);
         let begun = Instant::now();
         let go_on = || stop.signal().is_none();
-        let summary = compute(&spec, self.shard, results, jobs, &go_on, |rows, faults| {
+        let means = Means { jobs, row_limit: self.row_limit };
+        let summary = compute(&spec, self.shard, results, means, &go_on, |rows, faults| {
+            status.tell(rows, faults);
             bar.set_position(rows);
             if faults > 0 {
                 bar.set_message(format!("{faults} with an error"));
@@ -164,6 +226,10 @@ impl Sweep {
         });
         bar.finish_and_clear();
         let summary = summary?;
+        status.end(&summary);
+        if let Some(trouble) = &status.trouble {
+            say(&format!("warning: the status is not that of the end: {trouble}"));
+        }
         self.tell(&spec, &summary, jobs, begun.elapsed());
         match stop.signal().filter(|_| !summary.is_complete()) {
             None => Ok(ExitCode::SUCCESS),

@@ -12,8 +12,10 @@
 //! | [`output`] | the file of the results: begun, gone on with, appended to |
 //! | [`shard`] | a part of the rows |
 //! | [`merge`](mod@merge) | parts joined |
+//! | [`check`](mod@check) | results looked at without computing |
 //! | [`results`] | the results read by the name of a column |
 
+pub mod check;
 pub mod merge;
 pub mod output;
 pub mod record;
@@ -23,8 +25,9 @@ pub mod shard;
 pub mod sidecar;
 pub mod spec;
 
+pub use check::check;
 pub use merge::merge;
 pub use output::{Existing, Output, OutputError};
 pub use results::Results;
-pub use run::{Summary, run};
+pub use run::{Means, Summary, run};
 pub use shard::Shard;

@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Condvar, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The most rows begun and not written: a slow one among fast ones, and a few megabytes.
 const WINDOW: u64 = 1 << 14;
@@ -38,7 +38,16 @@ impl Summary {
     }
 }
 
-/// Computes the rows of a part that `output` does not have, on `jobs` threads.
+/// What a run may use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Means {
+    /// Threads.
+    pub jobs: usize,
+    /// The longest that a row may take; then it has an error.
+    pub row_limit: Option<Duration>,
+}
+
+/// Computes the rows of a part that `output` does not have.
 ///
 /// `go_on` is asked often, by every thread; when it says no, what is done is kept. `written` is told how many rows there
 /// are and how many of them have faults, several times a second.
@@ -46,7 +55,7 @@ pub fn run(
     spec: &Spec,
     shard: Shard,
     mut output: Output,
-    jobs: usize,
+    means: Means,
     go_on: &(dyn Fn() -> bool + Sync),
     mut written: impl FnMut(u64, u64),
 ) -> Result<Summary, OutputError> {
@@ -55,26 +64,36 @@ pub fn run(
     let mut now = 0;
     let compute = |index: u64| {
         let row = shard.row(index);
-        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| go_on())));
-        let measured =
-            measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))))?;
+        let begun = Instant::now();
+        let is_late = || means.row_limit.is_some_and(|limit| begun.elapsed() > limit);
+        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| go_on() && !is_late())));
+        let measured = measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
+        let late = || means.row_limit.filter(|_| go_on()).map(|limit| spec.lost(Fault::of_limit(limit)));
+        let measured = measured.or_else(late)?;
         let reason = measured.fault.as_ref().map(|fault| fault.reason);
         Some((record::record(spec, row, &measured), reason))
     };
-    in_order(before..of, jobs, WINDOW, &compute, go_on, |item: Option<(String, Option<&'static str>)>| {
-        let result = match item {
-            Some((line, reason)) => {
-                now += 1;
-                if let Some(reason) = reason {
-                    *faults.entry(reason).or_default() += 1;
+    in_order(
+        before..of,
+        means.jobs,
+        WINDOW,
+        &compute,
+        go_on,
+        |item: Option<(String, Option<&'static str>)>| {
+            let result = match item {
+                Some((line, reason)) => {
+                    now += 1;
+                    if let Some(reason) = reason {
+                        *faults.entry(reason).or_default() += 1;
+                    }
+                    output.append(&line)
                 }
-                output.append(&line)
-            }
-            None => output.flush(),
-        };
-        written(before + now, faults.values().sum());
-        result
-    })?;
+                None => output.flush(),
+            };
+            written(before + now, faults.values().sum());
+            result
+        },
+    )?;
     output.finish()?;
     Ok(Summary { before, now, of, faults })
 }

@@ -5,6 +5,7 @@ use crate::preset::Invalid;
 use crate::text::sanitize;
 use std::any::Any;
 use std::fmt;
+use std::time::Duration;
 
 /// The longest text of a fault, in characters.
 const LONGEST: usize = 300;
@@ -17,7 +18,7 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 8] = [
+pub const REASONS: [&str; 9] = [
     "refused value",
     "no basis",
     "no start",
@@ -26,6 +27,7 @@ pub const REASONS: [&str; 8] = [
     "small start",
     "panic",
     "no loop",
+    "row limit",
 ];
 
 impl Fault {
@@ -56,6 +58,12 @@ impl Fault {
     #[must_use]
     pub fn incomplete(why: &str) -> Self {
         Self::new(REASONS[4], why)
+    }
+
+    /// A row that took longer than it may.
+    #[must_use]
+    pub fn of_limit(limit: Duration) -> Self {
+        Self::new(REASONS[8], &format!("it took longer than {} s", limit.as_secs_f64()))
     }
 
     /// A curve whose start cuts off the state at which something is smallest.

@@ -1,0 +1,93 @@
+//! Results looked at without computing anything: whether they are of the sweep beside them, and how far they are.
+
+use super::output::{Faults, OutputError};
+use super::record::{Layout, Wrong};
+use super::shard::Shard;
+use super::sidecar::{Sidecar, SidecarError};
+use crate::store::hash::sha256;
+use pulloff_engine::text::show_path;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// What results are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Checked {
+    /// The hash of all that the numbers follow from.
+    pub identity: String,
+    pub shard: Shard,
+    /// The whole rows that are there, and those of the whole part.
+    pub rows: u64,
+    pub of: u64,
+    /// The names of the columns.
+    pub columns: Vec<String>,
+    pub faults: Faults,
+    /// Whether a line was torn at the end; a run goes on before it.
+    pub is_torn: bool,
+}
+
+/// Checks the results at `path`: the hash beside them, the header, and in each row its number, its axes and its cells.
+/// Errors: The first line that is not what belongs there, and [`OutputError::NotOurs`].
+pub fn check(path: &Path) -> Result<Checked, OutputError> {
+    let shown = || show_path(path);
+    let not_ours = |cause| OutputError::NotOurs { path: shown(), cause };
+    let (sidecar, text) = Sidecar::read(path).map_err(not_ours)?;
+    let layout = sidecar.layout(path, &text).map_err(not_ours)?;
+    if hash(&text).as_ref() != Some(&sidecar.identity) {
+        let what = "the sweep in it has not the hash that stands there: it was changed by hand".to_owned();
+        let path = show_path(&super::sidecar::path(path));
+        return Err(not_ours(SidecarError::Unknown { path, what }));
+    }
+    let shard = sidecar.shard();
+    let of = shard.len(sidecar.rows);
+    let failed = |cause| OutputError::Io { path: shown(), doing: "read", cause };
+    let mut reader = BufReader::new(File::open(path).map_err(failed)?);
+    let mut checked = Checked {
+        identity: sidecar.identity.clone(),
+        shard,
+        rows: 0,
+        of,
+        columns: layout.columns.clone(),
+        faults: Faults::new(),
+        is_torn: false,
+    };
+    let (mut line, mut number) = (Vec::new(), 0);
+    loop {
+        line.clear();
+        if reader.read_until(b'\n', &mut line).map_err(failed)? == 0 {
+            return Ok(checked);
+        }
+        if line.last() != Some(&b'\n') {
+            checked.is_torn = true;
+            return Ok(checked);
+        }
+        number += 1;
+        let changed = |what| OutputError::Changed { path: shown(), line: number, what };
+        if number == 1 {
+            layout.check_header(&line).map_err(changed)?;
+            continue;
+        }
+        if let Some(reason) = fault(&layout, shard, checked.rows, of, &line).map_err(changed)? {
+            *checked.faults.entry(reason).or_default() += 1;
+        }
+        checked.rows += 1;
+    }
+}
+
+/// The reason for which a row is not whole.
+fn fault(
+    layout: &Layout,
+    shard: Shard,
+    index: u64,
+    of: u64,
+    line: &[u8],
+) -> Result<Option<&'static str>, Wrong> {
+    if index < of { layout.fault(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
+}
+
+/// The hash of the canonical form that stands in the file beside the results.
+fn hash(text: &str) -> Option<String> {
+    let (_, rest) = text.split_once("\n\n")?;
+    let end = rest.find("\n[[column]]\n").unwrap_or(rest.len());
+    Some(sha256(rest[..end].as_bytes()))
+}
