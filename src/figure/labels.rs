@@ -80,7 +80,7 @@ pub fn crests(report: &MapReport, x: &Places, y: &Places, bounds: &Bounds, marks
     let rows: Vec<&RowReport> = report.rows.iter().filter(is_line).filter(|row| row.line.is_some()).collect();
     let place = |row: &&RowReport| bounds.share((x.at(row.x), y.at(row.y)));
     let of_line = |a: &&RowReport, b: &&RowReport| a.line == b.line && a.kind == b.kind;
-    let mut lines: Vec<(f64, u32, Vec<(f64, f64)>)> = rows
+    let mut lines: Vec<_> = rows
         .chunk_by(of_line)
         .filter_map(|rows| {
             let points: Vec<(f64, f64)> = rows.iter().filter_map(place).collect();

@@ -186,7 +186,9 @@ fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f
         let pairs = line.points.windows(2).filter(|pair| (pair[0].0 - x) * (pair[1].0 - x) <= 0.0);
         let at = |pair: &[(f64, f64)]| {
             let [(a, from), (b, to)] = [pair[0], pair[1]];
-            let share = if a == b { 0.5 } else { (x - a) / (b - a) };
+            // Of a piece that goes straight up neither end is nearer.
+            let share = ((x - a) / (b - a)).clamp(0.0, 1.0);
+            let share = if share.is_nan() { 0.5 } else { share };
             (from + (to - from) * share - y).abs() / height
         };
         pairs.map(at).fold(f64::INFINITY, f64::min)

@@ -89,5 +89,5 @@ fn fault(
 fn hash(text: &str) -> Option<String> {
     let (_, rest) = text.split_once("\n\n")?;
     let end = rest.find("\n[[column]]\n").unwrap_or(rest.len());
-    Some(sha256(rest[..end].as_bytes()))
+    Some(sha256(&rest.as_bytes()[..end]))
 }

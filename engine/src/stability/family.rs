@@ -454,12 +454,11 @@ impl Member<'_> {
     /// The gap cannot be tabulated.
     pub fn law(&self, at: At<'_>) -> Result<Law, FamilyError> {
         let family = self.family;
-        let panels = match &self.source {
-            Source::One(panels) => Arc::clone(panels),
-            _ => {
-                let made = family.made(at)?;
-                family.table(&made)?.up_to(family.radii[1])?
-            }
+        let panels = if let Source::One(panels) = &self.source {
+            Arc::clone(panels)
+        } else {
+            let made = family.made(at)?;
+            family.table(&made)?.up_to(family.radii[1])?
         };
         Ok(Law { panels, control: self.control })
     }
