@@ -30,7 +30,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The arguments of `pulloff plot`.
 #[derive(Debug, Args)]
@@ -93,15 +93,11 @@ struct Shown(View);
 
 impl ValueEnum for Shown {
     fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [Shown; View::ALL.len()] = {
-            let mut all = [Shown(View::ForceApproach); View::ALL.len()];
-            let mut i = 0;
-            while i < all.len() {
-                all[i] = Shown(View::ALL[i]);
-                i += 1;
-            }
-            all
-        };
+        // Without a walk and a selection there is neither its table nor a study, which sweeps are for.
+        static ALL: LazyLock<Vec<Shown>> = LazyLock::new(|| {
+            let all = View::ALL.into_iter().filter(|view| !matches!(view, View::Walk | View::Study));
+            all.map(Shown).collect()
+        });
         &ALL
     }
 

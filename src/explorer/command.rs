@@ -11,6 +11,7 @@ pub use table::{Id, Needs, ROWS, Row, row_of};
 
 use super::view::{Overlay, Panel, View};
 use pulloff_engine::preset::Key;
+use pulloff_engine::sweep::Column;
 use std::path::PathBuf;
 
 /// A key and the text of its value.
@@ -65,6 +66,10 @@ pub enum Command {
         /// The place that stays where it is, in shares of the window.
         about: (f64, f64),
     },
+    /// Show this view, whether it has something to show or not.
+    Show(View),
+    /// Show this quantity over the range of the selected value.
+    Study(Column),
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
     /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).
@@ -144,6 +149,8 @@ impl Command {
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
+            Self::Show(_) => Id::ChooseView,
+            Self::Study(_) => Id::Study,
             Self::Overlay(_) => Id::Overlays,
             Self::GoTo { .. } | Self::GoToState(_) => Id::Branches,
             Self::Unpin(_) => Id::Pins,

@@ -15,6 +15,7 @@ use super::model::Model;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
 use super::saves::Saves;
+use super::studies::{StudyWish, threads};
 use super::update::answer;
 use super::walk::{self, Request};
 use crate::fault;
@@ -60,6 +61,10 @@ impl Inline {
                 wish.is_shown.then(|| wish.run(&|| true)).flatten().map(|found| Reply::Loop(Arc::new(found)))
             }
             Effect::Map(wish) => wish.run(&|| true).map(|found| Reply::Map(Arc::new(found))),
+            Effect::Study(wish) => {
+                let found = wish.run(threads(), &|| true, &mut |_| {});
+                found.map(|found| Reply::Study(Arc::new(found)))
+            }
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -113,6 +118,7 @@ pub struct Workers {
     profile: Arc<Slot<Box<Ask>>>,
     loops: Arc<Slot<Box<LoopWish>>>,
     maps: Arc<Slot<Box<MapWish>>>,
+    studies: Arc<Slot<Box<StudyWish>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
@@ -171,6 +177,7 @@ impl Workers {
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
         let (curve, profile, loops, maps) = (Slot::empty(), Slot::empty(), Slot::empty(), Slot::empty());
+        let studies = Slot::empty();
         let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
@@ -184,6 +191,8 @@ impl Workers {
         thread::Builder::new().name("loop".to_owned()).spawn(move || loop_lane(&slot, &send))?;
         let (slot, send) = (Arc::clone(&maps), reply.clone());
         thread::Builder::new().name("map".to_owned()).spawn(move || map_lane(&slot, &send))?;
+        let (slot, send) = (Arc::clone(&studies), reply.clone());
+        thread::Builder::new().name("study".to_owned()).spawn(move || study_lane(&slot, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -201,7 +210,19 @@ impl Workers {
         let (stop, send) = (Arc::clone(&stopped), reply.clone());
         thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
-        Ok(Self { curve, profile, loops, maps, walks, files, pins, pins_given_up, stopped, given_up })
+        Ok(Self {
+            curve,
+            profile,
+            loops,
+            maps,
+            studies,
+            walks,
+            files,
+            pins,
+            pins_given_up,
+            stopped,
+            given_up,
+        })
     }
 
     /// Hands every effect to its lane, in order.
@@ -221,6 +242,7 @@ impl Workers {
             Effect::Profile(ask) => self.profile.put(ask),
             Effect::Loop(wish) => self.loops.put(wish),
             Effect::Map(wish) => self.maps.put(wish),
+            Effect::Study(wish) => self.studies.put(wish),
             Effect::Walk(request) => drop(self.walks.send(request)),
             Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Pin(number, preset) => {
@@ -296,6 +318,17 @@ fn map_lane(slot: &Slot<Box<MapWish>>, reply: &dyn Fn(Reply)) {
         let go_on = || !slot.waiting.load(Ordering::Acquire);
         if let Some(found) = wish.run(&go_on) {
             reply(Reply::Map(Arc::new(found)));
+        }
+    }
+}
+
+fn study_lane(slot: &Slot<Box<StudyWish>>, reply: &dyn Fn(Reply)) {
+    loop {
+        let wish = slot.take();
+        let go_on = || !slot.waiting.load(Ordering::Acquire);
+        let mut told = |data| reply(Reply::Study(Arc::new(data)));
+        if let Some(found) = wish.run(threads(), &go_on, &mut told) {
+            reply(Reply::Study(Arc::new(found)));
         }
     }
 }

@@ -6,6 +6,7 @@ use super::loops::{LoopData, LoopWish};
 use super::maps::{MapData, MapWish};
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
+use super::studies::{StudyData, StudyWish};
 use super::walk::{Made, Outcome, Request};
 use crate::mend::Reason;
 use pulloff_engine::preset::Preset;
@@ -24,6 +25,8 @@ pub enum Effect {
     Loop(Box<LoopWish>),
     /// Compute a map of two numbers; an older one still waiting is forgotten.
     Map(Box<MapWish>),
+    /// Compute a study; an older one is given up.
+    Study(Box<StudyWish>),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
@@ -70,6 +73,8 @@ pub enum Reply {
     },
     Loop(Arc<LoopData>),
     Map(Arc<MapData>),
+    /// A study, or as much of it as is done.
+    Study(Arc<StudyData>),
     Profile(Arc<Inside>),
     Walked {
         id: u64,

@@ -9,11 +9,13 @@ pub enum ExportKind {
     Walk,
     Events,
     Script,
+    /// The study on the screen: its values, or the spec of a sweep that repeats it.
+    Study,
 }
 
 impl ExportKind {
     /// All, in the order they are offered.
-    pub const ALL: [Self; 4] = [Self::Curve, Self::Walk, Self::Events, Self::Script];
+    pub const ALL: [Self; 5] = [Self::Curve, Self::Walk, Self::Events, Self::Script, Self::Study];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -22,6 +24,7 @@ impl ExportKind {
             Self::Walk => "walk",
             Self::Events => "events",
             Self::Script => "script",
+            Self::Study => "study",
         }
     }
 
@@ -30,6 +33,7 @@ impl ExportKind {
         match self {
             Self::Curve | Self::Walk | Self::Events => &["csv", "json"],
             Self::Script => &["pulloff", "txt"],
+            Self::Study => &["csv", "toml"],
         }
     }
 }

@@ -12,6 +12,7 @@ use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::setting::same_curve;
+use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
 use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
@@ -21,6 +22,8 @@ use pulloff_engine::preset::{Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::sweep::quantity::Under;
+use pulloff_engine::sweep::{Column, QUANTITIES};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -135,6 +138,12 @@ pub struct Model {
     pub map: Option<Arc<MapData>>,
     /// The newest map asked for.
     pub map_wanted: Option<Box<MapWish>>,
+    /// The study on the screen; it can be that of values before, or not yet done.
+    pub study: Option<Arc<StudyData>>,
+    /// The newest study asked for.
+    pub study_wanted: Option<Box<StudyWish>>,
+    /// The quantity that is studied.
+    pub studied: Column,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -155,6 +164,8 @@ pub struct Model {
     pub panel: Panel,
     pub parameter: usize,
     pub event: usize,
+    /// The selected line of the table of states; `None` follows the walker.
+    pub walk_line: Option<usize>,
     /// The view shown where only one fits, and the first where more do.
     pub view: View,
     pub views: usize,
@@ -215,6 +226,9 @@ impl Model {
             cycle_wanted: None,
             map: None,
             map_wanted: None,
+            study: None,
+            study_wanted: None,
+            studied: Column { quantity: &QUANTITIES[0], under: Under::Own },
             stiffness,
             device: None,
             history: History::default(),
@@ -229,6 +243,7 @@ impl Model {
             panel: Panel::Problem,
             parameter: 0,
             event: 0,
+            walk_line: None,
             view: View::ForceApproach,
             views: 1,
             windows: [Window::WHOLE; View::ALL.len()],

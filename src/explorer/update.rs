@@ -23,10 +23,10 @@ use super::effect::{Effect, Reply};
 use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
-use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map};
+use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map, want_study};
 use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
-use super::{background_jobs, look};
+use super::{background_jobs, look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::{checked, curve_came, give_up};
 use files::{export, export_page, file_done, save, save_back};
@@ -62,13 +62,17 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
+    effects.extend(want_study(model));
     effects
 }
 
 /// Does what is allowed now; what is not is refused with the reason. What it changed can be taken back.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
     // Which states there are says the tree, not undo.
-    let by_states = matches!(command, Command::Travel { states: true, .. } | Command::GoToState(_));
+    let by_states = matches!(
+        command,
+        Command::Travel { states: true, .. } | Command::GoToState(_) | Command::GoTo { .. }
+    );
     if !by_states && !is_available(model, command.id()) {
         model.tell(Level::Error, why_unavailable(model, command.id()));
         return Vec::new();
@@ -127,6 +131,15 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
             look::zoom(model, view, closer, about);
             Vec::new()
         }
+        Command::Show(view) => {
+            reach::show(model, view);
+            Vec::new()
+        }
+        Command::Study(column) => {
+            model.studied = column;
+            reach::show(model, View::Study);
+            Vec::new()
+        }
         Command::Overlay(overlay) => {
             look::overlay(model, overlay);
             Vec::new()
@@ -182,6 +195,13 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Reply::Study(found) => {
+            // What is done of the newest, and of no other.
+            if model.study_wanted.as_ref().is_some_and(|wanted| found.wish.id == wanted.id) {
+                model.study = Some(found);
+            }
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -201,6 +221,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     effects.extend(want_check(model));
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
+    effects.extend(want_study(model));
     effects
 }
 
@@ -233,8 +254,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Down => move_selection(model, true),
         Id::NextPanel | Id::Right => next_panel(model, 1),
         Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
-        Id::NextView => look::turn_view(model, 1),
-        Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
+        Id::NextView => model.view = reach::next(model, true),
+        Id::PreviousView => model.view = reach::next(model, false),
         Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
         Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Whole => look::whole(model),
@@ -260,6 +281,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Export
         | Id::Overlays
         | Id::Pins
+        | Id::ChooseView
+        | Id::Study
         | Id::Branches
         | Id::Copy
         | Id::Enlarge
@@ -325,12 +348,14 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
     let lines = match panel {
         Panel::Problem => model.knobs().len(),
         Panel::Events => model.shown_events().len() + model.shown_inadmissible().len(),
+        Panel::Charts if model.view.is_table() => model.history.path().len(),
         Panel::Walker | Panel::Charts => 0,
     };
     let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
     match panel {
         Panel::Problem => model.parameter = line,
         Panel::Events => model.event = line,
+        Panel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
         Panel::Walker | Panel::Charts => {}
     }
 }
@@ -370,8 +395,18 @@ fn select(model: &mut Model) -> Vec<Effect> {
         // Chosen in the list of a curve that will have gone, or in the middle of a walk.
         Panel::Events if model.is_busy() => update(model, Command::SelectEvent(model.event + 1)),
         Panel::Events => go_to_event(model),
+        Panel::Charts if model.view.is_table() => go_to_line(model),
         _ => Vec::new(),
     }
+}
+
+/// The walker goes to the selected state of the table of states.
+fn go_to_line(model: &mut Model) -> Vec<Effect> {
+    let line = reach::walk_line(model);
+    let state = model.history.path().get(line).map(|(node, _)| *node);
+    let numbering = model.history.numbering();
+    // As a command of its own: it waits for its turn, and can be taken back.
+    state.map_or_else(Vec::new, |node| update(model, Command::GoTo { node, numbering }))
 }
 
 /// The walker goes to the limit point of the selected event.

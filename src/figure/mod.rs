@@ -13,8 +13,10 @@
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
 //! | [`contact_map`] | the contacts over the way of the control |
+//! | [`differences`] | P minus that of the others |
 //! | [`stability`] | the law of stability over the contact radius |
 //! | [`map`] | lines of a map of two numbers, limit points over one |
+//! | [`study`] | a quantity over the range of one value |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
 //! | [`measured`] | measured points behind a curve |
@@ -25,6 +27,7 @@ pub mod bounds;
 mod contact;
 pub mod contact_map;
 pub mod curves;
+pub mod differences;
 pub mod loops;
 pub mod map;
 pub mod measured;
@@ -34,6 +37,7 @@ pub mod scale;
 pub mod shape;
 pub mod stability;
 pub mod state;
+pub mod study;
 mod subject;
 pub mod unloading;
 pub mod walk;
@@ -55,6 +59,9 @@ impl Subject<'_> {
             View::ContactMap => contact_map::figure(self),
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),
+            View::Differences => differences::figure(self),
+            View::Walk => walk::table(),
+            View::Study => study::figure(self),
             View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
         }
     }

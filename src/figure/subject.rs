@@ -5,7 +5,9 @@ use crate::explorer::branches::{Branch, branches};
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
-use crate::explorer::{Axes, CurveData, Model, Node, Overlays, device};
+use crate::explorer::reach::study_range;
+use crate::explorer::studies::StudyData;
+use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::{CycleReport, MapReport};
 
@@ -24,6 +26,8 @@ pub struct Subject<'a> {
     pub cycle: Option<&'a CycleReport>,
     /// The map of two numbers, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
+    /// The study of the selected value, or why there is none, where it is known.
+    pub study: Option<Result<&'a StudyData, String>>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -43,6 +47,7 @@ impl<'a> Subject<'a> {
             device: device::line(model),
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             map: model.map.as_ref().map(|map| map.report()),
+            study: study(model),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -60,6 +65,7 @@ impl<'a> Subject<'a> {
             device: None,
             cycle: None,
             map: None,
+            study: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,
@@ -80,5 +86,19 @@ impl<'a> Subject<'a> {
     /// Whether a state solves the problem of the curve.
     pub fn is_on_curve(&self, node: &Node) -> bool {
         is_on_curve(self.curve, node)
+    }
+}
+
+/// The study of the selected value, where the view is on the screen; of the values before while that is computed.
+fn study(model: &Model) -> Option<Result<&StudyData, String>> {
+    if !model.shown_views().contains(&View::Study) {
+        return None;
+    }
+    match study_range(model) {
+        Err(why) => Some(Err(why)),
+        Ok((key, _)) => {
+            let is_it = |study: &&StudyData| study.wish.key == key && study.wish.column == model.studied;
+            model.study.as_deref().filter(is_it).map(Ok)
+        }
     }
 }

@@ -146,6 +146,8 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Enlarge => &[Char('z')],
         Id::NextView => &[Char('t')],
         Id::PreviousView => &[Char('T')],
+        Id::Study => &[Char('Q')],
+        Id::ChooseView => &[Char('V')],
         Id::ZoomIn => &[Char('+'), Char('=')],
         Id::ZoomOut => &[Char('-')],
         Id::Whole => &[Char('f')],

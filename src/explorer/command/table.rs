@@ -101,6 +101,8 @@ commands! {
         Enlarge "enlarge" Nothing "whole": "the selected panel on the whole screen, and back";
         NextView "next-view" Nothing "view": "the next view of the chart";
         PreviousView "previous-view" Nothing "view back": "the view before";
+        ChooseView "view" Nothing ("view") "views": "all views, a line each; those with nothing to show say why";
+        Study "study" Curve ("quantity") "study": "a quantity over the range of the selected value";
         ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";
         ZoomOut "zoom-out" Curve ("place") "wider": "further away";
         Whole "whole" Zoom "whole": "the whole chart again";

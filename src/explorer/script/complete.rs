@@ -5,11 +5,12 @@ use super::parse::RUN_TO;
 use super::print::overlay_name;
 use crate::explorer::command::ROWS;
 use crate::explorer::export::ExportKind;
-use crate::explorer::view::Overlay;
+use crate::explorer::view::{Overlay, View};
 use crate::store::shipped::SHIPPED;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
+use pulloff_engine::sweep::{QUANTITIES, Quantity};
 
 /// A line gone on with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,6 +54,8 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["open"] => presets.iter().filter_map(|name| quoted(name)).collect(),
         ["set" | "open", ..] => assignments(word, preset),
         ["control"] => owned(["displacement", "force", "stiffness="]),
+        ["view"] => owned(View::ALL.map(View::name)),
+        ["study"] => QUANTITIES.iter().flat_map(Quantity::columns).map(|column| column.name()).collect(),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
         ["pins"] => owned(["all"]),
         ["export"] => owned(ExportKind::ALL.map(ExportKind::name)),

@@ -7,9 +7,10 @@ use super::print::overlay_name;
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
 use crate::explorer::export::{ExportKind, ends_in};
 use crate::explorer::pins;
-use crate::explorer::view::Overlay;
+use crate::explorer::view::{Overlay, View};
 use pulloff_engine::preset::groups::{self, GROUPS};
 use pulloff_engine::preset::{PARAMETERS, former, parameter};
+use pulloff_engine::sweep::Column;
 use pulloff_engine::text::{closest, closest_key, quote};
 
 /// The word before a command that may fail.
@@ -71,6 +72,8 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Enlarge
             | Id::NextView
             | Id::PreviousView
+            | Id::ChooseView
+            | Id::Study
             | Id::ZoomIn
             | Id::ZoomOut
             | Id::Whole
@@ -174,6 +177,15 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         Id::Control if !bare => {
             let word = rest.need("a control")?;
             Command::Assign(vec![("path.control".into(), word.text.clone())])
+        }
+        Id::ChooseView if !bare => {
+            let word = rest.need("a view")?;
+            let names = View::ALL.map(View::name);
+            Command::Show(View::named(&word.text).ok_or_else(|| unknown(word, "view", &names))?)
+        }
+        Id::Study if !bare => {
+            let word = rest.need("a quantity")?;
+            Command::Study(Column::named(&word.text).map_err(|what| Fault::new(word.column, what))?)
         }
         Id::Overlays if !bare => {
             let word = rest.need("a theory")?;

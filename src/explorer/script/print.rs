@@ -17,6 +17,8 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Travel { count, states: true, .. } => format!(" {count} states"),
         Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
         Command::Assign(all) => assignments(all)?,
+        Command::Show(view) => format!(" {}", view.name()),
+        Command::Study(column) => format!(" {}", column.name()),
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
         Command::Unpin(None) => " all".to_owned(),
         Command::Unpin(Some(number)) => format!(" {number}"),

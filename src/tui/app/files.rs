@@ -55,6 +55,7 @@ impl App {
                 ExportKind::Walk => "walk    the states walked by hand",
                 ExportKind::Events => "events  the instabilities listed",
                 ExportKind::Script => "script  what was done, for pulloff run",
+                ExportKind::Study => "study   the study: its values, or in a .toml the sweep that repeats it",
             };
             Item::new(text, Action::Prompt(Box::new(prompt)))
         });
@@ -83,7 +84,7 @@ impl App {
     /// The first view as a figure for print; none before the first curve.
     fn figure(&self) -> Option<String> {
         let view = self.model.view;
-        let subject = Subject::of(&self.model)?;
+        let subject = Subject::of(&self.model).filter(|_| !view.is_table())?;
         let chart = Chart::of(&subject.figure(view), &self.model.window(view));
         let own_name = subject.own_name().filter(|_| view.is_curve());
         let chart = if let Some(name) = own_name { chart.naming(&name) } else { chart };

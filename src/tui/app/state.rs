@@ -273,6 +273,8 @@ impl App {
             Id::SaveAs => self.ask_name(),
             Id::Export => self.ask_export(),
             Id::Copy => self.ask_copy(),
+            Id::ChooseView => self.ask_view(),
+            Id::Study if self.model.curve.is_some() => self.ask_study(),
             Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
             Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
             Id::Branches if are_several(&self.model.history) => self.ask_branch(),

@@ -3,7 +3,8 @@
 use super::legend::legend;
 use super::marks::{letter, look, style};
 use super::parts::is_selected;
-use crate::explorer::{EventSource, Id, Panel, View, Window};
+use super::states;
+use crate::explorer::{EventSource, Id, Panel, View, Window, reach};
 use crate::figure::{Area, Bounds, Figure, Mark as Placed, Meaning, Role, Sign, Subject, nearest};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Entry, Mark, Region, Series};
@@ -17,6 +18,9 @@ use ratatui::style::Modifier;
 /// Draws one view; the first one has the cross-hair and the keys.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
     let selected = first && is_selected(app, Panel::Charts);
+    if view.is_table() {
+        return states::draw(frame, area, app, selected);
+    }
     let chart = Subject::of(&app.model).map_or_else(
         || without_curve(app),
         |subject| {
@@ -26,7 +30,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
                 chart.make_even(area);
             }
             if first {
-                let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
+                let hint = format!(
+                    "  ({}: {})",
+                    app.keymap.first(Id::NextView),
+                    reach::next(&app.model, true).name()
+                );
                 let taken = [&chart.title, &chart.note, &hint].map(|text| text.chars().count());
                 if taken.iter().sum::<usize>() + 3 <= usize::from(area.width) {
                     chart.title.push_str(&hint);

@@ -9,6 +9,7 @@ mod marks;
 pub mod overlays;
 mod parts;
 pub mod problem;
+pub mod states;
 pub mod status;
 pub mod walker;
 
