@@ -38,7 +38,7 @@ pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
     /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
-    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius", "data", "x", "y"])]
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius"])]
     sweep: Option<PathBuf>,
     /// The column of the results that is drawn [default: enhancement]
     #[arg(long, value_name = "COLUMN")]
@@ -119,7 +119,11 @@ pub(super) fn width(text: &str) -> Result<Width, String> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = format(arguments.output.as_deref())?;
     if let Some(path) = &arguments.sweep {
-        output::write_bytes(&format.bytes(&arguments.of_sweep(path)?)?, arguments.output.as_deref())?;
+        let (picture, data) = arguments.of_sweep(path)?;
+        output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
+        if let Some(((path, overwrite), data)) = arguments.data_file(None)?.zip(data) {
+            write_atomically(&path, data.as_bytes(), overwrite)?;
+        }
         return Ok(ExitCode::SUCCESS);
     }
     if arguments.quantity.is_some() {
@@ -128,7 +132,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let loaded = arguments.problem.load()?;
     output::spares(arguments.output.as_deref(), "-o", &loaded)?;
-    let data = arguments.data_file(&loaded)?;
+    let data = arguments.data_file(Some(&loaded))?;
     let mut preset = loaded.preset;
     let points = arguments.points(&mut preset)?;
     let curve = CurveData::compute(&preset, |_| true)?;
@@ -200,14 +204,27 @@ impl Arguments {
         Ok(Some(Points::new(&branches, offset, baseline, spring)))
     }
 
-    /// The picture of the results of a sweep.
-    fn of_sweep(&self, path: &Path) -> Result<String, Failure> {
+    /// The picture of the results of a sweep, and its data where they are wanted.
+    fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
         let results = Results::open(path).map_err(MapError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
-        Ok(match &results.axes[..] {
-            [axis] => svg::svg(&series::chart(&results, axis, quantity)?, self.width),
-            axes => Map::of(&results, axes, quantity)?.svg(self.width),
-        })
+        let axis = match &results.axes[..] {
+            [axis] => axis,
+            // Drawn at random they make no grid.
+            [axis, ..] if results.is_random => axis,
+            axes => {
+                let refused = [("--x", self.x.is_some()), ("--y", self.y.is_some()), ("--data", self.data)];
+                if let Some((flag, _)) = refused.into_iter().find(|(_, is_given)| *is_given) {
+                    let what =
+                        "is for a sweep over one axis: a map has the whole grid, which the results hold";
+                    return Err(Failure::Usage(format!("{flag}: {what}")));
+                }
+                return Ok((Map::of(&results, axes, quantity)?.svg(self.width), None));
+            }
+        };
+        let chart = self.part(series::chart(&results, axis, quantity)?)?;
+        let data = if self.data { Some(table::csv(&chart)?) } else { None };
+        Ok((svg::svg(&chart, self.width), data))
     }
 
     /// The part of the chart that is asked for.
@@ -225,14 +242,16 @@ impl Arguments {
     }
 
     /// The file of the data, and whether there is one to be replaced: only data of a figure are.
-    fn data_file(&self, loaded: &Loaded) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
+    fn data_file(&self, loaded: Option<&Loaded>) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
         let Some(figure) = self.output.as_ref().filter(|_| self.data) else { return Ok(None) };
         if stream::is_stream(figure) {
             let what = "--data: the data stand beside the file of the figure, which -o FILE names";
             return Err(Failure::Usage(what.to_owned()));
         }
         let path = figure.with_extension("csv");
-        output::spares(Some(&path), "--data", loaded)?;
+        if let Some(loaded) = loaded {
+            output::spares(Some(&path), "--data", loaded)?;
+        }
         let overwrite = match first_line(&path)? {
             None => Overwrite::Never,
             Some(line) if table::is_header(&line) => Overwrite::Always,

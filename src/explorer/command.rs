@@ -26,6 +26,12 @@ pub const FIRST_LENGTH: f64 = 0.02;
 /// The step lengths a person can choose.
 pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 
+/// States a second of a run, at first.
+pub const FIRST_PACE: f64 = 20.0;
+
+/// The paces a person can choose: each half or twice the next.
+pub const PACES: std::ops::RangeInclusive<f64> = 1.25..=160.0;
+
 /// A command with its argument.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -118,6 +124,13 @@ pub enum Command {
         /// Whether a file of that name is to be replaced.
         replace: bool,
     },
+    /// Write what is seen: whoever draws makes an [`ExportPage`](Self::ExportPage) of it.
+    Picture {
+        picture: super::export::Picture,
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         what: super::export::ExportKind,
@@ -157,7 +170,7 @@ impl Command {
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } | Self::ExportPage { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportPage { .. } | Self::Picture { .. } => Id::Export,
         }
     }
 }

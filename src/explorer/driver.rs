@@ -12,12 +12,14 @@ use super::job::Job;
 use super::loops::LoopWish;
 use super::maps::MapWish;
 use super::model::Model;
+use super::node::NodeKind;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
 use super::saves::Saves;
 use super::studies::{StudyWish, threads};
 use super::update::answer;
 use super::walk::{self, Request};
+use super::watch::Watch;
 use crate::fault;
 use crate::mend::Reason;
 use crate::store::Store;
@@ -74,7 +76,7 @@ impl Inline {
                 });
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
-            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopPins => None,
+            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopPins | Effect::Pace(_) => None,
             Effect::Pin(number, preset) => Some(pinned(number, &preset, || true)),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
@@ -124,7 +126,7 @@ pub struct Workers {
     pins: Sender<(u64, usize, Box<Preset>)>,
     /// Counts cancellations: pins asked for before the last one are not computed.
     pins_given_up: Arc<AtomicU64>,
-    stopped: Arc<AtomicU64>,
+    walking: Arc<Watch>,
     given_up: Arc<AtomicU64>,
 }
 
@@ -178,7 +180,7 @@ impl Workers {
     ) -> Result<Self, std::io::Error> {
         let (curve, profile, loops, maps) = (Slot::empty(), Slot::empty(), Slot::empty(), Slot::empty());
         let studies = Slot::empty();
-        let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+        let (walking, given_up) = (Arc::new(Watch::default()), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
         let (pins, pinnings) = channel::<(u64, usize, Box<Preset>)>();
@@ -207,8 +209,8 @@ impl Workers {
                 }
             }
         })?;
-        let (stop, send) = (Arc::clone(&stopped), reply.clone());
-        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
+        let (watch, send) = (Arc::clone(&walking), reply.clone());
+        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &watch, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
         Ok(Self {
             curve,
@@ -220,7 +222,7 @@ impl Workers {
             files,
             pins,
             pins_given_up,
-            stopped,
+            walking,
             given_up,
         })
     }
@@ -243,8 +245,14 @@ impl Workers {
             Effect::Loop(wish) => self.loops.put(wish),
             Effect::Map(wish) => self.maps.put(wish),
             Effect::Study(wish) => self.studies.put(wish),
-            Effect::Walk(request) => drop(self.walks.send(request)),
-            Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
+            Effect::Walk(request) => {
+                if let Some(pace) = request.pace {
+                    self.walking.set(pace);
+                }
+                drop(self.walks.send(request));
+            }
+            Effect::Pace(pace) => self.walking.set(pace),
+            Effect::StopWalk(id) => self.walking.stop(id),
             Effect::Pin(number, preset) => {
                 let asked = self.pins_given_up.load(Ordering::Acquire);
                 drop(self.pins.send((asked, number, preset)));
@@ -333,18 +341,24 @@ fn study_lane(slot: &Slot<Box<StudyWish>>, reply: &dyn Fn(Reply)) {
     }
 }
 
-fn walk_lane(requests: &Receiver<Box<Request>>, stopped: &AtomicU64, reply: &dyn Fn(Reply)) {
+fn walk_lane(requests: &Receiver<Box<Request>>, watch: &Watch, reply: &dyn Fn(Reply)) {
     while let Ok(request) = requests.recv() {
         let id = request.id;
+        let is_paced = request.pace.is_some();
+        if is_paced && watch.is_stopped(id) {
+            reply(Reply::Walked { id, made: Vec::new(), outcome: Some(walk::Outcome::Paused) });
+            continue;
+        }
         let mut made = Vec::new();
         let mut sent = Instant::now();
         let outcome = walk::walk(&request, &mut |state| {
+            let ends = matches!(state.kind, NodeKind::Limit | NodeKind::Touch(_));
             made.push(state);
-            if sent.elapsed() > CHUNK {
+            if is_paced || sent.elapsed() > CHUNK {
                 reply(Reply::Walked { id, made: std::mem::take(&mut made), outcome: None });
                 sent = Instant::now();
             }
-            stopped.load(Ordering::Acquire) < id
+            if is_paced && !ends { watch.wait(id, sent) } else { !watch.is_stopped(id) }
         });
         reply(Reply::Walked { id, made, outcome: Some(outcome) });
     }

@@ -30,6 +30,8 @@ pub enum Effect {
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
+    /// The run goes on at so many states a second.
+    Pace(f64),
     /// End the walk of this number; its states so far stay.
     StopWalk(u64),
     /// Compute the curve of a pin of a resumed session, by its number.

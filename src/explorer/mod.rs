@@ -31,6 +31,7 @@
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
+//! | `watch` | the pace of a run, and its end |
 //! | [`export`], [`job`], [`files`], [`walk_table`] | opening, saving and exporting |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`follow`] | edges of rings, followed through a change of the problem |
@@ -84,6 +85,7 @@ pub mod update;
 pub mod view;
 pub mod walk;
 pub mod walk_table;
+mod watch;
 
 pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, ProblemCurve};

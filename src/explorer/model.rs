@@ -1,6 +1,6 @@
 //! The state of a session, without terminals, keys or colours.
 
-use super::command::{Command, FIRST_LENGTH};
+use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
 use super::history::{History, Mark};
@@ -73,6 +73,10 @@ pub struct Walking {
     pub wanted: Option<usize>,
     /// Whether nobody asked for it: the state is solved again for other values.
     pub solves: bool,
+    /// Whether it goes at the pace.
+    pub paced: bool,
+    /// Whether its end was asked for: more states may be on their way.
+    pub stops: bool,
 }
 
 /// The admissibility check of the curve on the screen.
@@ -154,6 +158,8 @@ pub struct Model {
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
+    /// States a second of a run.
+    pub pace: f64,
     /// Whether the walk of a resumed session has been tried on its first curve already.
     pub is_tried: bool,
     pub walking: Option<Walking>,
@@ -236,6 +242,7 @@ impl Model {
             undo: Undo::default(),
             inward: true,
             length: FIRST_LENGTH,
+            pace: FIRST_PACE,
             is_tried: false,
             walking: None,
             queue: VecDeque::new(),
@@ -313,6 +320,11 @@ impl Model {
     /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
     pub fn shows_device(&self) -> bool {
         self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
+    }
+
+    /// Whether a run goes on at the pace, which any key but those of the pace ends.
+    pub fn is_running(&self) -> bool {
+        self.walking.is_some_and(|walking| walking.paced && !walking.stops)
     }
 
     /// Whether a walk is under way, or the curve that the next one walks on.

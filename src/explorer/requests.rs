@@ -4,7 +4,7 @@ use super::effect::{Check, Effect, Wish};
 use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
 use super::maps::MapWish;
-use super::model::{Awaits, Checking, Model};
+use super::model::{Awaits, Checking, Model, Walking};
 use super::node::NodeKind;
 use super::reach::study_range;
 use super::studies::StudyWish;
@@ -150,6 +150,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.awaits = Awaits::Nothing;
+    model.walking = model.walking.map(|walking| Walking { stops: true, ..walking });
     stop_walk(model)
 }
 

@@ -37,7 +37,7 @@ use pulloff_engine::units::Quantity;
 use travel::{by_states, go_to, go_to_state, travel, travel_to};
 use turns::{Turn, enqueue, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
-use walk::{restart, scale_length, walk, walked};
+use walk::{restart, run, scale_length, scale_pace, walk, walked};
 
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
@@ -111,7 +111,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
-        Command::RunOf(count) => walk(model, Action::Run(count)),
+        Command::RunOf(count) => run(model, Action::Run(count)),
         Command::StepLength(length) => {
             model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end());
             Vec::new()
@@ -163,6 +163,10 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
         Command::ExportPage { page, path, replace } => export_page(model, page, path, replace),
+        Command::Picture { picture, .. } => {
+            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()));
+            Vec::new()
+        }
     }
 }
 
@@ -237,7 +241,9 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
             return effects;
         }
         Id::Jump => return walk(model, Action::Jump),
-        Id::Run => return if model.walking.is_some() { stop(model) } else { walk(model, Action::ToLimit) },
+        Id::Run => return if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) },
+        Id::Slower => return scale_pace(model, 0.5),
+        Id::Faster => return scale_pace(model, 2.0),
         Id::Restart => return restart(model),
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),

@@ -10,14 +10,23 @@ const CORNERS: u32 = 180;
 /// What is seen outside the outermost edge, as a share of its radius.
 const AROUND: f64 = 0.25;
 
-/// Lays the contacts, as [inner, outer] on the axis of radii, and the crests on a figure.
-pub fn lay(figure: &mut Figure, contacts: &[[f64; 2]], crests: impl Iterator<Item = f64>, seen: f64) {
+/// Lays the contacts, as [inner, outer] on the axis of radii, where in them the bodies pull, and the crests on a figure.
+pub fn lay(
+    figure: &mut Figure,
+    contacts: &[[f64; 2]],
+    tensions: &[[f64; 2]],
+    crests: impl Iterator<Item = f64>,
+    seen: f64,
+) {
     let outermost = contacts.last().map_or(0.0, |contact| contact[1]);
     let reach = seen.min((1.0 + AROUND) * outermost).max(outermost);
     figure.bounds = Bounds { x: [-reach, reach], y: [0.0, reach] };
-    for [inner, outer] in contacts {
+    let all = [(Meaning::Contact, contacts), (Meaning::Tension, tensions)];
+    for (meaning, [inner, outer]) in
+        all.into_iter().flat_map(|(meaning, all)| all.iter().map(move |at| (meaning, at)))
+    {
         let outline = half(*outer).into_iter().chain(half(*inner).into_iter().rev()).collect();
-        figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
+        figure.areas.push(Area { meaning, outline, lost: None });
     }
     let rings = crests.take_while(|r| *r <= reach);
     figure.lines.extend(rings.map(|r| Line::new(Role::Undeformed, "crest", half(r))));

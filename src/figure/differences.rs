@@ -136,12 +136,16 @@ impl<'a> Ours<'a> {
     fn at_equal_approach(&self, states: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let [length, force] = self.units;
         let mut found = Vec::new();
-        for branch in monotone(states.iter().copied(), |at| at[0]) {
+        let branches = monotone(states.iter().copied(), |at| at[0]);
+        for (i, branch) in branches.iter().enumerate() {
+            // A state next to a limit point may be on either side of it: its branch is not known.
+            let (first, last) = (usize::from(i > 0), usize::from(i + 1 < branches.len()));
+            let branch = &branch[first..branch.len() - last];
             // Both run inward.
-            let way = rises(&branch, |at| at[0]);
+            let way = rises(branch, |at| at[0]);
             let alike: Vec<_> = self.stretches.iter().filter(|own| rises(own, |at| at[1]) == way).collect();
             let mut last = None;
-            for [delta, p, s] in &branch {
+            for [delta, p, s] in branch {
                 let (delta, s) = (delta / length, s / length);
                 let near = (0..alike.len()).min_by(|a, b| away(alike[*a], s).total_cmp(&away(alike[*b], s)));
                 if near != last {

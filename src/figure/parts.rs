@@ -94,6 +94,8 @@ pub enum Sign {
     Preset,
     /// The number of snaps in the region of a map around it; the last stands for more.
     Snaps(usize),
+    /// A point that a text calls by this letter.
+    Letter(char),
     /// A computed value, on a line through all of them.
     Value,
     /// A measured point, of an approach or of a retraction: behind everything.
@@ -116,6 +118,8 @@ pub enum Meaning {
     Lost,
     /// The bodies are in contact there.
     Contact,
+    /// They pull at each other, within a contact.
+    Tension,
 }
 
 impl Meaning {
@@ -124,6 +128,7 @@ impl Meaning {
         match self {
             Self::Lost => "energy lost",
             Self::Contact => "in contact",
+            Self::Tension => "pulling",
         }
     }
 }

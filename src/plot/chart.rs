@@ -2,7 +2,7 @@
 
 use super::range::{Range, RangeError};
 use crate::explorer::Window;
-use crate::figure::{Area, Bounds, Figure, Line, Mark, Role};
+use crate::figure::{Area, Bounds, Figure, Line, Mark, Role, View};
 
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -33,6 +33,8 @@ pub struct Chart {
     pub marks: Vec<Mark>,
     pub areas: Vec<Area>,
     pub missing: Option<String>,
+    /// Whether both axes have the same scale.
+    pub is_even: bool,
 }
 
 impl Chart {
@@ -47,6 +49,7 @@ impl Chart {
             marks: figure.marks.clone(),
             areas: figure.areas.clone(),
             missing: figure.missing.clone(),
+            is_even: figure.view == View::Contact,
         }
     }
 
@@ -55,7 +58,7 @@ impl Chart {
         let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
         let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
         let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };
-        Self { x, y, bounds, lines, marks: Vec::new(), areas: Vec::new(), missing: None }
+        Self { x, y, bounds, lines, marks: Vec::new(), areas: Vec::new(), missing: None, is_even: false }
     }
 
     /// The part of its x axis in `range`; an empty chart stays as it is.

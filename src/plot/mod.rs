@@ -19,6 +19,7 @@ pub mod ink;
 pub mod lines;
 pub mod map;
 pub mod paper;
+pub mod picture;
 pub mod range;
 pub mod series;
 pub mod svg;

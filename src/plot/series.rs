@@ -24,5 +24,10 @@ pub fn chart(results: &Results, axis: &str, quantity: &str) -> Result<Chart, Map
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
     let [x, y] = [(axis, run), (quantity, Run::Linear)]
         .map(|(name, run)| ChartAxis { title: results.title(name), run });
-    Ok(Chart { marks, ..Chart::new(x, y, vec![Line::new(Role::Body, "", points)]) })
+    let mut chart = Chart { marks, ..Chart::new(x, y, vec![Line::new(Role::Body, "", points)]) };
+    if results.is_random {
+        // Neighbours drawn at random differ in whatever else was drawn: no line joins them.
+        chart.lines.clear();
+    }
+    Ok(chart)
 }

@@ -119,6 +119,8 @@ fn usual(id: Id) -> &'static [Key] {
     match id {
         Id::Step => &[Char(' ')],
         Id::Run => &[Char('r')],
+        Id::Slower => &[Char('(')],
+        Id::Faster => &[Char(')')],
         Id::NextLimit => &[Char('n')],
         Id::PreviousLimit => &[Char('N')],
         Id::Jump => &[Char('x')],

@@ -1,10 +1,10 @@
 //! What a line begun could go on with.
 
 use super::lexer::quoted;
-use super::parse::RUN_TO;
+use super::parse::{PICTURES, RUN_TO};
 use super::print::overlay_name;
 use crate::explorer::command::ROWS;
-use crate::explorer::export::ExportKind;
+use crate::explorer::export::{ExportKind, Picture};
 use crate::explorer::view::{Overlay, View};
 use crate::store::shipped::SHIPPED;
 use pulloff_engine::preset::Preset;
@@ -58,7 +58,10 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["study"] => QUANTITIES.iter().flat_map(Quantity::columns).map(|column| column.name()).collect(),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
         ["pins"] => owned(["all"]),
-        ["export"] => owned(ExportKind::ALL.map(ExportKind::name)),
+        ["export"] => {
+            owned(ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name)))
+        }
+        ["export", "figure", _] => owned(View::ALL.map(View::name).into_iter().chain(["replace"])),
         ["export", _, _] | ["save"] => owned(["replace"]),
         ["save-as", _, ..] => owned(["with-data", "replace"]),
         [name] if *name == RUN_TO.0 => owned(RUN_TO.1),
@@ -104,7 +107,8 @@ mod tests {
             ("set gap.shape=po", "set gap.shape=power-law ", 1),
             ("open l", "open lab-", 2),
             ("open lab-3 basis.k", "open lab-3 basis.kind=", 1),
-            ("export sc", "export script ", 1),
+            ("export scr", "export scr", 2),
+            ("export figure x.svg con", "export figure x.svg contact", 2),
             ("export curve x.csv r", "export curve x.csv replace ", 1),
             ("control f", "control force ", 1),
             ("run-to in", "run-to instability ", 1),

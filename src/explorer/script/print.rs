@@ -2,6 +2,7 @@
 
 use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command, row_of};
+use crate::explorer::export::Picture;
 use crate::explorer::view::Overlay;
 
 /// The line that reads back as this command; `None` for commands that need a screen.
@@ -31,6 +32,11 @@ pub fn line(command: &Command) -> Option<String> {
         Command::SaveAnyway => replacing(true).to_owned(),
         Command::Export { what, path, replace } => {
             format!(" {} {}{}", what.name(), quoted(path)?, replacing(*replace))
+        }
+        Command::Picture { picture, path, replace } => {
+            let view = if let Picture::Figure(Some(view)) = picture { view.name() } else { "" };
+            let view = if view.is_empty() { String::new() } else { format!(" {view}") };
+            format!(" {} {}{view}{}", picture.name(), quoted(path)?, replacing(*replace))
         }
         Command::Set { .. }
         | Command::Try { .. }

@@ -62,7 +62,8 @@ impl App {
         (Self::on(model, theme), effects)
     }
 
-    pub(super) fn on(model: Model, theme: Theme) -> Self {
+    /// A session on a screen.
+    pub fn on(model: Model, theme: Theme) -> Self {
         Self {
             model,
             overlay: None,
@@ -86,7 +87,8 @@ impl App {
             effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
             return effects;
         }
-        match self.overlay.take() {
+        let mut effects = self.pause(key);
+        effects.extend(match self.overlay.take() {
             None => self.command_key(key),
             Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
             Some(Over::Choose(choose)) => self.choose_key(choose, key),
@@ -96,7 +98,14 @@ impl App {
                 self.help_key(help, key);
                 Vec::new()
             }
-        }
+        });
+        effects
+    }
+
+    /// Ends a run, before the key does what it does; those of the pace, and those that end it themselves, do not.
+    fn pause(&mut self, key: KeyEvent) -> Vec<Effect> {
+        let ends = !matches!(self.keymap.command(key), Some(Id::Slower | Id::Faster | Id::Run | Id::Cancel));
+        if ends && self.model.is_running() { self.run(Id::Cancel.into()) } else { Vec::new() }
     }
 
     /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
@@ -165,7 +174,11 @@ impl App {
     }
 
     /// Does a command, and notices when it leaves a question.
-    pub(super) fn run(&mut self, command: Command) -> Vec<Effect> {
+    pub(super) fn run(&mut self, mut command: Command) -> Vec<Effect> {
+        if let Command::Picture { picture, path, replace } = command {
+            let Some(page) = self.draw_page(picture, path, replace) else { return Vec::new() };
+            command = page;
+        }
         let effects = update(&mut self.model, command);
         self.raise_questions();
         effects

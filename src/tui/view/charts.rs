@@ -10,6 +10,7 @@ use crate::tui::app::App;
 use crate::tui::chart::{Chart, Entry, Mark, Region, Series};
 use crate::tui::raster::Meets;
 use crate::tui::theme::Theme;
+use pulloff_engine::gap::Gap;
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -28,6 +29,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
             let mut chart = chart(&figure, &app.model.window(view), app.theme);
             if view == View::Contact {
                 chart.make_even(area);
+                leave_out_thin(&subject, &figure, area, &mut chart);
             }
             if first {
                 let hint = format!(
@@ -131,8 +133,28 @@ fn region(at: usize, area: &Area, theme: Theme) -> Region {
         Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
         Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
         Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
+        Meaning::Tension => (styles.curve, theme.shade("░", "-")),
     };
     Region { outline: area.outline.clone(), style, shade }
+}
+
+/// Half a wave of fewer cells than these would make compression and tension a moiré of two shades.
+const THIN: f64 = 3.0;
+
+/// Leaves out where the bodies pull, if half a wave (of a gap without waves, the ring itself) is too thin for it.
+fn leave_out_thin(subject: &Subject<'_>, figure: &Figure, area: Rect, chart: &mut Chart) {
+    let Some(plot) = chart.plot(area) else { return };
+    let cell = (chart.bounds.x[1] - chart.bounds.x[0]) / f64::from(plot.width);
+    let wave = subject.curve.case.problem.shape.wavelength();
+    let half_wave = wave.map(|wave| 0.5 * subject.scale().radius(wave));
+    let is_thick = |area: &Area| {
+        let radius = |at: Option<&(f64, f64)>| at.map_or(0.0, |(x, y)| x.hypot(*y));
+        // From the outer half circle to the inner one.
+        let width = radius(area.outline.first()) - radius(area.outline.last());
+        area.meaning != Meaning::Tension || half_wave.unwrap_or(width) >= THIN * cell
+    };
+    let mut kept = figure.areas.iter().map(is_thick);
+    chart.areas.retain(|_| kept.next().unwrap_or(true));
 }
 
 /// The cross-hair, and the state of the curve nearest to it.

@@ -52,7 +52,7 @@ fn rank(role: Role) -> u8 {
 /// What a sign means, and its place in the legend.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
-        Sign::Stray | Sign::Value => return None,
+        Sign::Stray | Sign::Value | Sign::Letter(_) => return None,
         Sign::OtherLimit(_) | Sign::Limit => (9, "limit off the path"),
         Sign::Event(_) => (4, "event"),
         Sign::PullOff => (7, "pull-off"),

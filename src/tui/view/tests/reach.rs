@@ -244,7 +244,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     };
     let drawn = figure(&mut screen, "a.svg");
     let whole = String::from_utf8_lossy(&drawn);
-    assert!(whole.starts_with("<svg ") && whole.contains("P/Pc") && whole.contains("JKR 1971"));
+    assert!(whole.starts_with("<svg ") && whole.contains("P/P<tspan") && whole.contains("JKR 1971"));
     screen.keys("++");
     assert_ne!(figure(&mut screen, "b.svg"), drawn);
     // The ending chooses the format; one that this build lacks is refused by its name, and the prompt stays.
