@@ -281,7 +281,7 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
                 let expected = match what {
                     ExportKind::Curve => session.model.curve.as_ref().unwrap().points.len(),
                     ExportKind::Walk => session.model.history.path().len(),
-                    ExportKind::Events | ExportKind::Script => 2,
+                    ExportKind::Events | ExportKind::Script | ExportKind::Study => 2,
                 };
                 assert_eq!(rows, expected, "{what:?}");
             }

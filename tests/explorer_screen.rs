@@ -131,6 +131,8 @@ fn every_view_a_closer_look_and_a_pin() {
         "contacts over",
         "limit points under",
         "where snaps begin",
+        "ΔP/Pc over",
+        "pull off force over A",
     ] {
         pty.keys("t");
         pty.wait_for(|screen| screen.contains(title), title);

@@ -77,7 +77,11 @@ impl Late {
                 | Effect::StopFit(_)
                 | Effect::Pin(..) => {}
                 // Nothing that is walked depends on it.
-                Effect::Loop(_) | Effect::Map(_) | Effect::Distances(_) => continue,
+                Effect::Loop(_)
+                | Effect::Map(_)
+                | Effect::Distances(_)
+                | Effect::Study(_)
+                | Effect::Pace(_) => continue,
             }
             self.pending.push_back(effect);
         }
@@ -156,8 +160,16 @@ fn replayed(model: &mut Model, driver: &Inline, folder: &Path) -> (String, Strin
     let store = Store::at(folder.join("presets"), &[]);
     let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
     let (mut again, effects) = open(loaded);
-    play(&mut again, driver, effects, &lines, Permission::default(), &mut |_, _| {})
-        .unwrap_or_else(|failed| panic!("{failed}\n{text}"));
+    play(
+        &mut again,
+        driver,
+        effects,
+        &lines,
+        Permission::default(),
+        &|_, _| Err(String::new()),
+        &mut |_, _| {},
+    )
+    .unwrap_or_else(|failed| panic!("{failed}\n{text}"));
     let back = walk_csv(&mut again, driver, folder);
     (walked, back, text)
 }

@@ -50,6 +50,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             control: curve.case.control,
             inward,
             length: 0.1,
+            pace: None,
         };
         let mut event = None;
         let outcome = walk(&request, &mut |made| {

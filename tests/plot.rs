@@ -209,7 +209,6 @@ fn a_range_of_an_axis_is_shown_in_its_own_units() {
         (&["--y", "0.9999999..1"], "it must be at least 0.0001 wide"),
         (&["--x", "2..1"], "a number up to a larger one, not from 2 to 1"),
         (&["--y", "1000.."], "--y 1000..: shows nothing of the figure, where P/Pc goes from "),
-        (&["--sweep", "r.csv", "--x", "0..1"], "cannot be used with"),
     ] {
         let (status, said) = refused(folder.path(), range);
         assert!(status == Some(2) && said.contains(words), "{range:?}: {said}");
@@ -376,6 +375,11 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     assert!(said.contains("plot --sweep 'r.csv' --quantity kesari_lew -o curve.svg"), "{said}");
+    // Its data stand beside it, as those of any figure.
+    let with_data = ["plot", "--sweep", "r.csv", "--quantity", "kesari_lew", "--data", "-o", "p.svg"];
+    assert!(pulloff(folder.path(), &with_data).status.success());
+    let data = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
+    assert!(data.starts_with("name,curve,") && data.lines().count() > 5, "{data}");
     let shapes = |svg: &str| {
         let document = roxmltree::Document::parse(svg).unwrap();
         let count = |tag: &str| document.descendants().filter(|node| node.has_tag_name(tag)).count();

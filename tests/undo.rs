@@ -8,7 +8,7 @@ mod session;
 use fastrand::Rng;
 use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::script::{self, Permission, play};
-use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, open, update};
+use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, Panel, open, update};
 use pulloff::store::Store;
 use pulloff_engine::preset::{Preset, write};
 use session::Session;
@@ -241,7 +241,9 @@ fn played(text: &str) -> Session {
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
     let (mut model, effects) = open(loaded);
     let lines = script::read("t", text).unwrap();
-    play(&mut model, &session.driver, effects, &lines, Permission::default(), &mut |_, _| {}).unwrap();
+    let draws = |_: &Model, _| Err("nothing is drawn here".to_owned());
+    play(&mut model, &session.driver, effects, &lines, Permission::default(), &draws, &mut |_, _| {})
+        .unwrap();
     session.model = model;
     session
 }

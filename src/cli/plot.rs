@@ -28,7 +28,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// The arguments of `pulloff plot`.
 #[derive(Debug, Args)]
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
     /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
-    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius", "data", "x", "y"])]
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius"])]
     sweep: Option<PathBuf>,
     /// The column of the results that is drawn [default: enhancement]
     #[arg(long, value_name = "COLUMN")]
@@ -91,15 +91,11 @@ struct Shown(View);
 
 impl ValueEnum for Shown {
     fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [Shown; View::ALL.len()] = {
-            let mut all = [Shown(View::ForceApproach); View::ALL.len()];
-            let mut i = 0;
-            while i < all.len() {
-                all[i] = Shown(View::ALL[i]);
-                i += 1;
-            }
-            all
-        };
+        // Without a walk and a selection there is neither its table nor a study, which sweeps are for.
+        static ALL: LazyLock<Vec<Shown>> = LazyLock::new(|| {
+            let all = View::ALL.into_iter().filter(|view| !matches!(view, View::Walk | View::Study));
+            all.map(Shown).collect()
+        });
         &ALL
     }
 
@@ -121,7 +117,11 @@ pub(super) fn width(text: &str) -> Result<Width, String> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = format(arguments.output.as_deref())?;
     if let Some(path) = &arguments.sweep {
-        output::write_bytes(&format.bytes(&arguments.of_sweep(path)?)?, arguments.output.as_deref())?;
+        let (picture, data) = arguments.of_sweep(path)?;
+        output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
+        if let Some(((path, overwrite), data)) = arguments.data_file(None)?.zip(data) {
+            write_atomically(&path, data.as_bytes(), overwrite)?;
+        }
         return Ok(ExitCode::SUCCESS);
     }
     if arguments.quantity.is_some() {
@@ -130,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let loaded = arguments.problem.load()?;
     output::spares(arguments.output.as_deref(), "-o", &loaded)?;
-    let data = arguments.data_file(&loaded)?;
+    let data = arguments.data_file(Some(&loaded))?;
     let mut preset = loaded.preset;
     arguments.lay_points(&mut preset)?;
     let curve = CurveData::compute(&preset, |_| true)?;
@@ -208,14 +208,27 @@ impl Arguments {
         Ok(())
     }
 
-    /// The picture of the results of a sweep.
-    fn of_sweep(&self, path: &Path) -> Result<String, Failure> {
+    /// The picture of the results of a sweep, and its data where they are wanted.
+    fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
         let results = Results::open(path).map_err(MapError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
-        Ok(match &results.axes[..] {
-            [axis] => svg::svg(&series::figure(&results, axis, quantity)?, self.width),
-            axes => Map::of(&results, axes, quantity)?.svg(self.width),
-        })
+        let axis = match &results.axes[..] {
+            [axis] => axis,
+            // Drawn at random they make no grid.
+            [axis, ..] if results.is_random => axis,
+            axes => {
+                let refused = [("--x", self.x.is_some()), ("--y", self.y.is_some()), ("--data", self.data)];
+                if let Some((flag, _)) = refused.into_iter().find(|(_, is_given)| *is_given) {
+                    let what =
+                        "is for a sweep over one axis: a map has the whole grid, which the results hold";
+                    return Err(Failure::Usage(format!("{flag}: {what}")));
+                }
+                return Ok((Map::of(&results, axes, quantity)?.svg(self.width), None));
+            }
+        };
+        let figure = self.part(series::figure(&results, axis, quantity)?)?;
+        let data = if self.data { Some(table::csv(&figure)?) } else { None };
+        Ok((svg::svg(&figure, self.width), data))
     }
 
     /// The part of the figure that is asked for.
@@ -233,14 +246,16 @@ impl Arguments {
     }
 
     /// The file of the data, and whether there is one to be replaced: only data of a figure are.
-    fn data_file(&self, loaded: &Loaded) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
+    fn data_file(&self, loaded: Option<&Loaded>) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
         let Some(figure) = self.output.as_ref().filter(|_| self.data) else { return Ok(None) };
         if stream::is_stream(figure) {
             let what = "--data: the data stand beside the file of the figure, which -o FILE names";
             return Err(Failure::Usage(what.to_owned()));
         }
         let path = figure.with_extension("csv");
-        output::spares(Some(&path), "--data", loaded)?;
+        if let Some(loaded) = loaded {
+            output::spares(Some(&path), "--data", loaded)?;
+        }
         let overwrite = match first_line(&path)? {
             None => Overwrite::Never,
             Some(line) if table::is_header(&line) => Overwrite::Always,

@@ -3,9 +3,12 @@
 use super::Failure;
 use super::problem::{Problem, store};
 use crate::explorer::command::by_name;
+use crate::explorer::export::{Page, Picture};
 use crate::explorer::script::{self, Permission, ScriptLine, play};
 use crate::explorer::{Inline, Model, open};
+use crate::plot::picture::picture;
 use crate::store::stream::{self, STANDARD};
+use crate::tui::copy::screen;
 use clap::Args;
 use pulloff_engine::text::sanitize;
 use std::ffi::OsString;
@@ -64,9 +67,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             account(line, model);
         }
     };
-    play(&mut model, &Inline::new(store()), effects, &lines, permission, &mut told)
+    play(&mut model, &Inline::new(store()), effects, &lines, permission, &drawn, &mut told)
         .map_err(|failed| Failure::Script { text: format!("{name}:{failed}"), reason: failed.reason })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What a screen would show, drawn.
+fn drawn(model: &Model, what: Picture) -> Result<Page, String> {
+    match what {
+        Picture::Screen => Ok(Page::Screen(screen(model))),
+        Picture::Figure(view) => picture(model, view.unwrap_or(model.view)).map(Page::Figure),
+    }
 }
 
 /// What became of a line, in one line.

@@ -11,6 +11,7 @@ pub use table::{Id, Needs, ROWS, Row, row_of};
 
 use super::view::{Overlay, Panel, View};
 use pulloff_engine::preset::Key;
+use pulloff_engine::sweep::Column;
 use std::path::PathBuf;
 
 /// A key and the text of its value.
@@ -24,6 +25,12 @@ pub const FIRST_LENGTH: f64 = 0.02;
 
 /// The step lengths a person can choose.
 pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
+
+/// States a second of a run, at first.
+pub const FIRST_PACE: f64 = 20.0;
+
+/// The paces a person can choose: each half or twice the next.
+pub const PACES: std::ops::RangeInclusive<f64> = 1.25..=160.0;
 
 /// A command with its argument.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,6 +80,10 @@ pub enum Command {
         x: Key,
         y: Option<Key>,
     },
+    /// Show this view, whether it has something to show or not.
+    Show(View),
+    /// Show this quantity over the range of the selected value.
+    Study(Column),
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
     /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).
@@ -121,6 +132,13 @@ pub enum Command {
         /// Whether a file of that name is to be replaced.
         replace: bool,
     },
+    /// Write what is seen: whoever draws makes an [`ExportPage`](Self::ExportPage) of it.
+    Picture {
+        picture: super::export::Picture,
+        path: String,
+        /// Whether a file of that name is to be replaced.
+        replace: bool,
+    },
     /// Export to a file, its ending chooses CSV or JSON.
     Export {
         what: super::export::ExportKind,
@@ -152,6 +170,8 @@ impl Command {
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
+            Self::Show(_) => Id::ChooseView,
+            Self::Study(_) => Id::Study,
             Self::Overlay(_) => Id::Overlays,
             Self::Map { .. } => Id::Map,
             Self::GoTo { .. } | Self::GoToState(_) => Id::Branches,
@@ -159,7 +179,7 @@ impl Command {
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } | Self::ExportPage { .. } => Id::Export,
+            Self::Export { .. } | Self::ExportPage { .. } | Self::Picture { .. } => Id::Export,
         }
     }
 }

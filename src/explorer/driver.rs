@@ -13,12 +13,15 @@ use super::job::Job;
 use super::loops::LoopWish;
 use super::maps::MapWish;
 use super::model::Model;
+use super::node::NodeKind;
 use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
 use super::progress::{Pace, Progress};
 use super::saves::Saves;
+use super::studies::{StudyWish, threads};
 use super::update::answer;
 use super::walk::{self, Request};
+use super::watch::Watch;
 use crate::fault;
 use crate::mend::Reason;
 use crate::store::Store;
@@ -64,6 +67,10 @@ impl Inline {
             Effect::Map(wish) => wish.run(&|| true).map(|found| Reply::Map(Arc::new(found))),
             Effect::Fit(wish) => Some(Reply::Fitted { id: wish.id, result: wish.fit(&mut |_| true) }),
             Effect::Distances(wish) => Some(Reply::Distances(Arc::new(wish.distances()))),
+            Effect::Study(wish) => {
+                let found = wish.run(threads(), &|| true, &mut |_| {});
+                found.map(|found| Reply::Study(Arc::new(found)))
+            }
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
             Effect::Walk(request) => {
                 let mut made = Vec::new();
@@ -73,7 +80,11 @@ impl Inline {
                 });
                 Some(Reply::Walked { id: request.id, made, outcome: Some(outcome) })
             }
-            Effect::StopWalk(_) | Effect::StopCurve(_) | Effect::StopFit(_) | Effect::StopPins => None,
+            Effect::StopWalk(_)
+            | Effect::StopCurve(_)
+            | Effect::StopFit(_)
+            | Effect::StopPins
+            | Effect::Pace(_) => None,
             Effect::Pin(number, preset) => Some(pinned(number, &preset, || true)),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
@@ -125,12 +136,13 @@ pub struct Workers {
     fits: Arc<Slot<Box<FitWish>>>,
     distances: Arc<Slot<Box<FitWish>>>,
     fits_stopped: Arc<AtomicU64>,
+    studies: Arc<Slot<Box<StudyWish>>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
     /// Counts cancellations: pins asked for before the last one are not computed.
     pins_given_up: Arc<AtomicU64>,
-    stopped: Arc<AtomicU64>,
+    walking: Arc<Watch>,
     given_up: Arc<AtomicU64>,
 }
 
@@ -183,7 +195,8 @@ impl Workers {
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
         let (curve, profile, loops, maps) = (Slot::empty(), Slot::empty(), Slot::empty(), Slot::empty());
-        let (stopped, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+        let studies = Slot::empty();
+        let (walking, given_up) = (Arc::new(Watch::default()), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
         let (pins, pinnings) = channel::<(u64, usize, Box<Preset>)>();
@@ -202,6 +215,8 @@ impl Workers {
         thread::Builder::new().name("fit".to_owned()).spawn(move || fit_lane(&slot, &stop, &send))?;
         let (slot, send) = (Arc::clone(&distances), reply.clone());
         thread::Builder::new().name("distances".to_owned()).spawn(move || distance_lane(&slot, &send))?;
+        let (slot, send) = (Arc::clone(&studies), reply.clone());
+        thread::Builder::new().name("study".to_owned()).spawn(move || study_lane(&slot, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -216,8 +231,8 @@ impl Workers {
                 }
             }
         })?;
-        let (stop, send) = (Arc::clone(&stopped), reply.clone());
-        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &stop, &send))?;
+        let (watch, send) = (Arc::clone(&walking), reply.clone());
+        thread::Builder::new().name("walk".to_owned()).spawn(move || walk_lane(&requests, &watch, &send))?;
         thread::Builder::new().name("files".to_owned()).spawn(move || file_lane(&store, &jobs, &reply))?;
         Ok(Self {
             curve,
@@ -227,11 +242,12 @@ impl Workers {
             fits,
             distances,
             fits_stopped,
+            studies,
             walks,
             files,
             pins,
             pins_given_up,
-            stopped,
+            walking,
             given_up,
         })
     }
@@ -256,8 +272,15 @@ impl Workers {
             Effect::Fit(wish) => self.fits.put(wish),
             Effect::StopFit(id) => drop(self.fits_stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Distances(wish) => self.distances.put(wish),
-            Effect::Walk(request) => drop(self.walks.send(request)),
-            Effect::StopWalk(id) => drop(self.stopped.fetch_max(id, Ordering::AcqRel)),
+            Effect::Study(wish) => self.studies.put(wish),
+            Effect::Walk(request) => {
+                if let Some(pace) = request.pace {
+                    self.walking.set(pace);
+                }
+                drop(self.walks.send(request));
+            }
+            Effect::Pace(pace) => self.walking.set(pace),
+            Effect::StopWalk(id) => self.walking.stop(id),
             Effect::Pin(number, preset) => {
                 let asked = self.pins_given_up.load(Ordering::Acquire);
                 drop(self.pins.send((asked, number, preset)));
@@ -360,18 +383,35 @@ fn distance_lane(slot: &Slot<Box<FitWish>>, reply: &dyn Fn(Reply)) {
     }
 }
 
-fn walk_lane(requests: &Receiver<Box<Request>>, stopped: &AtomicU64, reply: &dyn Fn(Reply)) {
+fn study_lane(slot: &Slot<Box<StudyWish>>, reply: &dyn Fn(Reply)) {
+    loop {
+        let wish = slot.take();
+        let go_on = || !slot.waiting.load(Ordering::Acquire);
+        let mut told = |data| reply(Reply::Study(Arc::new(data)));
+        if let Some(found) = wish.run(threads(), &go_on, &mut told) {
+            reply(Reply::Study(Arc::new(found)));
+        }
+    }
+}
+
+fn walk_lane(requests: &Receiver<Box<Request>>, watch: &Watch, reply: &dyn Fn(Reply)) {
     while let Ok(request) = requests.recv() {
         let id = request.id;
+        let is_paced = request.pace.is_some();
+        if is_paced && watch.is_stopped(id) {
+            reply(Reply::Walked { id, made: Vec::new(), outcome: Some(walk::Outcome::Paused) });
+            continue;
+        }
         let mut made = Vec::new();
         let mut sent = Instant::now();
         let outcome = walk::walk(&request, &mut |state| {
+            let ends = matches!(state.kind, NodeKind::Limit | NodeKind::Touch(_));
             made.push(state);
-            if sent.elapsed() > CHUNK {
+            if is_paced || sent.elapsed() > CHUNK {
                 reply(Reply::Walked { id, made: std::mem::take(&mut made), outcome: None });
                 sent = Instant::now();
             }
-            stopped.load(Ordering::Acquire) < id
+            if is_paced && !ends { watch.wait(id, sent) } else { !watch.is_stopped(id) }
         });
         reply(Reply::Walked { id, made, outcome: Some(outcome) });
     }

@@ -8,6 +8,7 @@ use super::maps::{MapData, MapWish};
 use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
+use super::studies::{StudyData, StudyWish};
 use super::walk::{Made, Outcome, Request};
 use crate::mend::Reason;
 use pulloff_engine::fit::Fit;
@@ -33,9 +34,13 @@ pub enum Effect {
     StopFit(u64),
     /// Find the distances of measured points; an older wish still waiting is forgotten.
     Distances(Box<FitWish>),
+    /// Compute a study; an older one is given up.
+    Study(Box<StudyWish>),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),
+    /// The run goes on at so many states a second.
+    Pace(f64),
     /// End the walk of this number; its states so far stay.
     StopWalk(u64),
     /// Compute the curve of a pin of a resumed session, by its number.
@@ -92,6 +97,8 @@ pub enum Reply {
         result: Result<Arc<Fit>, Reason>,
     },
     Distances(Arc<Distances>),
+    /// A study, or as much of it as is done.
+    Study(Arc<StudyData>),
     Profile(Arc<Inside>),
     Walked {
         id: u64,

@@ -2,11 +2,11 @@
 
 use super::command::{Assignment, Command};
 use super::curve::CurveData;
-use super::export::Page;
+use super::export::{Page, ends_in};
 use super::job::{Content, Done, Job};
 use super::journal::Beginning;
 use super::walk_table::{WALK_COLUMNS, WalkRow, changed_keys};
-use super::{data, script};
+use super::{data, script, study_table};
 use crate::mend::Reason;
 use crate::print::Format;
 use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
@@ -14,7 +14,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::report::unload::EventReport;
 use pulloff_engine::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
-use pulloff_engine::text::{quote, show_path};
+use pulloff_engine::text::show_path;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -122,6 +122,9 @@ fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done
     let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let text = match content {
         Content::Script(start, lines) => script_text(store, start, lines).map_err(Reason::mendable),
+        Content::Study(study, start) if ends_in(&path, &["toml"]) => named(store, start)
+            .map(|(name, over)| study_table::spec(study, &name, &over))
+            .map_err(Reason::mendable),
         numbers => {
             text(numbers, as_json).map_err(|error| Reason { text: error.to_string(), can_be_mended: false })
         }
@@ -173,6 +176,25 @@ struct Walked<'a, R> {
 /// A session as a script: opens the preset it began with, with the values that differ from its file, and follows its
 /// lines.
 fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<String, String> {
+    let (name, assignments) = named(store, start)?;
+    let open = script::line(&Command::OpenWith { name, assignments }).ok_or_else(|| lost(&start.source))?;
+    Ok(std::iter::once(script::HEAD).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(
+        String::new(),
+        |mut text, line| {
+            text.push_str(line);
+            text.push('\n');
+            text
+        },
+    ))
+}
+
+/// Why a preset cannot be said by its name and assignments.
+fn lost(source: &Source) -> String {
+    format!("its preset does not come of {} by values that can be assigned", source.shown())
+}
+
+/// How a preset is called: its name or path, and the values that differ from its file.
+fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), String> {
     let name = match &start.source {
         Source::Shipped(shipped) => shipped.name.to_owned(),
         Source::User { name, .. } => name.clone(),
@@ -188,23 +210,14 @@ fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<Str
     let none = &[] as &[&str];
     let source = store.resolve(&name).map_err(|error| error.to_string())?;
     let now = store.load(&source, none).map_err(|error| error.to_string())?.preset;
-    let lost = || format!("the walk did not begin with {}, and its values cannot be assigned", quote(&name));
     // Laid over the file as a whole, as a replay does.
     let leads_there = |assignments: &Vec<Assignment>| {
         let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
         store.load(&source, &laid).is_ok_and(|back| back.preset == start.preset)
     };
     let ways = [Some(differences(&now, &start.preset)), changes(&now, &start.preset)];
-    let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(lost)?;
-    let open = script::line(&Command::OpenWith { name: name.clone(), assignments }).ok_or_else(lost)?;
-    Ok(std::iter::once(script::HEAD).chain([&*open]).chain(lines.iter().map(String::as_str)).fold(
-        String::new(),
-        |mut text, line| {
-            text.push_str(line);
-            text.push('\n');
-            text
-        },
-    ))
+    let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(|| lost(&start.source))?;
+    Ok((name, assignments))
 }
 
 /// The text of a document; of a script its lines alone.
@@ -245,6 +258,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
                 rows::csv(pulloff_engine::report::unload::COLUMNS, events)?
             }
         }
+        Content::Study(study, _) => study_table::csv(study)?,
         Content::Script(_, lines) => lines.join("\n"),
     })
 }

@@ -6,6 +6,7 @@ use super::data::Folder;
 use super::export::{ExportKind, Page};
 use super::journal::Beginning;
 use super::node::Node;
+use super::studies::StudyData;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
 use pulloff_engine::gap::shapes::Rows;
@@ -23,6 +24,8 @@ pub enum Content {
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
     Script(Box<Beginning>, Vec<String>),
+    /// A study and where its preset comes from.
+    Study(Arc<StudyData>, Box<Beginning>),
 }
 
 impl Content {
@@ -33,6 +36,7 @@ impl Content {
             Self::Walk(..) => ExportKind::Walk,
             Self::Events(..) => ExportKind::Events,
             Self::Script(..) => ExportKind::Script,
+            Self::Study(..) => ExportKind::Study,
         }
     }
 }

@@ -5,6 +5,7 @@ use super::effect::Effect;
 use super::maps::{MapAxes, can_be_axis};
 use super::model::{Level, Model};
 use super::profile::{Ask, Inside};
+use super::reach::{pick_walk_line, walk_line};
 use super::view::{Overlay, Panel, View, Window};
 use pulloff_engine::preset::Key;
 use pulloff_engine::quasistatic::jump::Run;
@@ -23,11 +24,6 @@ pub const NO_ENVELOPE: &str = "for wavy spheres with adhesion only";
 
 /// The middle of a window.
 pub const MIDDLE: (f64, f64) = (0.5, 0.5);
-
-/// The view `by` places further on.
-pub(super) fn turn_view(model: &mut Model, by: usize) {
-    model.view = model.view.further(by);
-}
 
 /// Shows where each limit point happens over the selected value; where that is shown, the map of it and the adhesion.
 pub(super) fn map(model: &mut Model) {
@@ -59,6 +55,10 @@ fn show_map(model: &mut Model, axes: MapAxes) {
 
 /// Zooms a view about a place of its window.
 pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64)) {
+    if view.is_table() {
+        model.tell(Level::Info, "a table has nothing to zoom");
+        return;
+    }
     let times = if closer { CLOSER } else { 1.0 / CLOSER };
     match model.window(view).zoomed(times, about) {
         Some(window) => model.windows[view as usize] = window,
@@ -74,6 +74,10 @@ pub(super) fn whole(model: &mut Model) {
 }
 
 pub(super) fn cross_hair(model: &mut Model) {
+    if model.view.is_table() && model.cross.is_none() {
+        model.tell(Level::Info, "a table has no cross-hair: the arrows go through its lines");
+        return;
+    }
     model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };
     if model.cross.is_some() {
         // In this panel the arrow keys move it.
@@ -83,6 +87,11 @@ pub(super) fn cross_hair(model: &mut Model) {
 
 /// An arrow key in Charts moves the cross-hair, or without one the window.
 pub(super) fn go(model: &mut Model, right: f64, up: f64) {
+    if model.view.is_table() {
+        let line = walk_line(model);
+        pick_walk_line(model, if up < 0.0 { line + 1 } else { line.saturating_sub(usize::from(up > 0.0)) });
+        return;
+    }
     let window = model.window(model.view);
     let Some((x, y)) = model.cross else {
         let window = window.moved(right * PAN, up * PAN);
@@ -132,7 +141,7 @@ pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
 /// Carries views, overlays and pins over to another session.
 pub(super) fn carry_on(from: &Model, to: &mut Model) {
     (to.axes, to.overlays, to.view, to.views) = (from.axes, from.overlays, from.view, from.views);
-    (to.panel, to.events) = (from.panel, from.events);
+    (to.panel, to.events, to.studied) = (from.panel, from.events, from.studied);
     to.pins = from.pins.clone();
 }
 

@@ -15,6 +15,7 @@
 //! | [`status_line`] | what the status line says |
 //! | [`view`] | panels, views, windows, overlays |
 //! | [`look`] | the commands that change them |
+//! | [`reach`] | which views have something to show, and why the others have not |
 //! | [`pins`] | curves kept to compare the next ones with |
 //! | [`theory`] | closed forms drawn over a curve |
 //! | [`nudge`] | a parameter changed by a little |
@@ -27,9 +28,11 @@
 //! | [`background_jobs`] | pinned curves, admissibility checks, the profile of the current state |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
+//! | [`maps`], [`studies`], `study_table` | the map of two numbers; a quantity over one, and its documents |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
+//! | `watch` | the pace of a run, and its end |
 //! | [`export`], [`job`], [`files`], [`walk_table`] | opening, saving and exporting |
 //! | [`data`] | the profiles of a folder, to choose from |
 //! | [`follow`] | edges of rings, followed through a change of the problem |
@@ -70,18 +73,22 @@ pub mod pins;
 pub mod profile;
 pub mod progress;
 mod prune;
+pub mod reach;
 pub mod requests;
 mod saves;
 pub mod script;
 pub mod session;
 pub mod setting;
 pub mod status_line;
+pub mod studies;
+mod study_table;
 pub mod theory;
 pub mod undo;
 pub mod update;
 pub mod view;
 pub mod walk;
 pub mod walk_table;
+mod watch;
 
 pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, ProblemCurve};

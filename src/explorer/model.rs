@@ -1,6 +1,6 @@
 //! The state of a session, without terminals, keys or colours.
 
-use super::command::{Command, FIRST_LENGTH};
+use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
 use super::fitting::{Distances, FitWish, Fitting};
@@ -14,6 +14,7 @@ use super::pins::Pins;
 use super::profile::{Ask, Inside};
 use super::progress::Progress;
 use super::setting::same_curve;
+use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
 use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
 use crate::mend::Reason;
@@ -24,6 +25,8 @@ use pulloff_engine::preset::{Key, Preset, Row, Value, data};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::sweep::quantity::Under;
+use pulloff_engine::sweep::{Column, QUANTITIES};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -74,6 +77,10 @@ pub struct Walking {
     pub wanted: Option<usize>,
     /// Whether nobody asked for it: the state is solved again for other values.
     pub solves: bool,
+    /// Whether it goes at the pace.
+    pub paced: bool,
+    /// Whether its end was asked for: more states may be on their way.
+    pub stops: bool,
 }
 
 /// The admissibility check of the curve on the screen.
@@ -151,6 +158,12 @@ pub struct Model {
     pub distances: Option<Arc<Distances>>,
     /// The newest distances asked for.
     pub distances_wanted: Option<Box<FitWish>>,
+    /// The study on the screen; it can be that of values before, or not yet done.
+    pub study: Option<Arc<StudyData>>,
+    /// The newest study asked for.
+    pub study_wanted: Option<Box<StudyWish>>,
+    /// The quantity that is studied.
+    pub studied: Column,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -161,6 +174,8 @@ pub struct Model {
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
+    /// States a second of a run.
+    pub pace: f64,
     /// Whether the walk of a resumed session has been tried on its first curve already.
     pub is_tried: bool,
     pub walking: Option<Walking>,
@@ -171,6 +186,8 @@ pub struct Model {
     pub panel: Panel,
     pub parameter: usize,
     pub event: usize,
+    /// The selected line of the table of states; `None` follows the walker.
+    pub walk_line: Option<usize>,
     /// The view shown where only one fits, and the first where more do.
     pub view: View,
     pub views: usize,
@@ -237,6 +254,9 @@ impl Model {
             fit: None,
             distances: None,
             distances_wanted: None,
+            study: None,
+            study_wanted: None,
+            studied: Column { quantity: &QUANTITIES[0], under: Under::Own },
             stiffness,
             device: None,
             history: History::default(),
@@ -244,6 +264,7 @@ impl Model {
             undo: Undo::default(),
             inward: true,
             length: FIRST_LENGTH,
+            pace: FIRST_PACE,
             is_tried: false,
             walking: None,
             queue: VecDeque::new(),
@@ -251,6 +272,7 @@ impl Model {
             panel: Panel::Problem,
             parameter: 0,
             event: 0,
+            walk_line: None,
             view: View::ForceApproach,
             views: 1,
             windows: [Window::WHOLE; View::ALL.len()],
@@ -325,6 +347,11 @@ impl Model {
     /// The smallest A/λ at which the problem snaps, where it is known.
     pub fn snaps_from(&self) -> Option<f64> {
         self.snaps_from.as_ref().filter(|found| found.is_of(&self.preset))?.amplitude_over_wavelength
+    }
+
+    /// Whether a run goes on at the pace, which any key but those of the pace ends.
+    pub fn is_running(&self) -> bool {
+        self.walking.is_some_and(|walking| walking.paced && !walking.stops)
     }
 
     /// Whether a walk is under way, or the curve that the next one walks on.

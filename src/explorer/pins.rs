@@ -152,6 +152,11 @@ pub fn name(pinned: &Preset, now: &Preset) -> String {
     named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
 }
 
+/// The values of `after` that `before` has not, as labels and values; `None` where there are none.
+pub fn changed(after: &Preset, before: &Preset) -> Option<String> {
+    named(&differences(after, before), &after.units)
+}
+
 /// The name of `now` among the pins: its values that some of them have not; `None` without any.
 pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
     let keys: HashSet<String> = pins

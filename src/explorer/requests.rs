@@ -4,8 +4,10 @@ use super::effect::{Check, Effect, Wish};
 use super::job::Job;
 use super::loops::{LoopWish, has_crests, same_loop};
 use super::maps::{MapAxes, MapWish};
-use super::model::{Awaits, Checking, Model};
+use super::model::{Awaits, Checking, Model, Walking};
 use super::node::NodeKind;
+use super::reach::study_range;
+use super::studies::StudyWish;
 use super::view::{EventSource, View};
 use pulloff_engine::preset::{Key, Preset, Value};
 use pulloff_engine::problem::Control;
@@ -79,6 +81,22 @@ pub(super) fn want_map(model: &mut Model) -> Option<Effect> {
     Some(Effect::Map(Box::new(wish)))
 }
 
+/// Asks for the study of the selected value, while it is looked at.
+pub(super) fn want_study(model: &mut Model) -> Option<Effect> {
+    let is_shown = model.shown_views().contains(&View::Study) && !model.is_computing();
+    let (key, values) = study_range(model).ok().filter(|_| is_shown)?;
+    let (preset, column) = (&model.preset, model.studied);
+    let is_there = model.study.as_ref().is_some_and(|study| study.is_of(preset, &key, column));
+    let is_asked = model.study_wanted.as_ref().is_some_and(|wanted| wanted.is_of(preset, &key, column));
+    if is_there || is_asked {
+        return None;
+    }
+    let preset = preset.clone();
+    let wish = StudyWish { id: model.number(), preset, key, column, values };
+    model.study_wanted = Some(Box::new(wish.clone()));
+    Some(Effect::Study(Box::new(wish)))
+}
+
 /// Takes the parameters of the walker's state where the curve on the screen has others.
 pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
     let Some(node) = model.history.current() else { return Vec::new() };
@@ -139,6 +157,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.awaits = Awaits::Nothing;
+    model.walking = model.walking.map(|walking| Walking { stops: true, ..walking });
     stop_walk(model)
 }
 

@@ -4,7 +4,7 @@ use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
 use pulloff_engine::quasistatic::EventKind;
-use pulloff_engine::report::number::{loss, significant, with_unit};
+use pulloff_engine::report::number::{loss, short, significant, with_unit};
 use pulloff_engine::report::unload::{StateReport, control_name};
 use pulloff_engine::units::Quantity;
 
@@ -72,6 +72,13 @@ fn next(model: &Model) -> String {
         return format!("computing the equilibrium curve{}", progress(model));
     };
     if let Some(Walking { made, wanted, .. }) = model.walking {
+        if model.is_running() {
+            let [slower, faster] = [Id::Slower, Id::Faster].map(Id::named);
+            let pace = short(model.pace, 3);
+            return format!(
+                "running, {pace} states a second: {slower} slower, {faster} faster, any other key pauses"
+            );
+        }
         let of = wanted.filter(|count| *count > 1).map_or_else(String::new, |count| format!(" of {count}"));
         return format!("walking, {made}{of} states; {} stops", Id::Cancel.named());
     }

@@ -24,10 +24,10 @@ use super::fitting::{fit, fit_came, mark, want_distances};
 use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
-use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map};
+use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map, want_study};
 use super::view::{Axes, EventSource, Panel, View};
 use super::walk::{Action, ROOM};
-use super::{background_jobs, look};
+use super::{background_jobs, look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::{checked, curve_came, give_up};
 use files::{export, export_page, file_done, save, save_back};
@@ -38,7 +38,7 @@ use pulloff_engine::units::Quantity;
 use travel::{by_states, go_to, go_to_state, travel, travel_to};
 use turns::{Turn, enqueue, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
-use walk::{restart, scale_length, walk, walked};
+use walk::{restart, run, scale_length, scale_pace, walk, walked};
 
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
@@ -64,13 +64,17 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
     effects.extend(want_distances(model));
+    effects.extend(want_study(model));
     effects
 }
 
 /// Does what is allowed now; what is not is refused with the reason. What it changed can be taken back.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
     // Which states there are says the tree, not undo.
-    let by_states = matches!(command, Command::Travel { states: true, .. } | Command::GoToState(_));
+    let by_states = matches!(
+        command,
+        Command::Travel { states: true, .. } | Command::GoToState(_) | Command::GoTo { .. }
+    );
     if !by_states && !is_available(model, command.id()) {
         model.tell(Level::Error, why_unavailable(model, command.id()));
         return Vec::new();
@@ -109,7 +113,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
         Command::Plain(id) => plain(model, id),
         Command::Steps(count) => walk(model, Action::Steps(count)),
-        Command::RunOf(count) => walk(model, Action::Run(count)),
+        Command::RunOf(count) => run(model, Action::Run(count)),
         Command::StepLength(length) => {
             model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end());
             Vec::new()
@@ -127,6 +131,15 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::MoveTo(radius) => move_to(model, radius),
         Command::Zoom { view, closer, about } => {
             look::zoom(model, view, closer, about);
+            Vec::new()
+        }
+        Command::Show(view) => {
+            reach::show(model, view);
+            Vec::new()
+        }
+        Command::Study(column) => {
+            model.studied = column;
+            reach::show(model, View::Study);
             Vec::new()
         }
         Command::Overlay(overlay) => {
@@ -156,6 +169,10 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::SaveAnyway => save(model, Overwrite::Always),
         Command::Export { what, path, replace } => export(model, what, path, replace),
         Command::ExportPage { page, path, replace } => export_page(model, page, path, replace),
+        Command::Picture { picture, .. } => {
+            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()));
+            Vec::new()
+        }
     }
 }
 
@@ -202,6 +219,13 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             }
             Vec::new()
         }
+        Reply::Study(found) => {
+            // What is done of the newest, and of no other.
+            if model.study_wanted.as_ref().is_some_and(|wanted| found.wish.id == wanted.id) {
+                model.study = Some(found);
+            }
+            Vec::new()
+        }
         Reply::Profile(profile) => {
             look::profile_came(model, profile);
             Vec::new()
@@ -222,6 +246,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     effects.extend(want_loop(model));
     effects.extend(want_map(model));
     effects.extend(want_distances(model));
+    effects.extend(want_study(model));
     effects
 }
 
@@ -237,7 +262,9 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
             return effects;
         }
         Id::Jump => return walk(model, Action::Jump),
-        Id::Run => return if model.walking.is_some() { stop(model) } else { walk(model, Action::ToLimit) },
+        Id::Run => return if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) },
+        Id::Slower => return scale_pace(model, 0.5),
+        Id::Faster => return scale_pace(model, 2.0),
         Id::Restart => return restart(model),
         Id::Reverse => model.inward = !model.inward,
         Id::Halve => scale_length(model, 0.5),
@@ -256,8 +283,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Down => move_selection(model, true),
         Id::NextPanel | Id::Right => next_panel(model, 1),
         Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
-        Id::NextView => look::turn_view(model, 1),
-        Id::PreviousView => look::turn_view(model, View::ALL.len() - 1),
+        Id::NextView => model.view = reach::next(model, true),
+        Id::PreviousView => model.view = reach::next(model, false),
         Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
         Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Whole => look::whole(model),
@@ -285,6 +312,8 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Export
         | Id::Overlays
         | Id::Pins
+        | Id::ChooseView
+        | Id::Study
         | Id::Branches
         | Id::Copy
         | Id::Enlarge
@@ -351,12 +380,14 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
     let lines = match panel {
         Panel::Problem => model.knobs().len(),
         Panel::Events => model.shown_events().len() + model.shown_inadmissible().len(),
+        Panel::Charts if model.view.is_table() => model.history.path().len(),
         Panel::Walker | Panel::Charts => 0,
     };
     let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
     match panel {
         Panel::Problem => model.parameter = line,
         Panel::Events => model.event = line,
+        Panel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
         Panel::Walker | Panel::Charts => {}
     }
 }
@@ -396,8 +427,18 @@ fn select(model: &mut Model) -> Vec<Effect> {
         // Chosen in the list of a curve that will have gone, or in the middle of a walk.
         Panel::Events if model.is_busy() => update(model, Command::SelectEvent(model.event + 1)),
         Panel::Events => go_to_event(model),
+        Panel::Charts if model.view.is_table() => go_to_line(model),
         _ => Vec::new(),
     }
+}
+
+/// The walker goes to the selected state of the table of states.
+fn go_to_line(model: &mut Model) -> Vec<Effect> {
+    let line = reach::walk_line(model);
+    let state = model.history.path().get(line).map(|(node, _)| *node);
+    let numbering = model.history.numbering();
+    // As a command of its own: it waits for its turn, and can be taken back.
+    state.map_or_else(Vec::new, |node| update(model, Command::GoTo { node, numbering }))
 }
 
 /// The walker goes to the limit point of the selected event.

@@ -90,11 +90,17 @@ pub enum View {
     Map,
     /// The distances of the measured points from the curve.
     Residuals,
+    /// P minus that of the pinned curves and of theory, at equal s and at equal δ.
+    Differences,
+    /// The states walked, as a table.
+    Walk,
+    /// A quantity over the range of the selected value.
+    Study,
 }
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::ForceApproach,
         Self::RadiusForce,
         Self::RadiusApproach,
@@ -108,6 +114,9 @@ impl View {
         Self::Stability,
         Self::Map,
         Self::Residuals,
+        Self::Differences,
+        Self::Walk,
+        Self::Study,
     ];
 
     /// Its name.
@@ -126,7 +135,42 @@ impl View {
             Self::Stability => "stability",
             Self::Map => "map",
             Self::Residuals => "residuals",
+            Self::Differences => "differences",
+            Self::Walk => "walk",
+            Self::Study => "study",
         }
+    }
+
+    /// What it shows, in one line.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::ForceApproach => "the force P over the approach",
+            Self::RadiusForce => "the contact radius s over the force",
+            Self::RadiusApproach => "the contact radius s over the approach",
+            Self::Pressure => "the contact pressure of the walker's state",
+            Self::Gap => "the gap around its contact, deformed and undeformed",
+            Self::Contact => "its contact from above",
+            Self::Energy => "the potential over s, the control held",
+            Self::Unloading => "the path down with the energy its jumps lose",
+            Self::Cycle => "the whole loop of loading and unloading",
+            Self::ContactMap => "where the bodies touch, over the whole loop",
+            Self::Stability => "the adhesion at which each state is a limit point",
+            Self::Map => "where snaps begin, over two numbers",
+            Self::Residuals => "how far each measured point is from the curve",
+            Self::Differences => "P minus that of pins and theory",
+            Self::Walk => "the states walked, as a table",
+            Self::Study => "a quantity over the range of the selected value",
+        }
+    }
+
+    /// Whether it is a table of lines: it has no axes.
+    pub fn is_table(self) -> bool {
+        self == Self::Walk
+    }
+
+    /// The view of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|view| view.name() == name)
     }
 
     /// Whether it shows the equilibrium curve, on which walker, pins and overlays have a place.
@@ -144,18 +188,18 @@ impl View {
         matches!(self, Self::Pressure | Self::Gap | Self::Contact | Self::Energy)
     }
 
-    /// The view `by` places further on, round and round.
-    #[must_use]
-    pub fn further(self, by: usize) -> Self {
-        let at = Self::ALL.iter().position(|view| *view == self).unwrap_or(0);
-        Self::ALL[(at + by) % Self::ALL.len()]
+    /// The views after it, or before it, round and round.
+    pub fn others(self, forward: bool) -> impl Iterator<Item = Self> {
+        let count = Self::ALL.len();
+        let way = move |by| if forward { by } else { count - by };
+        (1..count).map(move |by| Self::ALL[(self as usize + way(by)) % count])
     }
 
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            Contact, ContactMap, Cycle, Energy, ForceApproach, Gap, Map, Pressure, RadiusApproach,
-            RadiusForce, Residuals, Stability, Unloading,
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, Gap, Map, Pressure,
+            RadiusApproach, RadiusForce, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
@@ -165,7 +209,9 @@ impl View {
             Stability => [RadiusApproach, ForceApproach, Unloading],
             Map => [Stability, ForceApproach, Unloading],
             Residuals => [ForceApproach, RadiusForce, Pressure],
-            RadiusForce | Gap | Unloading => [ForceApproach, Pressure, Energy],
+            Study => [ForceApproach, Unloading, RadiusForce],
+            Differences => [ForceApproach, RadiusForce, RadiusApproach],
+            RadiusForce | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
             Energy => [RadiusApproach, ForceApproach, Pressure],
@@ -310,10 +356,12 @@ mod tests {
             assert!(names.insert(view.name()));
             let mut shown = HashSet::from(view.companions());
             assert!(shown.insert(view) && shown.len() == 4, "{view:?}");
-            view = view.further(1);
+            assert_eq!(View::named(view.name()), Some(view));
+            view = view.others(true).next().unwrap();
         }
         assert_eq!(view, View::ForceApproach);
-        assert_eq!(view.further(View::ALL.len() - 1), View::Residuals);
+        assert_eq!(view.others(false).next(), Some(View::Study));
+        assert_eq!(view.others(true).count(), View::ALL.len() - 1);
     }
 
     #[test]

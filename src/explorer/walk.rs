@@ -74,6 +74,8 @@ pub struct Request {
     pub control: Control,
     pub inward: bool,
     pub length: f64,
+    /// States a second; without it they are made as fast as they can be. Without a screen nobody watches.
+    pub pace: Option<f64>,
 }
 
 /// One new state; the fields are as in [`Node`](super::node::Node).

@@ -7,12 +7,22 @@ use std::f64::consts::PI;
 /// Corners of half a circle.
 const CORNERS: u32 = 180;
 
-/// Lays the contacts, as [inner, outer] on the axis of radii, and the crests on a figure that shows radii up to `reach`.
-pub fn lay(figure: &mut Figure, contacts: &[[f64; 2]], crests: impl Iterator<Item = f64>, reach: f64) {
+/// Lays the contacts, as [inner, outer] on the axis of radii, where in them the bodies pull, and the crests on a figure
+/// that shows radii up to `reach`.
+pub fn lay(
+    figure: &mut Figure,
+    contacts: &[[f64; 2]],
+    tensions: &[[f64; 2]],
+    crests: impl Iterator<Item = f64>,
+    reach: f64,
+) {
     figure.bounds = Bounds { x: [-reach, reach], y: [0.0, reach] };
-    for [inner, outer] in contacts {
+    let all = [(Meaning::Contact, contacts), (Meaning::Tension, tensions)];
+    for (meaning, [inner, outer]) in
+        all.into_iter().flat_map(|(meaning, all)| all.iter().map(move |at| (meaning, at)))
+    {
         let outline = half(*outer).into_iter().chain(half(*inner).into_iter().rev()).collect();
-        figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
+        figure.areas.push(Area { meaning, outline, lost: None });
     }
     figure.lines.extend(crests.map(|r| Line::new(Role::Undeformed, "crest", half(r))));
     // The axis is no edge.

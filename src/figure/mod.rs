@@ -14,9 +14,11 @@
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
 //! | [`contact_map`] | the contacts over the way of the control |
+//! | [`differences`] | P minus that of the others |
 //! | [`stability`] | the law of stability over the contact radius |
 //! | `labels` | where the labels of a map stand |
 //! | [`map`] | lines of a map of two numbers, limit points over one |
+//! | [`study`] | a quantity over the range of one value |
 //! | [`state`] | pressure, gap and potential of the walker's state |
 //! | `contact` | its contact from above |
 //! | [`measured`] | measured points behind a curve |
@@ -28,6 +30,7 @@ pub mod bounds;
 mod contact;
 pub mod contact_map;
 pub mod curves;
+pub mod differences;
 mod labels;
 pub mod loops;
 pub mod map;
@@ -40,6 +43,7 @@ pub mod scale;
 pub mod shape;
 pub mod stability;
 pub mod state;
+pub mod study;
 mod subject;
 pub mod unloading;
 pub mod walk;
@@ -63,6 +67,9 @@ impl Subject<'_> {
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),
             View::Residuals => residuals::figure(self),
+            View::Differences => differences::figure(self),
+            View::Walk => walk::table(),
+            View::Study => study::figure(self),
             View::Pressure | View::Gap | View::Contact | View::Energy => state::figure(self, view),
         };
         if let Some(points) = &self.measured {

@@ -98,6 +98,8 @@ pub enum Sign {
     OfCrest(u32),
     /// The number of snaps in the region of a map around it; the last stands for more.
     Snaps(usize),
+    /// A point that a text calls by this letter.
+    Letter(char),
     /// A computed value, on a line through all of them.
     Value,
     /// A measured point, of an approach or of a retraction: behind everything.
@@ -120,6 +122,8 @@ pub enum Meaning {
     Lost,
     /// The bodies are in contact there.
     Contact,
+    /// They pull at each other, within a contact.
+    Tension,
 }
 
 impl Meaning {
@@ -128,6 +132,7 @@ impl Meaning {
         match self {
             Self::Lost => "energy lost",
             Self::Contact => "in contact",
+            Self::Tension => "pulling",
         }
     }
 }
@@ -213,6 +218,8 @@ pub struct Figure {
     pub bounds: Bounds,
     pub notes: Vec<String>,
     pub missing: Option<String>,
+    /// Whether a circle is round on it: both axes have the same scale.
+    pub is_even: bool,
 }
 
 impl Figure {
@@ -228,6 +235,7 @@ impl Figure {
             bounds: Bounds::of([]),
             notes: Vec::new(),
             missing: None,
+            is_even: false,
         }
     }
 

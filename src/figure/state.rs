@@ -32,7 +32,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     };
     let title =
         if view == View::Contact { "contact".to_owned() } else { format!("{} over {}", y.title(), x.symbol) };
-    let mut figure = Figure::empty(title, x, y);
+    let mut figure = Figure { is_even: view == View::Contact, ..Figure::empty(title, x, y) };
     let Some(inside) = subject.inside else {
         figure.missing = Some(match subject.walk.last() {
             Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),
@@ -99,7 +99,29 @@ impl Drawing<'_> {
         let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
         let reach = (1.0 + AROUND) * self.widest;
         let crests = self.crests(0.0, end).map(|r| self.radius(r)).take_while(|r| *r <= reach);
-        contact::lay(figure, &self.contacts(), crests, reach);
+        contact::lay(figure, &self.contacts(), &self.tensions(), crests, reach);
+    }
+
+    /// Where in the contacts the pressure is negative, on their axis: from and to.
+    fn tensions(&self) -> Vec<[f64; 2]> {
+        let inside = &self.inside.profile.inside;
+        let mut all = Vec::new();
+        for [inner, outer] in &self.inside.profile.contacts {
+            let within = inside.iter().filter(|at| at.radius >= *inner && at.radius <= *outer);
+            let places: Vec<(f64, f64)> = within.map(|at| (at.radius, at.pressure)).collect();
+            let mut begun = places.first().filter(|at| at.1 < 0.0).map(|_| *inner);
+            for pair in places.windows(2) {
+                let [(a, p), (b, q)] = [pair[0], pair[1]];
+                let zero = a + (b - a) * p / (p - q);
+                match (p < 0.0, q < 0.0) {
+                    (false, true) => begun = Some(zero),
+                    (true, false) => all.extend(begun.take().map(|from| [from, zero])),
+                    _ => {}
+                }
+            }
+            all.extend(begun.map(|from| [from, *outer]));
+        }
+        all.into_iter().map(|edges: [f64; 2]| edges.map(|r| self.radius(r))).collect()
     }
 
     /// The edges as marks; the axis is none.

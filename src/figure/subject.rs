@@ -6,7 +6,9 @@ use crate::explorer::branches::{Branch, branches};
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
-use crate::explorer::{Axes, CurveData, EventSource, Model, Node, Overlays, device};
+use crate::explorer::reach::study_range;
+use crate::explorer::studies::StudyData;
+use crate::explorer::{Axes, CurveData, EventSource, Model, Node, Overlays, View, device};
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{BasisSpec, Preset};
@@ -33,6 +35,8 @@ pub struct Subject<'a> {
     pub measured: Option<Points>,
     /// Their distances from the curve, or why there are none, where they are known.
     pub distances: Option<&'a Result<(Abscissa, Vec<Residual>), String>>,
+    /// The study of the selected value, or why there is none, where it is known.
+    pub study: Option<Result<&'a StudyData, String>>,
     pub pins: &'a [Pin],
     pub preset: &'a Preset,
     /// The theory to draw.
@@ -55,6 +59,7 @@ impl<'a> Subject<'a> {
             event: (model.events == EventSource::Curve).then_some(model.event + 1),
             measured: Points::of(&model.preset).and_then(Result::ok),
             distances: model.distances.as_ref().map(|distances| &distances.found),
+            study: study(model),
             pins: model.pins.all(),
             preset: &model.preset,
             overlays: model.overlays,
@@ -75,6 +80,7 @@ impl<'a> Subject<'a> {
             event: None,
             measured: None,
             distances: None,
+            study: None,
             pins: &[],
             preset: &curve.setting.preset,
             overlays,
@@ -101,5 +107,19 @@ impl<'a> Subject<'a> {
     /// Whether a state solves the problem of the curve.
     pub fn is_on_curve(&self, node: &Node) -> bool {
         is_on_curve(self.curve, node)
+    }
+}
+
+/// The study of the selected value, where the view is on the screen; of the values before while that is computed.
+fn study(model: &Model) -> Option<Result<&StudyData, String>> {
+    if !model.shown_views().contains(&View::Study) {
+        return None;
+    }
+    match study_range(model) {
+        Err(why) => Some(Err(why)),
+        Ok((key, _)) => {
+            let is_it = |study: &&StudyData| study.wish.key == key && study.wish.column == model.studied;
+            model.study.as_deref().filter(is_it).map(Ok)
+        }
     }
 }

@@ -435,3 +435,42 @@ fn the_barrier_appears_shrinks_and_is_gone_at_the_limit_point() {
     assert!(session.model.limit_number().is_some());
     assert!(heights.len() > 3 && heights.windows(2).all(|pair| pair[1] < pair[0]), "{heights:?}");
 }
+
+#[test]
+fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Pin).does(Command::Overlay(Overlay::Exact));
+    session.does(Command::Assign(vec![("gap.amplitude".into(), "0.0025001".into())]));
+    let figure = session.figure(View::Differences);
+    let scale = Subject::of(&session.model).unwrap().scale();
+    let of = |role: Role, is_broken: bool| {
+        let mut lines = figure.lines.iter().filter(|line| line.role == role && line.is_broken == is_broken);
+        lines.next().unwrap().points.clone()
+    };
+    // The basis is exact: from the exact solution it differs by rounding, at equal s and at equal δ.
+    let largest = |points: &[(f64, f64)]| {
+        let found = || points.iter().map(|(_, y)| y.abs()).filter(|y| y.is_finite());
+        (found().count(), found().fold(0.0, f64::max))
+    };
+    for is_broken in [false, true] {
+        let (count, most) = largest(&of(Role::Exact, is_broken));
+        assert!(count > 100 && most < 1e-6, "{is_broken}: {count} points, {most}");
+    }
+    // From the pin by what the amplitude does to P at a radius.
+    let pin = session.model.pins.all()[0].curve.clone();
+    let ours = session.model.curve.clone().unwrap();
+    let points = of(Role::Pin(1), false);
+    for (at, (x, y)) in pin.points.iter().zip(&points).step_by(97).filter(|(_, (_, y))| y.is_finite()) {
+        assert!((x - scale.radius(at.contact_radius)).abs() < 1e-12);
+        let s = at.contact_radius / ours.case.units().length;
+        let point = ours.base.curve.equilibrium.explicit(s).unwrap();
+        let force = ours.base.curve.equilibrium.state(&point).force * ours.case.units().force;
+        assert!((y - scale.force(force - at.force)).abs() < 1e-9, "{x}: {y}");
+    }
+    assert!(is_fit(&figure) && figure.walker().is_some());
+    let (count, most) = largest(&of(Role::Pin(1), true));
+    assert!(count > 100 && most > 0.0 && most < 1e-2, "{count} points, {most}");
+    session.does(Command::Unpin(None)).does(Command::Overlay(Overlay::Exact));
+    session.does(Command::Overlay(Overlay::Smooth));
+    assert!(session.figure(View::Differences).missing.is_some());
+}

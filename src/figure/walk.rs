@@ -1,6 +1,6 @@
 //! The states walked, the jumps as straight lines, and the walker.
 
-use super::parts::{Figure, Line, Mark, Role, Sign};
+use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::View;
@@ -144,4 +144,11 @@ fn inner_edges(subject: &Subject<'_>, scale: Scale<'_>, view: View) -> Vec<Line>
         }));
     }
     lines
+}
+
+/// The states walked have lines and no axes: who draws a figure says what has them.
+pub fn table() -> Figure {
+    let none = || Axis::pure(String::new());
+    let why = "the states walked are a table: export walk writes it";
+    Figure { missing: Some(why.to_owned()), ..Figure::empty("walk".to_owned(), none(), none()) }
 }

@@ -101,8 +101,9 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
         Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
         Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
-        // Written as numbers.
+        // Written as numbers; a letter beside a point.
         Sign::Snaps(_) | Sign::OfCrest(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
+        Sign::Letter(_) => stamp(MarkerShape::Circle, BLACK, 1.6, ""),
         Sign::Measured { loading: true } => stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach"),
         Sign::Measured { loading: false } => stamp(MarkerShape::Square, GREY, 1.1, "measured retraction"),
         // The axes say what it is.

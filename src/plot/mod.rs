@@ -16,6 +16,7 @@ pub mod ink;
 pub mod lines;
 pub mod map;
 pub mod paper;
+pub mod picture;
 pub mod series;
 pub mod svg;
 pub mod table;

@@ -10,8 +10,10 @@
 //! | 8, 9 | force and contact radius on slight and on steep waves |
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
 
-use crate::explorer::{CurveData, Overlays, View};
-use crate::figure::{Axis, Figure, Line, Role, Run, Subject};
+use crate::explorer::curve::CurvePoint;
+use crate::explorer::{Axes, CurveData, Overlays, View};
+use crate::figure::curves::place;
+use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Scale, Sign, Subject};
 use crate::store::{read_with, shipped};
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::{Preset, ReadError};
@@ -88,15 +90,18 @@ pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
 
 /// Force over approach and contact radius over force of a shipped preset, in the paper's rings, over the exact solution.
 fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result<[Sheet; 2], PaperError> {
+    // The paper marks where the bodies come apart in this one.
+    let has_ends = preset == "fig-8";
     let preset = shipped(preset, &[])?;
     let data = checked(&preset)?;
     let case = &data.case;
     let theory = Exact::of(&case.problem).name();
     let sheet = |name, view, what: &str| {
-        let figure = figure(&data, view);
+        let mut figure = figure(&data, view);
+        let ends = if has_ends { ends(&data, view, &mut figure) } else { String::new() };
         let caption = format!(
             "{title}: {what}. {} rings, stable parts solid, unstable ones dashed under displacement control, limit points \
-             marked. {theory} (dots): our curve is nowhere further from it than {} of the picture.",
+             marked.{ends} {theory} (dots): our curve is nowhere further from it than {} of the picture.",
             case.basis.size(),
             significant(furthest(&figure), 2)
         );
@@ -106,6 +111,23 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
         sheet(names[0], View::ForceApproach, "the force over the approach"),
         sheet(names[1], View::RadiusForce, "the contact radius over the force"),
     ])
+}
+
+/// Marks A, where the bodies come apart under a dead load, and B, where they do under displacement, and says where they are.
+fn ends(data: &CurveData, view: View, figure: &mut Figure) -> String {
+    let least = |of: fn(&CurvePoint) -> f64| data.points.iter().min_by(|a, b| of(a).total_cmp(&of(b)));
+    let scale = Scale::of(data, Axes::Reduced);
+    let mut said = String::new();
+    let ends =
+        [('A', least(|at| at.force), "smallest force"), ('B', least(|at| at.approach), "smallest approach")];
+    for (letter, point, what) in ends {
+        let Some(point) = point else { continue };
+        let (force, approach) = (scale.force(point.force), point.approach);
+        figure.marks.push(Mark { sign: Sign::Letter(letter), at: scale.place(view, place(point)) });
+        let [force, approach] = [force, approach].map(|x| significant(x, 4));
+        said.push_str(&format!(" {letter}: the {what}, P = {force} P_c at δ = {approach} R."));
+    }
+    said
 }
 
 /// The largest distance of the computed curve from the exact one, in shares of the picture.
@@ -274,8 +296,8 @@ impl Pressure {
 
 /// The errors of force and contact radius over the number of rings.
 fn errors() -> Result<Sheet, PaperError> {
-    let mut lines = Vec::new();
-    let mut words = Vec::new();
+    let (mut lines, mut marks) = (Vec::new(), Vec::new());
+    let (mut words, mut orders) = (Vec::new(), Vec::new());
     for (i, (title, work_of_adhesion)) in [("Hertz", 0.0), ("JKR", 0.01)].into_iter().enumerate() {
         let exact = smooth(work_of_adhesion);
         let radius = radius_at(&exact, APPROACH);
@@ -297,17 +319,30 @@ fn errors() -> Result<Sheet, PaperError> {
             if let [.., (before, larger), (after, smaller)] = points[..] {
                 let order = (larger / smaller).ln() / (after / before).ln();
                 words.push(format!("{title}, {quantity}: {}", significant(order, 2)));
+                orders.push(order);
             }
+            marks.extend(points.iter().map(|at| Mark { sign: Sign::Value, at: *at }));
             lines.push(Line::new(Role::Pin(2 * i + k + 1), format!("{title}, {quantity}"), points));
         }
     }
+    // Through the first error of all, down to the last number of rings.
+    let [fewest, most] = [RINGS[0], RINGS[RINGS.len() - 1]].map(|rings| rings as f64);
+    if let Some((_, error)) = lines.first().and_then(|line| line.points.first()).copied() {
+        lines.push(Line::new(Role::Zero, "1/N", vec![(fewest, error), (most, error * fewest / most)]));
+    }
+    // Those of JKR are the last two: contact radius, force.
+    let slower = if let [.., radius, force] = orders[..] { (force < radius).then_some(()) } else { None };
     let axis = |title: &str| Axis::pure(title.to_owned()).running(Run::Logarithmic);
     let caption = format!(
         "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
-         number of rings N. The observed orders at the finest meshes are {}.",
-        words.join("; ")
+         number of rings N, computed at the marks; the thin line falls as 1/N. The observed orders at the finest meshes are \
+         {}.{}",
+        words.join("; "),
+        slower.map_or("", |_| {
+            " With adhesion our force converges slower than the contact radius here; the paper finds the force more accurate."
+        })
     );
-    let figure = Figure::of(axis("N"), axis("relative error"), lines);
+    let figure = Figure { marks, ..Figure::of(axis("N"), axis("relative error"), lines) };
     Ok(Sheet { name: "fig-5", figure, caption })
 }
 

@@ -23,5 +23,10 @@ pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, M
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
     let [x, y] = [(axis, run), (quantity, Run::Linear)]
         .map(|(name, run)| Axis::pure(results.title(name)).running(run));
-    Ok(Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) })
+    let mut figure = Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) };
+    if results.is_random {
+        // Neighbours drawn at random differ in whatever else was drawn: no line joins them.
+        figure.lines.clear();
+    }
+    Ok(figure)
 }

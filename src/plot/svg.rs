@@ -11,6 +11,7 @@ use kuva::render::color::Color;
 use kuva::render::layout::{ComputedLayout, TickFormat};
 use kuva::render::plots::Plot as Drawn;
 use kuva::render::render::{PathData, Primitive, Scene, render_multiple};
+use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{printed, short};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -27,8 +28,12 @@ const MAP_ASPECT: f64 = 0.9;
 /// Letters of 8 and 7 points in the library's units.
 const LETTERS: u32 = 11;
 const SMALL_LETTERS: u32 = 9;
+/// The letters of a subscript.
+const SUBSCRIPT: u32 = 8;
 /// Families with like widths, the first the one the library reckons with.
 const FONT: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
+/// How far a letter stands from its point, as a share of the field.
+const BESIDE: f64 = 0.035;
 /// The name of the field's outline in the document; the library's own would change from figure to figure.
 const FIELD: &str = "field";
 
@@ -41,12 +46,18 @@ pub fn svg(figure: &Figure, width: Width) -> String {
     let legend = legend(figure);
     // What surrounds the field does not depend on the height: one trial tells it.
     let trial = ComputedLayout::from_layout(&layout(figure, &legend, wide, wide));
-    let high = (wide - trial.plot_height() + ASPECT * trial.plot_width()).round();
+    let high = (wide - trial.plot_height() + aspect(figure) * trial.plot_width()).round();
     let layout = layout(figure, &legend, wide, high);
     let field = ComputedLayout::from_layout(&layout);
     let mut scene = render_multiple(plots(figure), layout);
     hatch(figure, &field, &mut scene);
     finish(&scene, cropped(&legend))
+}
+
+/// The height of the field over its width: where both axes are the same length a circle is round.
+fn aspect(figure: &Figure) -> f64 {
+    let [x, y] = [figure.bounds.x, figure.bounds.y].map(|[lo, hi]| hi - lo);
+    if figure.is_even { (y / x).clamp(0.2, 2.0) } else { ASPECT }
 }
 
 /// What is taken off below the legend.
@@ -90,6 +101,8 @@ pub(super) fn finish(scene: &Scene, cropped: f64) -> String {
         text = text.replace(&format!("\"{name}\""), &format!("\"{FIELD}\""));
         text = text.replace(&format!("#{name})"), &format!("#{FIELD})"));
     }
+    // The pull-off force of the smooth sphere, as formulas have it.
+    text = text.replace("/Pc<", &format!("/P<tspan dy=\"2.5\" font-size=\"{SUBSCRIPT}\">c</tspan><"));
     in_millimetres(&text, scene.width, scene.height - cropped)
 }
 
@@ -150,12 +163,18 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
             .with_legend_box(false);
     }
     for mark in &figure.marks {
+        let (x, y) = mark.at;
+        if let Sign::Letter(letter) = mark.sign {
+            // To the right of its point, below it.
+            let [right, down] = [bounds.x, bounds.y].map(|[lo, hi]| BESIDE * (hi - lo));
+            let text = TextAnnotation::new(letter.to_string(), x + right, y - down);
+            layout = layout.with_annotation(text.with_font_size(LETTERS));
+        }
         let text = match mark.sign {
             Sign::Snaps(count) => count.to_string(),
             Sign::OfCrest(crest) => format!("c{crest}"),
             _ => continue,
         };
-        let (x, y) = mark.at;
         layout = layout.with_annotation(TextAnnotation::new(text, x, y).with_font_size(SMALL_LETTERS));
     }
     if let Some(reason) = &figure.missing {
@@ -222,16 +241,31 @@ fn legend(figure: &Figure) -> Vec<LegendEntry> {
         add(entry(&line.name, color, LegendShape::Line, dashes));
     }
     let shown = figure.marks.iter().filter(|mark| figure.bounds.share(mark.at).is_some());
-    for stamp in shown.map(|mark| ink::stamp(mark.sign)).filter(|stamp| !stamp.name.is_empty()) {
-        add(entry(stamp.name, stamp.color, LegendShape::Marker(stamp.shape), ""));
+    let own = own_limit(figure);
+    for (sign, stamp) in shown.map(|mark| (mark.sign, ink::stamp(mark.sign))) {
+        let name = if matches!(sign, Sign::Limit | Sign::Event(_)) { own } else { stamp.name };
+        if !name.is_empty() {
+            add(entry(name, stamp.color, LegendShape::Marker(stamp.shape), ""));
+        }
     }
     for area in &figure.areas {
         add(match area.meaning {
             Meaning::Lost => hatched(Meaning::Lost.name()),
             Meaning::Contact => entry(Meaning::Contact.name(), CONTACT, LegendShape::Rect, ""),
+            Meaning::Tension => entry(Meaning::Tension.name(), TENSION, LegendShape::Rect, ""),
         });
     }
     entries
+}
+
+/// What a limit point of the control is called: by what is controlled, where the limit points of the other one tell it.
+fn own_limit(figure: &Figure) -> &'static str {
+    let has = |wanted: Control| figure.marks.iter().any(|mark| mark.sign == Sign::OtherLimit(wanted));
+    match (has(Control::Force), has(Control::Displacement)) {
+        (true, false) => ink::stamp(Sign::OtherLimit(Control::Displacement)).name,
+        (false, true) => ink::stamp(Sign::OtherLimit(Control::Force)).name,
+        _ => ink::stamp(Sign::Limit).name,
+    }
 }
 
 /// The hatches of an area.
@@ -240,6 +274,8 @@ const PATTERN: FillPattern = FillPattern::DiagonalForward;
 const LOST: &str = "#f3d9e6";
 /// The tint of contact, without hatches.
 const CONTACT: &str = "#b9d7ea";
+/// The tint of contact in which the bodies pull.
+const TENSION: &str = "#f6cfb5";
 
 pub(super) fn hatched(name: &str) -> LegendEntry {
     entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
@@ -254,6 +290,10 @@ fn plots(figure: &Figure) -> Vec<Plot> {
     // Numbers of snaps are written, not stamped.
     let stamped = figure.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
     let (behind, above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
+    // The small signs of the other control over those of its own: both are seen where they meet.
+    let (others_limits, above): (Vec<Mark>, Vec<Mark>) =
+        above.into_iter().partition(|mark| matches!(mark.sign, Sign::OtherLimit(_)));
+    let above: Vec<Mark> = above.into_iter().chain(others_limits).collect();
     let of = |some: &[Mark]| some.chunk_by(|a, b| a.sign == b.sign).filter_map(marks).collect::<Vec<_>>();
     let mut plots: Vec<Drawn> = of(&behind);
     plots.extend(others.into_iter().chain(exact).flat_map(line));
@@ -323,7 +363,8 @@ fn hatch(figure: &Figure, field: &ComputedLayout, scene: &mut Scene) {
     let (Some(begin), false) = (begin, figure.areas.is_empty()) else { return };
     let of = |meaning| figure.areas.iter().filter(move |area| area.meaning == meaning);
     let contact = of(Meaning::Contact).map(|area| filled(outline(&area.outline, field), CONTACT.into()));
-    let mut paths: Vec<Primitive> = contact.collect();
+    let tension = of(Meaning::Tension).map(|area| filled(outline(&area.outline, field), TENSION.into()));
+    let mut paths: Vec<Primitive> = contact.chain(tension).collect();
     if of(Meaning::Lost).next().is_some() {
         paths.extend(hatches(of(Meaning::Lost).map(|area| outline(&area.outline, field)), LOST, scene));
     }
@@ -399,7 +440,11 @@ mod tests {
         assert_eq!(names(&figure), ["curve", "limit point", "pull-off"]);
         let close = figure.across("0.5..".parse().unwrap()).unwrap();
         assert_eq!(names(&close), ["curve", "limit point"]);
-        assert_eq!(names(&close.naming("A 2")), ["A 2, curve", "limit point"]);
+        assert_eq!(names(&close.clone().naming("A 2")), ["A 2, curve", "limit point"]);
+        // Beside those of the force they are those of the approach.
+        let force = Mark { sign: Sign::OtherLimit(Control::Force), at: (0.9, 0.9) };
+        let both = Figure { marks: [vec![force], close.marks.clone()].concat(), ..close };
+        assert_eq!(names(&both), ["curve", "limit of P", "limit of δ"]);
     }
 
     #[test]

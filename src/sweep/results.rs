@@ -36,6 +36,8 @@ pub struct Results {
     pub columns: Vec<ColumnInfo>,
     /// The columns of the axes, in the order of the spec.
     pub axes: Vec<String>,
+    /// Whether their values are drawn at random.
+    pub is_random: bool,
     /// The rows of the whole sweep: there may be fewer.
     pub rows: u64,
 }
@@ -45,7 +47,8 @@ impl Results {
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
-        Ok(Self { path: path.to_owned(), columns: sidecar.columns, axes, rows: sidecar.rows })
+        let is_random = sidecar.is_random();
+        Ok(Self { path: path.to_owned(), columns: sidecar.columns, axes, is_random, rows: sidecar.rows })
     }
 
     /// What stands beside an axis of this column.

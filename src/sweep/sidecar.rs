@@ -71,7 +71,12 @@ pub struct Sidecar {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct Canonical {
     axis: Vec<AxisKey>,
+    /// How rows are drawn, where they are.
+    random: Option<Draws>,
 }
+
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+struct Draws {}
 
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct AxisKey {
@@ -245,6 +250,12 @@ impl Sidecar {
     #[must_use]
     pub fn axes(&self) -> Vec<String> {
         self.sweep.axis.iter().map(|axis| axis.key.clone()).collect()
+    }
+
+    /// Whether the values of the axes are drawn at random.
+    #[must_use]
+    pub fn is_random(&self) -> bool {
+        self.sweep.random.is_some()
     }
 
     /// The part.

@@ -4,14 +4,15 @@ use super::app::App;
 use super::converse;
 use super::terminal::{Display, Inbox, Incoming, Pace, Sink};
 use super::theme::{Charts, Palette, Theme};
-use crate::explorer::{Effect, Inline, Reply};
+use crate::explorer::{Effect, Inline, Reply, Workers};
 use crate::store::Store;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::cell::RefCell;
 use std::io;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A terminal that counts, and tells of each frame; with a gate it takes each only when let.
 struct Counter {
@@ -302,3 +303,107 @@ fn a_frame_drawn_early_leaves_its_wait_to_the_next() {
     session.draw(&mut display);
     assert_eq!(display.due(), due + STANDSTILL.shortest);
 }
+
+/// A line of 16 kB/s, its keys and its frames 75 ms on the way: frames take their time, and are told with the moment in
+/// which they were begun.
+struct SlowLine {
+    frames: Mutex<Vec<(Instant, usize)>>,
+    /// Whether what is written now is a frame of a run: those alone are kept.
+    runs: AtomicBool,
+}
+
+/// One way.
+const WAY: Duration = Duration::from_millis(75);
+
+impl Sink for SlowLine {
+    fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
+        if self.runs.load(Ordering::Acquire) {
+            self.frames.lock().unwrap().push((Instant::now(), frame.len()));
+        }
+        std::thread::sleep(Duration::from_secs_f64(frame.len() as f64 / 16_000.0));
+        Ok(())
+    }
+
+    fn take_mouse(&self, _wanted: bool) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn size(&self) -> io::Result<(u16, u16)> {
+        Ok((120, 40))
+    }
+}
+
+#[test]
+fn a_run_leaves_the_line_to_the_keys_and_any_of_them_pauses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path(), &[]);
+    let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
+    let (mut app, effects) = App::new(loaded, THEMES[0]);
+    let inbox = Inbox::<Reply>::empty();
+    let sender = inbox.sender();
+    let workers = Workers::start(store, move |reply| {
+        // Fails only when the screen is gone.
+        let _ = sender.send(reply);
+    })
+    .unwrap();
+    workers.submit_all(effects);
+    let line: &'static SlowLine =
+        Box::leak(Box::new(SlowLine { frames: Mutex::default(), runs: AtomicBool::default() }));
+    let mut display = Display::new(line).unwrap();
+    let typist = inbox.typist();
+    let (state, states) = channel::<(usize, bool)>();
+    let driving = std::thread::spawn(move || {
+        let key = |c: char| {
+            std::thread::sleep(WAY);
+            typist(Incoming::Key(KeyCode::Char(c).into()));
+        };
+        let until = |wanted: &dyn Fn((usize, bool)) -> bool| loop {
+            let found = states.recv_timeout(SOON).unwrap();
+            if wanted(found) {
+                break found.0;
+            }
+        };
+        // Slowly, so that it runs for long; the keys of the pace pause nothing.
+        until(&|(walked, _)| walked == 1);
+        for c in "((r)".chars() {
+            key(c);
+        }
+        until(&|(walked, runs)| runs && walked > 9);
+        key('t');
+        let paused = until(&|(_, runs)| !runs);
+        // What was on its way may still come; then no more.
+        while let Ok((walked, runs)) = states.recv_timeout(Duration::from_millis(500)) {
+            assert!(walked <= paused + 1 && !runs, "{walked} states, {paused} when it was paused");
+        }
+        // Twice in one burst: begun and paused, and the next key does what it does.
+        for c in "rrr".chars() {
+            typist(Incoming::Key(KeyCode::Char(c).into()));
+        }
+        until(&|(walked, runs)| runs && walked > paused);
+        key('q');
+    });
+    // Whatever fails in the driver, the screen is left.
+    let quits = inbox.typist();
+    let driving = std::thread::spawn(move || {
+        let result = driving.join();
+        quits(Incoming::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
+        result
+    });
+    converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects), &mut |app| {
+        line.runs.store(app.model.is_running(), Ordering::Release);
+        // Nobody listens after the last key.
+        let _ = state.send((app.model.history.path().len(), app.model.is_running()));
+    });
+    driving.join().unwrap().unwrap();
+    let frames = line.frames.lock().unwrap().clone();
+    let frames: Vec<(Instant, usize)> = frames.into_iter().filter(|(_, bytes)| *bytes > 0).collect();
+    assert!(frames.len() > 1, "{} frames", frames.len());
+    for (at, _) in &frames {
+        // A little less than a second: between the decision and the write the machine may have been busy.
+        let within = frames.iter().filter(|(other, _)| other >= at && *other < *at + 4 * SECOND / 5);
+        let bytes: Vec<usize> = within.map(|(_, bytes)| *bytes).collect();
+        assert!(bytes.len() == 1 || bytes.len() <= 9 && bytes.iter().sum::<usize>() <= 4000, "{bytes:?}");
+    }
+}
+
+const SECOND: Duration = Duration::from_secs(1);

@@ -46,6 +46,8 @@ pub struct Chart<'a> {
     pub cross: Option<(f64, f64)>,
     /// The state next to the cross-hair.
     pub nearest: Option<(f64, f64)>,
+    /// Whether parts of a contact in which the bodies pull look like the others.
+    pub hides_tension: bool,
 }
 
 /// A chart with fewer rows inside has no row for its legend.
@@ -196,6 +198,8 @@ impl Chart<'_> {
             // Neighbours differ.
             Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
             Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
+            Meaning::Tension if self.hides_tension => return,
+            Meaning::Tension => (styles.curve, theme.shade("░", "-")),
             Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
         };
         if region.outline.iter().any(|(x, y)| !(x.is_finite() && y.is_finite())) {

@@ -5,6 +5,7 @@
 
 use super::app::App;
 use super::overlay::Content;
+use super::theme::Theme;
 use super::view;
 use crate::explorer::{Model, Node};
 use pulloff_engine::case::critical_force;
@@ -27,6 +28,12 @@ const LINE: usize = 4096;
 
 /// Digits of a copied value.
 const DIGITS: usize = 10;
+
+/// The screen of a session that has none, as text: of 100 columns and 30 rows.
+pub fn screen(model: &Model) -> String {
+    let app = App { screen: Rect::new(0, 0, 100, 30), ..App::on(model.clone(), Theme::default()) };
+    text(&app, Content::Screen)
+}
 
 /// Content as text in which nothing steers a terminal.
 pub fn text(app: &App, content: Content) -> String {

@@ -119,6 +119,8 @@ fn usual(id: Id) -> &'static [Key] {
     match id {
         Id::Step => &[Char(' ')],
         Id::Run => &[Char('r')],
+        Id::Slower => &[Char('(')],
+        Id::Faster => &[Char(')')],
         Id::NextLimit => &[Char('n')],
         Id::PreviousLimit => &[Char('N')],
         Id::Jump => &[Char('x')],
@@ -148,6 +150,8 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Enlarge => &[Char('z')],
         Id::NextView => &[Char('t')],
         Id::PreviousView => &[Char('T')],
+        Id::Study => &[Char('Q')],
+        Id::ChooseView => &[Char('V')],
         Id::ZoomIn => &[Char('+'), Char('=')],
         Id::ZoomOut => &[Char('-')],
         Id::Whole => &[Char('f')],

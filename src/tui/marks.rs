@@ -103,6 +103,7 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
         Sign::Barrier => "B".to_owned(),
         Sign::Stray | Sign::Walker => "@".to_owned(),
         Sign::Value => "o".to_owned(),
+        Sign::Letter(letter) => letter.to_string(),
         Sign::Cusp => "C".to_owned(),
         Sign::Swallowtail => "S".to_owned(),
         Sign::Preset => "+".to_owned(),

@@ -47,6 +47,7 @@ use app::App;
 use keymap::Keymap;
 use look::Look;
 use pulloff_engine::text::sanitize;
+use ratatui::Frame;
 use slow_notice::SlowNotice;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -190,7 +191,9 @@ fn converse<S: Sink>(
     let mut grace = None;
     while !app.model.quit {
         // Unchanged: wait until something is late. Changed: only until the next frame is due.
-        let due = [Some(display.due()), grace].into_iter().flatten().max();
+        let runs = app.model.is_running();
+        let due = if runs { display.due_running() } else { display.due() };
+        let due = [Some(due), grace].into_iter().flatten().max();
         let first = inbox.next(if dirty { due } else { notice.due() });
         for incoming in first.into_iter().chain(inbox.pending()) {
             let effects = match incoming {
@@ -223,13 +226,26 @@ fn converse<S: Sink>(
         if let Some(text) = app.clipboard.take() {
             display.copy(&text);
         }
-        let is_due = display.is_due() || (awaits_curve && app.model.curve.is_some());
+        // A run is watched: its frames leave the line to the keys. The one after its last state is as any other.
+        let runs = app.model.is_running();
+        let due = if runs { display.due_running() } else { display.due() };
+        let is_due = due <= Instant::now() || (awaits_curve && app.model.curve.is_some());
         if dirty && is_due && grace.is_none_or(|until| until <= Instant::now()) {
             let (mut views, mut screen) = (0, app.screen);
-            display.draw(|frame| {
+            let render = |frame: &mut Frame<'_>| {
                 screen = frame.area();
                 views = view::draw(frame, app);
-            });
+            };
+            let is_drawn = if runs {
+                display.draw_running(render)
+            } else {
+                display.draw(render);
+                true
+            };
+            if !is_drawn {
+                // Too large for what the line has had: the next state may be smaller, or there is more time.
+                continue;
+            }
             (dirty, grace) = (false, None);
             awaits_curve &= app.model.curve.is_none();
             submit(app.make_room(screen, views));

@@ -140,7 +140,8 @@ impl Quantity {
         matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed | Stage::Loop(_))
     }
 
-    fn columns(&'static self) -> impl Iterator<Item = Column> {
+    /// As a column under each control that matters.
+    pub fn columns(&'static self) -> impl Iterator<Item = Column> {
         let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
         Under::ALL[..last].iter().map(move |(under, _)| Column { quantity: self, under: *under })
     }

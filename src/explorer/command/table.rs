@@ -70,7 +70,9 @@ commands! {
         NextLimit "next-limit" Walker "next limit": "run to the next limit point of the control, or to where a crest touches";
         PreviousLimit "previous-limit" Walker "previous": "turn round and run to the previous limit point";
         Jump "jump" Jump "jump": "let edges run at constant control to the next stable state; from a touch, with the new contact";
-        Run "run" Walker ("number of states") "run": "run and pause";
+        Run "run" Walker ("number of states") "run": "run at a pace one can watch, to the next limit point or touch; any key but those of the pace pauses";
+        Slower "slower" Nothing "slower": "half as many states a second in a run, at first 20";
+        Faster "faster" Nothing "faster": "twice as many";
         MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
         Reverse "reverse" Walker "reverse": "walk the other way";
         Halve "halve-step" Nothing "half step": "halve the step length";
@@ -104,6 +106,8 @@ commands! {
         Enlarge "enlarge" Nothing "whole": "the selected panel on the whole screen, and back";
         NextView "next-view" Nothing "view": "the next view of the chart";
         PreviousView "previous-view" Nothing "view back": "the view before";
+        ChooseView "view" Nothing ("view") "views": "all views, a line each; those with nothing to show say why";
+        Study "study" Curve ("quantity") "study": "a quantity over the range of the selected value";
         ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";
         ZoomOut "zoom-out" Curve ("place") "wider": "further away";
         Whole "whole" Zoom "whole": "the whole chart again";

@@ -1,18 +1,19 @@
 //! What a line begun could go on with.
 
 use super::lexer::quoted;
-use super::parse::RUN_TO;
+use super::parse::{PICTURES, RUN_TO};
 use super::print::overlay_name;
 use crate::explorer::command::ROWS;
-use crate::explorer::export::ExportKind;
+use crate::explorer::export::{ExportKind, Picture};
 use crate::explorer::maps::CURVES;
-use crate::explorer::view::Overlay;
+use crate::explorer::view::{Overlay, View};
 use crate::store::shipped::{self, SHIPPED};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::sweep::{QUANTITIES, Quantity};
 
 /// A line gone on with.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,6 +57,8 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["open"] => presets.iter().filter_map(|name| quoted(name)).collect(),
         ["set" | "open", ..] => assignments(word, preset),
         ["control"] => owned(["displacement", "force", "stiffness="]),
+        ["view"] => owned(View::ALL.map(View::name)),
+        ["study"] => QUANTITIES.iter().flat_map(Quantity::columns).map(|column| column.name()).collect(),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
         ["data"] => owned(shipped::CURVES.iter().map(|shipped| shipped.name))
             .into_iter()
@@ -65,7 +68,10 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
         ["pins"] => owned(["all"]),
         ["map"] => axes(preset),
         ["map", _] => axes(preset).into_iter().chain(owned(CURVES.map(|(name, _)| name))).collect(),
-        ["export"] => owned(ExportKind::ALL.map(ExportKind::name)),
+        ["export"] => {
+            owned(ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name)))
+        }
+        ["export", "figure", _] => owned(View::ALL.map(View::name).into_iter().chain(["replace"])),
         ["export", _, _] | ["save"] => owned(["replace"]),
         ["save-as", _, ..] => owned(["with-data", "replace"]),
         [name] if *name == RUN_TO.0 => owned(RUN_TO.1),
@@ -120,7 +126,8 @@ mod tests {
             ("open lab-3 basis.k", "open lab-3 basis.kind=", 1),
             ("map gap.am", "map gap.amplitude ", 1),
             ("map gap.amplitude fo", "map gap.amplitude force ", 1),
-            ("export sc", "export script ", 1),
+            ("export scr", "export scr", 2),
+            ("export figure x.svg con", "export figure x.svg contact", 2),
             ("export curve x.csv r", "export curve x.csv replace ", 1),
             ("control f", "control force ", 1),
             ("run-to in", "run-to instability ", 1),

@@ -16,7 +16,8 @@
 //! | `undo N states`, `redo N states` | so many single states along the walk, with their values |
 //! | `select-event N` | to the event of this number in the list |
 //! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves kept and taken away |
-//! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events` or `script` |
+//! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events`, `script` or `study` |
+//! | `export figure FILE [VIEW] [replace]`, `export screen FILE [replace]` | draws a view, the screen |
 //! | `save [replace]`, `save-as NAME [with-data] [replace]` | saves the preset |
 //! | `quit` | ends the script |
 //!

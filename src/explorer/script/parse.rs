@@ -5,18 +5,21 @@ use super::former::UNDO_COMMAND;
 use super::lexer::{Word, split};
 use super::print::overlay_name;
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
-use crate::explorer::export::{ExportKind, ends_in};
+use crate::explorer::export::{ExportKind, Picture, ends_in};
 use crate::explorer::maps::CURVES;
 use crate::explorer::pins;
-use crate::explorer::view::Overlay;
+use crate::explorer::view::{Overlay, View};
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::groups::{self, GROUPS};
 use pulloff_engine::preset::{Key, PARAMETERS, former, parameter};
 use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::sweep::Column;
 use pulloff_engine::text::{closest, closest_key, quote};
 
 /// The word before a command that may fail.
 const TRY: &str = "try";
+/// What is drawn rather than written.
+pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
 /// What a synonym of `next-limit` runs to.
 pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
 
@@ -73,11 +76,15 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Down
             | Id::Left
             | Id::Right
+            | Id::Slower
+            | Id::Faster
             | Id::NextPanel
             | Id::PreviousPanel
             | Id::Enlarge
             | Id::NextView
             | Id::PreviousView
+            | Id::ChooseView
+            | Id::Study
             | Id::ZoomIn
             | Id::ZoomOut
             | Id::Whole
@@ -120,6 +127,15 @@ impl<'a> Rest<'a> {
             self.words = &self.words[1..];
         }
         is_next
+    }
+
+    /// A picture, and nothing behind it but that a file may be replaced.
+    fn picture(mut self, picture: Picture, path: String) -> Result<Command, Fault> {
+        let replace = self.takes("replace");
+        if let (Picture::Figure(None), Some(word)) = (picture, self.words.first()) {
+            return Err(unknown(word, "view", &View::ALL.map(View::name)));
+        }
+        self.done(Command::Picture { picture, path, replace })
     }
 
     /// Nothing more may stand there.
@@ -187,6 +203,15 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
             let word = rest.need("a file")?;
             Command::Assign(vec![(data::FILE.into(), word.text.clone())])
         }
+        Id::ChooseView if !bare => {
+            let word = rest.need("a view")?;
+            let names = View::ALL.map(View::name);
+            Command::Show(View::named(&word.text).ok_or_else(|| unknown(word, "view", &names))?)
+        }
+        Id::Study if !bare => {
+            let word = rest.need("a quantity")?;
+            Command::Study(Column::named(&word.text).map_err(|what| Fault::new(word.column, what))?)
+        }
         Id::Overlays if !bare => {
             let word = rest.need("a theory")?;
             let found = Overlay::ALL.into_iter().find(|overlay| overlay_name(*overlay) == word.text);
@@ -217,19 +242,37 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         }
         Id::Export if !bare => {
             let word = rest.need("a document")?;
-            let names = ExportKind::ALL.map(ExportKind::name);
+            if let Some(picture) = PICTURES.into_iter().find(|picture| picture.name() == word.text) {
+                let path = file(&mut rest, picture.endings())?;
+                let view = rest.words.first().and_then(|word| View::named(&word.text));
+                let picture = match picture {
+                    Picture::Figure(_) if view.is_some() => {
+                        rest.next();
+                        Picture::Figure(view)
+                    }
+                    picture => picture,
+                };
+                return rest.picture(picture, path);
+            }
+            let names = ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name));
+            let names: Vec<&str> = names.collect();
             let what = ExportKind::ALL.into_iter().find(|what| what.name() == word.text);
             let what = what.ok_or_else(|| unknown(word, "document", &names))?;
-            let file = rest.need("a file")?;
-            if !ends_in(&file.text, what.endings()) {
-                let endings = what.endings().join(" or .");
-                return Err(Fault::new(file.column, format!("the file must end in .{endings}")));
-            }
-            Command::Export { what, path: file.text.clone(), replace: rest.takes("replace") }
+            let path = file(&mut rest, what.endings())?;
+            Command::Export { what, path, replace: rest.takes("replace") }
         }
         id => id.into(),
     };
     rest.done(command)
+}
+
+/// The file of an export.
+fn file(rest: &mut Rest<'_>, endings: &[&str]) -> Result<String, Fault> {
+    let file = rest.need("a file")?;
+    if ends_in(&file.text, endings) {
+        return Ok(file.text.clone());
+    }
+    Err(Fault::new(file.column, format!("the file must end in .{}", endings.join(" or ."))))
 }
 
 fn count(word: &Word, most: usize) -> Result<usize, Fault> {

@@ -28,6 +28,10 @@ pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -
             within(&target(&path))?;
             Command::Export { what, path, replace: may_replace(replace)? }
         }
+        Command::Picture { picture, path, replace } => {
+            within(&target(&path))?;
+            Command::Picture { picture, path, replace: may_replace(replace)? }
+        }
         // By its name it goes to the folder of the presets and nowhere else.
         Command::SaveAs { name, replace, with_data } => {
             Command::SaveAs { name, with_data, replace: may_replace(replace)? }

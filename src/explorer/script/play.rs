@@ -6,6 +6,7 @@ use super::read::ScriptLine;
 use crate::explorer::command::{Command, by_name};
 use crate::explorer::driver::Inline;
 use crate::explorer::effect::Effect;
+use crate::explorer::export::{Page, Picture};
 use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
 use crate::mend::Reason;
@@ -21,7 +22,10 @@ pub struct Failed {
     pub reason: Reason,
 }
 
-/// Does `effects`, and then the lines one after another; `told` hears of each that was done.
+/// Draws what is seen of a session, or says why it cannot.
+pub type Draws<'a> = &'a dyn Fn(&Model, Picture) -> Result<Page, String>;
+
+/// Does `effects`, and then the lines one after another; `told` hears of each that was done, `draws` what is to be drawn.
 ///
 /// What ends a run (a limit point, the end of the path) is no failure.
 /// Errors: The first line that fails; those behind it are not done.
@@ -31,6 +35,7 @@ pub fn play(
     effects: Vec<Effect>,
     lines: &[ScriptLine],
     permission: Permission,
+    draws: Draws<'_>,
     told: &mut dyn FnMut(&ScriptLine, &Model),
 ) -> Result<(), Failed> {
     // A script that opens a preset of its own needs no curve of the one before.
@@ -41,7 +46,7 @@ pub fn play(
         }
     }
     for each in lines {
-        let result = obey(model, driver, each, permission);
+        let result = obey(model, driver, each, permission, draws);
         if let (Err(reason), false) = (result, each.may_fail) {
             let command = line(&each.command).unwrap_or_default();
             return Err(Failed { number: each.number, command, reason });
@@ -59,13 +64,35 @@ pub fn opens(command: &Command) -> bool {
     matches!(command, Command::Open(_) | Command::OpenWith { .. })
 }
 
-fn obey(model: &mut Model, driver: &Inline, line: &ScriptLine, permission: Permission) -> Result<(), Reason> {
-    let command = allowed(model, line.command.clone(), permission).map_err(Reason::mendable)?;
+fn obey(
+    model: &mut Model,
+    driver: &Inline,
+    line: &ScriptLine,
+    permission: Permission,
+    draws: Draws<'_>,
+) -> Result<(), Reason> {
+    let mut command = allowed(model, line.command.clone(), permission).map_err(Reason::mendable)?;
+    if let Command::Picture { picture, path, replace } = command {
+        let page = drawn(model, driver, picture, draws).map_err(|why| Reason::mendable(by_name(&why)))?;
+        command = Command::ExportPage { page, path, replace };
+    }
     let effects = update(model, command);
     driver.settle(model, effects);
     // What a screen would ask now, nobody answers.
     model.question = None;
     refusal(model).map_or(Ok(()), Err)
+}
+
+/// What is seen, drawn; a view that is not on the screen is shown for as long.
+fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Draws<'_>) -> Result<Page, String> {
+    let before = model.view;
+    if let Picture::Figure(Some(view)) = picture {
+        let effects = update(model, Command::Show(view));
+        driver.settle(model, effects);
+    }
+    let page = draws(model, picture);
+    model.view = before;
+    page
 }
 
 fn refusal(model: &Model) -> Option<Reason> {

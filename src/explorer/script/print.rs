@@ -2,6 +2,7 @@
 
 use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command, row_of};
+use crate::explorer::export::Picture;
 use crate::explorer::view::Overlay;
 
 /// The line that reads back as this command; `None` for commands that need a screen.
@@ -20,6 +21,8 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Map { x, y } => {
             format!(" {x}{}", y.as_ref().map_or_else(String::new, |y| format!(" {y}")))
         }
+        Command::Show(view) => format!(" {}", view.name()),
+        Command::Study(column) => format!(" {}", column.name()),
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
         Command::Unpin(None) => " all".to_owned(),
         Command::Unpin(Some(number)) => format!(" {number}"),
@@ -32,6 +35,11 @@ pub fn line(command: &Command) -> Option<String> {
         Command::SaveAnyway => replacing(true).to_owned(),
         Command::Export { what, path, replace } => {
             format!(" {} {}{}", what.name(), quoted(path)?, replacing(*replace))
+        }
+        Command::Picture { picture, path, replace } => {
+            let view = if let Picture::Figure(Some(view)) = picture { view.name() } else { "" };
+            let view = if view.is_empty() { String::new() } else { format!(" {view}") };
+            format!(" {} {}{view}{}", picture.name(), quoted(path)?, replacing(*replace))
         }
         Command::Set { .. }
         | Command::Try { .. }

@@ -6,6 +6,7 @@ use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
 use crate::explorer::export::{ExportKind, Page, ends_in};
 use crate::explorer::job::{Content, Done, Job};
+use crate::explorer::journal::Beginning;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::requests::{change, file, want_curve};
@@ -52,6 +53,16 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
             Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
         }
         ExportKind::Events => Content::Events(curve, model.shown_events()),
+        ExportKind::Study => {
+            let study = model.study.clone().filter(|study| study.done() == study.outcomes.len());
+            let Some(study) = study else {
+                let text = format!("there is no study to export: {} makes one", Id::Study.named());
+                model.tell(Level::Error, text);
+                return Vec::new();
+            };
+            let preset = study.wish.preset.clone();
+            Content::Study(study, Box::new(Beginning { source: model.source.clone(), preset }))
+        }
         ExportKind::Script => match model.script() {
             Ok(lines) => Content::Script(Box::new(start), lines),
             Err(reason) => {

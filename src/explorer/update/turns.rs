@@ -72,8 +72,8 @@ impl Turn {
 
 /// Whether a command has to wait for what is under way.
 pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
-    // Pressed again it ends a run.
-    if *command == Id::Run.into() && model.walking.is_some_and(|walking| !walking.solves) {
+    // Pressed again it ends a run; once more, it begins the next.
+    if *command == Id::Run.into() && model.walking.is_some_and(|walking| !walking.solves && !walking.stops) {
         return false;
     }
     let is_walking = model.walking.is_some_and(|walking| !walking.solves);

@@ -1,6 +1,6 @@
 //! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
 
-use crate::explorer::command::{Id, LENGTHS};
+use crate::explorer::command::{Id, LENGTHS, PACES};
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model, Walking};
@@ -10,6 +10,7 @@ use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::walk::At;
+use pulloff_engine::report::number::short;
 use std::sync::Arc;
 
 /// Asks for a walk on the curve on the screen, or says why there is none.
@@ -52,12 +53,37 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
     let solves = matches!(action, Action::Solve { .. });
-    model.walking = Some(Walking { id, made: 0, wanted, solves });
+    model.walking = Some(Walking { id, made: 0, wanted, solves, paced: false, stops: false });
     // From an unstable start the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
     model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
-    vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length }))]
+    vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length, pace: None }))]
+}
+
+/// The same, at the pace.
+pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
+    let mut effects = walk(model, action);
+    for effect in &mut effects {
+        if let Effect::Walk(request) = effect {
+            request.pace = Some(model.pace);
+            model.walking = model.walking.map(|walking| Walking { paced: true, ..walking });
+        }
+    }
+    effects
+}
+
+/// Another pace, of the run under way too.
+pub(super) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect> {
+    let pace = (model.pace * by).clamp(*PACES.start(), *PACES.end());
+    if pace.total_cmp(&model.pace).is_eq() {
+        let word = if by < 1.0 { "slowest" } else { "fastest" };
+        model.tell(Level::Info, format!("{} states a second are the {word}", short(pace, 3)));
+    } else if !model.is_running() {
+        model.tell(Level::Info, format!("runs make {} states a second", short(pace, 3)));
+    }
+    model.pace = pace;
+    vec![Effect::Pace(pace)]
 }
 
 /// Takes the states that a walk made, and its end. `None`: the commands that wait may go on.

@@ -1,9 +1,11 @@
 //! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
 
 use super::state::App;
-use crate::explorer::{Command, Effect, Id, Panel};
-use crate::tui::overlay::{Action, Choose, Overlay};
+use crate::explorer::{Command, Effect, Id, Panel, View, reach};
+use crate::tui::overlay::{Action, Choose, Item, Overlay};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::sweep::quantity::Under;
+use pulloff_engine::sweep::{Column, QUANTITIES, Quantity};
 
 /// So many lines a page.
 const PAGE: usize = 10;
@@ -29,6 +31,7 @@ impl App {
         let (line, count) = match panel {
             Panel::Problem => (model.parameter, model.knobs().len()),
             Panel::Events => (model.event, model.shown_events().len() + model.shown_inadmissible().len()),
+            Panel::Charts if model.view.is_table() => (reach::walk_line(model), model.history.path().len()),
             Panel::Walker | Panel::Charts => return None,
         };
         let line = turned(key, line, count)?;
@@ -69,6 +72,35 @@ impl App {
         }
         choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
         self.overlay = Some(Overlay::Choose(choose));
+        Vec::new()
+    }
+
+    /// All views, a line each; of those that have nothing to show, why.
+    pub(super) fn ask_view(&mut self) -> Vec<Effect> {
+        let model = &self.model;
+        let items = View::ALL.map(|view| {
+            let said = match reach::why_not(model, view) {
+                None => view.meaning().to_owned(),
+                Some(why) => format!("- {}", self.keymap.spelled(&why)),
+            };
+            Item::new(format!("{:<15} {said}", view.name()), Action::Command(Command::Show(view)))
+        });
+        let here = View::ALL.iter().position(|view| *view == model.view).unwrap_or(0);
+        self.choose("Views", items.to_vec(), here);
+        Vec::new()
+    }
+
+    /// The quantities that can be studied.
+    pub(super) fn ask_study(&mut self) -> Vec<Effect> {
+        let item = |quantity: &'static Quantity| {
+            let column = Column { quantity, under: Under::Own };
+            let text = format!("{:<20} {}", quantity.name, quantity.meaning);
+            Item::new(text, Action::Command(Command::Study(column)))
+        };
+        let here = QUANTITIES.iter().position(|quantity| quantity.name == self.model.studied.quantity.name);
+        let over =
+            self.model.selected_knob().map_or_else(String::new, |(row, _)| format!(" over {}", row.label));
+        self.choose(&format!("Study{over}"), QUANTITIES.iter().map(item).collect(), here.unwrap_or(0));
         Vec::new()
     }
 

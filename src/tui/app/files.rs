@@ -1,11 +1,10 @@
 //! Names and paths asked for: saving, exporting, copying.
 
 use super::state::App;
-use crate::explorer::export::{ExportKind, Page};
+use crate::explorer::export::{ExportKind, Page, Picture};
 use crate::explorer::model::Level;
-use crate::explorer::{Effect, Id};
-use crate::figure::Subject;
-use crate::plot::{Width, svg};
+use crate::explorer::{Command, Effect, Id};
+use crate::plot::picture::picture;
 use crate::print::Format;
 use crate::store::Source;
 use crate::tui::copy;
@@ -55,6 +54,7 @@ impl App {
                 ExportKind::Walk => "walk    the states walked by hand",
                 ExportKind::Events => "events  the instabilities listed",
                 ExportKind::Script => "script  what was done, for pulloff run",
+                ExportKind::Study => "study   the study: its values, or in a .toml the sweep that repeats it",
             };
             Item::new(text, Action::Prompt(Box::new(prompt)))
         });
@@ -67,7 +67,7 @@ impl App {
             Purpose::Page(Page::Screen(text)),
         );
         let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
-        let figure = self.figure().map(|svg| {
+        let figure = picture(&self.model, self.model.view).ok().map(|svg| {
             let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
             let note = format!("a file ending in .{}", Format::ENDINGS.join(" or ."));
             let prompt = Prompt::new("Export the figure to", &note, file, Purpose::Page(Page::Figure(svg)));
@@ -80,14 +80,19 @@ impl App {
         Vec::new()
     }
 
-    /// The first view as a figure for print; none before the first curve.
-    fn figure(&self) -> Option<String> {
-        let view = self.model.view;
-        let subject = Subject::of(&self.model)?;
-        let figure = subject.figure(view).in_window(&self.model.window(view));
-        let own_name = subject.own_name().filter(|_| view.is_curve());
-        let figure = if let Some(name) = own_name { figure.naming(&name) } else { figure };
-        Some(svg::svg(&figure, Width::ONE_COLUMN))
+    /// What is seen, drawn, for the export of it.
+    pub(super) fn draw_page(&mut self, what: Picture, path: String, replace: bool) -> Option<Command> {
+        let page = match what {
+            Picture::Screen => Ok(Page::Screen(copy::text(self, Content::Screen))),
+            Picture::Figure(view) => picture(&self.model, view.unwrap_or(self.model.view)).map(Page::Figure),
+        };
+        match page {
+            Ok(page) => Some(Command::ExportPage { page, path, replace }),
+            Err(why) => {
+                self.model.message = Some((Level::Error, format!("not exported: {why}")));
+                None
+            }
+        }
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {

@@ -11,16 +11,21 @@
 
 use super::state::App;
 use crate::explorer::model::Level;
-use crate::explorer::{Command, Effect, Id, Panel, View};
-use crate::figure::{Subject, map, nearest};
+use crate::explorer::{Command, Effect, Id, Panel, View, reach};
+use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
 use crate::tui::overlay::Overlay;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
-use crate::tui::view::{charts, events, overlays, places, problem};
+use crate::tui::view::{charts, events, overlays, places, problem, states};
 use ratatui::layout::{Position, Rect};
 
 /// A click goes to a state of the curve within so many character widths, a row counting twice.
 const NEAR: f64 = 6.0;
+
+/// The table at this place of the screen.
+fn table(regions: &Regions, at: Position) -> Option<Rect> {
+    regions.charts.iter().find(|(view, area)| view.is_table() && area.contains(at)).map(|(_, area)| *area)
+}
 
 /// A plot, and a place on it in shares of its window.
 type Place = (Rect, (f64, f64));
@@ -99,6 +104,13 @@ impl App {
             let line = problem::line_at(self, area, at.y);
             return self.pick(Panel::Problem, line);
         }
+        if let Some(area) = table(&regions, at) {
+            let line = states::line_at(&self.model, area, at.y);
+            if line == Some(reach::walk_line(&self.model)) && self.model.panel == Panel::Charts {
+                return self.run(Id::Edit.into());
+            }
+            return self.pick(Panel::Charts, line);
+        }
         let Some((view, place)) = self.place(&regions, at) else { return Vec::new() };
         let mut effects = self.pick(Panel::Charts, None);
         if let Some((plot, share)) = place {
@@ -119,6 +131,10 @@ impl App {
         if inside(regions.events).is_some() {
             let line = if up { self.model.event.saturating_sub(1) } else { self.model.event + 1 };
             return self.pick(Panel::Events, Some(line));
+        }
+        if table(&regions, at).is_some() {
+            let line = reach::walk_line(&self.model);
+            return self.pick(Panel::Charts, Some(if up { line.saturating_sub(1) } else { line + 1 }));
         }
         match self.place(&regions, at) {
             Some((view, Some((_, about)))) => self.run(Command::Zoom { view, closer: up, about }),
@@ -144,8 +160,8 @@ impl App {
     /// The walker goes to the state of the curve at the cross-hair.
     pub(super) fn go_to_cross_hair(&mut self) -> Vec<Effect> {
         match self.model.cross {
-            Some(share) => self.go_to(self.model.view, share, None),
-            None => self.run(Id::Edit.into()),
+            Some(share) if !self.model.view.is_table() => self.go_to(self.model.view, share, None),
+            _ => self.run(Id::Edit.into()),
         }
     }
 
@@ -156,6 +172,11 @@ impl App {
         if let (View::Map, Some(Ok(report))) = (view, subject.map) {
             let taken = map::taken(report, &self.model.preset, bounds.at(share));
             return self.run(Command::Assign(taken));
+        }
+        if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
+            let taken = study::taken(data, subject.preset, bounds.at(share).0);
+            let text = taken.map(|(at, _)| (data.wish.key.clone(), data.wish.values[at].to_string()));
+            return text.map_or_else(Vec::new, |assignment| self.run(Command::Assign(vec![assignment])));
         }
         let Some(found) = nearest(&subject, view, &bounds, bounds.at(share)) else { return Vec::new() };
         let is_near = plot.is_none_or(|plot| {

@@ -63,7 +63,8 @@ impl App {
         (Self::on(model, theme), effects)
     }
 
-    pub(super) fn on(model: Model, theme: Theme) -> Self {
+    /// A session on a screen.
+    pub fn on(model: Model, theme: Theme) -> Self {
         Self {
             model,
             overlay: None,
@@ -87,7 +88,8 @@ impl App {
             effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
             return effects;
         }
-        match self.overlay.take() {
+        let mut effects = self.pause(key);
+        effects.extend(match self.overlay.take() {
             None => self.command_key(key),
             Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
             Some(Over::Choose(choose)) => self.choose_key(choose, key),
@@ -97,7 +99,14 @@ impl App {
                 self.help_key(help, key);
                 Vec::new()
             }
-        }
+        });
+        effects
+    }
+
+    /// Ends a run, before the key does what it does; those of the pace, and those that end it themselves, do not.
+    fn pause(&mut self, key: KeyEvent) -> Vec<Effect> {
+        let ends = !matches!(self.keymap.command(key), Some(Id::Slower | Id::Faster | Id::Run | Id::Cancel));
+        if ends && self.model.is_running() { self.run(Id::Cancel.into()) } else { Vec::new() }
     }
 
     /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
@@ -166,7 +175,11 @@ impl App {
     }
 
     /// Does a command, and notices when it leaves a question.
-    pub(super) fn run(&mut self, command: Command) -> Vec<Effect> {
+    pub(super) fn run(&mut self, mut command: Command) -> Vec<Effect> {
+        if let Command::Picture { picture, path, replace } = command {
+            let Some(page) = self.draw_page(picture, path, replace) else { return Vec::new() };
+            command = page;
+        }
         let effects = update(&mut self.model, command);
         self.raise_questions();
         effects
@@ -275,6 +288,8 @@ impl App {
             Id::Export => self.ask_export(),
             Id::Data => self.browse(data::FILE.into()),
             Id::Copy => self.ask_copy(),
+            Id::ChooseView => self.ask_view(),
+            Id::Study if self.model.curve.is_some() => self.ask_study(),
             Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
             Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
             Id::Branches if are_several(&self.model.history) => self.ask_branch(),

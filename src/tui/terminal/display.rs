@@ -5,6 +5,7 @@
 //! seconds to show. So the pace also follows from the size of the frames.
 
 use std::{
+    collections::VecDeque,
     io,
     time::{Duration, Instant},
 };
@@ -58,12 +59,45 @@ impl Pace {
     }
 }
 
+/// Frames of a run follow each other no sooner: ten a second are seen as one motion.
+const BETWEEN: Duration = Duration::from_millis(100);
+/// Bytes that all frames of a run may have in any second: a quarter of a poor line, so that a key finds it free.
+const SHARE: usize = 4000;
+/// The time over which they are counted.
+const SECOND: Duration = Duration::from_secs(1);
+
+/// What the frames of a run had in the last second.
+#[derive(Debug, Default)]
+struct Allowance(VecDeque<(Instant, usize)>);
+
+impl Allowance {
+    /// Whether a frame of so many bytes may be written now: one larger than the whole share only into a silent second.
+    fn allows(&mut self, now: Instant, bytes: usize) -> bool {
+        while self.0.front().is_some_and(|(at, _)| now.duration_since(*at) >= SECOND) {
+            self.0.pop_front();
+        }
+        let spent: usize = self.0.iter().map(|(_, bytes)| bytes).sum();
+        spent == 0 || spent + bytes <= SHARE
+    }
+
+    fn take(&mut self, now: Instant, bytes: usize) {
+        self.allows(now, 0);
+        if bytes > 0 {
+            self.0.push_back((now, bytes));
+        }
+    }
+}
+
 /// The screen to draw on.
 pub struct Display<S: Sink + 'static> {
     terminal: Terminal<Screen<S>>,
     line: &'static S,
     pace: Pace,
     due: Instant,
+    /// What the frames of a run have taken of the line.
+    spent: Allowance,
+    /// When the next frame of a run may be tried.
+    due_running: Instant,
 }
 
 impl<S: Sink> Display<S> {
@@ -72,7 +106,14 @@ impl<S: Sink> Display<S> {
     }
 
     pub fn paced(line: &'static S, pace: Pace) -> io::Result<Self> {
-        Ok(Self { terminal: Terminal::new(Screen::new(line))?, line, pace, due: Instant::now() })
+        Ok(Self {
+            terminal: Terminal::new(Screen::new(line))?,
+            line,
+            pace,
+            due: Instant::now(),
+            spent: Allowance::default(),
+            due_running: Instant::now(),
+        })
     }
 
     /// Draws a frame and writes what has changed, in one write; nothing if nothing has.
@@ -84,20 +125,49 @@ impl<S: Sink> Display<S> {
         if self.terminal.draw(render).is_err() {
             end(HUNG_UP);
         }
-        let gap = self.pace.gap(self.terminal.backend().last_written());
-        self.due = self.due.max(Instant::now()) + gap;
+        self.written();
+    }
+
+    fn written(&mut self) {
+        let last = self.terminal.backend().last_written();
+        self.due = self.due.max(Instant::now()) + self.pace.gap(last);
+    }
+
+    /// Draws a frame of a run, as [`draw`](Self::draw) does, if the line has not had its share yet; else nothing, and false.
+    pub fn draw_running(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> bool {
+        self.due_running = Instant::now() + BETWEEN;
+        let encoded = self.terminal.autoresize().and_then(|()| {
+            render(&mut self.terminal.get_frame());
+            self.terminal.flush()
+        });
+        if encoded.is_err() {
+            end(HUNG_UP);
+        }
+        if !self.spent.allows(Instant::now(), self.terminal.backend().pending()) {
+            self.terminal.backend_mut().forget();
+            // The next frame begins with an empty one, and is compared with what the terminal shows.
+            self.terminal.current_buffer_mut().reset();
+            return false;
+        }
+        self.terminal.swap_buffers();
+        if Backend::flush(self.terminal.backend_mut()).is_err() {
+            end(HUNG_UP);
+        }
+        self.spent.take(Instant::now(), self.terminal.backend().last_written().bytes);
+        self.written();
+        true
+    }
+
+    /// When the next frame of a run may be tried.
+    #[must_use]
+    pub fn due_running(&self) -> Instant {
+        self.due.max(self.due_running)
     }
 
     /// When the next frame may be drawn.
     #[must_use]
     pub fn due(&self) -> Instant {
         self.due
-    }
-
-    /// Whether the next frame may be drawn now.
-    #[must_use]
-    pub fn is_due(&self) -> bool {
-        Instant::now() >= self.due
     }
 
     /// Takes the mouse from the terminal, or leaves it to it.
@@ -145,5 +215,30 @@ mod tests {
         assert_eq!(gap(100_000, 0), 150);
         assert_eq!(gap(200, 100), 200);
         assert_eq!(gap(200, 60_000), 500);
+    }
+
+    #[test]
+    fn frames_of_a_run_keep_within_their_share_of_every_second() {
+        let mut allowance = Allowance::default();
+        let begun = Instant::now();
+        let mut written: Vec<(u128, usize)> = Vec::new();
+        // Ten tries a second for a minute, of sizes that come again after a while.
+        for k in 0..600_u32 {
+            let (now, bytes) = (begun + k * BETWEEN, 150 + (k as usize * 977) % 3700);
+            if allowance.allows(now, bytes) {
+                allowance.take(now, bytes);
+                written.push(((k * BETWEEN).as_millis(), bytes));
+            }
+        }
+        for (at, _) in &written {
+            let within = written.iter().filter(|(other, _)| other >= at && *other < at + 1000);
+            assert!(within.map(|(_, bytes)| bytes).sum::<usize>() <= SHARE);
+        }
+        assert!(written.len() > 60, "{} frames", written.len());
+        // One that no second has room for is written once nothing else was.
+        let later = begun + Duration::from_secs(100);
+        assert!(allowance.allows(later, 9000));
+        allowance.take(later, 9000);
+        assert!(!allowance.allows(later + SECOND / 2, 1) && allowance.allows(later + SECOND, 1));
     }
 }

@@ -50,6 +50,16 @@ impl<S: Sink> Screen<S> {
         self.last
     }
 
+    /// The bytes collected for the next frame.
+    pub(super) fn pending(&self) -> usize {
+        self.frame.len()
+    }
+
+    /// Forgets what was collected: the terminal shows what it showed.
+    pub(super) fn forget(&mut self) {
+        self.frame.clear();
+    }
+
     fn collect(&mut self, command: impl Command) {
         self.cursor_at = None;
         let mut text = String::new();

@@ -2,12 +2,14 @@
 
 use super::legend::legend;
 use super::parts::is_selected;
-use crate::explorer::{Id, Model, Panel, View, Window};
-use crate::figure::{Axis, Figure, Sign, Subject, nearest};
+use super::states;
+use crate::explorer::{Id, Model, Panel, View, Window, reach};
+use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, Entry};
 use crate::tui::marks::style;
 use crate::tui::theme::Theme;
+use pulloff_engine::gap::Gap;
 use pulloff_engine::report::number::short;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -17,17 +19,22 @@ use ratatui::style::Modifier;
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
     let model = &app.model;
     let selected = first && is_selected(app, Panel::Charts);
+    if view.is_table() {
+        return states::draw(frame, area, app, selected);
+    }
     let Some(subject) = Subject::of(model) else {
         chart(&without_curve(app), view, &Window::WHOLE, app.theme).draw(frame, area, selected);
         return;
     };
     let figure = subject.figure(view);
     let mut chart = chart(&figure, view, &model.window(view), app.theme);
-    if view == View::Contact {
+    if figure.is_even {
         chart.make_even(area);
+        chart.hides_tension = is_thin(&subject, area, &chart);
     }
     if first {
-        let hint = format!("  ({}: {})", app.keymap.first(Id::NextView), view.further(1).name());
+        let next = reach::next(model, true).name();
+        let hint = format!("  ({}: {next})", app.keymap.first(Id::NextView));
         if chart.heading() + hint.chars().count() + 3 <= usize::from(area.width) {
             chart.title.push_str(&hint);
         }
@@ -71,7 +78,26 @@ pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) 
         selected: None,
         cross: None,
         nearest: None,
+        hides_tension: false,
     }
+}
+
+/// Half a wave of fewer cells than these would make compression and tension a moiré of two shades.
+const THIN: f64 = 3.0;
+
+/// Whether half a wave (of a gap without waves, a ring where the bodies pull) is too thin to be told apart on a screen.
+fn is_thin(subject: &Subject<'_>, area: Rect, chart: &Chart<'_>) -> bool {
+    let Some(plot) = chart.plot(area) else { return false };
+    let cell = (chart.bounds.x[1] - chart.bounds.x[0]) / f64::from(plot.width);
+    let wave = subject.curve.case.problem.shape.wavelength();
+    let half_wave = wave.map(|wave| 0.5 * subject.scale().radius(wave));
+    let width = |area: &Area| {
+        let radius = |at: Option<&(f64, f64)>| at.map_or(0.0, |(x, y)| x.hypot(*y));
+        // From the outer half circle to the inner one.
+        radius(area.outline.first()) - radius(area.outline.last())
+    };
+    let tensions = chart.figure.areas.iter().filter(|area| area.meaning == Meaning::Tension);
+    tensions.map(width).any(|width| half_wave.unwrap_or(width) < THIN * cell)
 }
 
 /// The mark of the selected event stands out, and has its number in the legend where the letter has none.

@@ -1,7 +1,7 @@
 //! What the lines and letters of a figure mean; and the cross-hair in words.
 
-use crate::explorer::Model;
-use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading};
+use crate::explorer::{Model, View};
+use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading, study};
 use crate::tui::chart::Entry;
 use crate::tui::marks::{glyph, letter, look, style};
 use crate::tui::theme::Theme;
@@ -53,7 +53,7 @@ fn rank(role: Role) -> u8 {
 /// What a sign means, and its place in the legend.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
-        Sign::Stray | Sign::Value => return None,
+        Sign::Stray | Sign::Value | Sign::Letter(_) => return None,
         Sign::OtherLimit(_) | Sign::Limit => (9, "limit off the path"),
         Sign::Event(_) => (4, "event"),
         Sign::PullOff => (7, "pull-off"),
@@ -79,11 +79,17 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
 /// The cross-hair in words: on a curve the state near to it, then both coordinates.
 pub fn reading(model: &Model) -> Option<String> {
     let (share, view) = (model.cross?, model.view);
+    if view.is_table() {
+        return None;
+    }
     let subject = Subject::of(model)?;
     let figure = subject.figure(view);
     let bounds = figure.bounds.part(&model.window(view));
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
+    if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
+        return study::reading(data, subject.preset, at.0);
+    }
     Some(match nearest(&subject, view, &bounds, at) {
         // What it is first: that is new, and narrow screens cut the end.
         Some(nearest) => format!("* {}; + {here}", nearest.text(&subject.curve.setting.preset.units)),

@@ -8,6 +8,7 @@ pub mod legend;
 pub mod overlays;
 mod parts;
 pub mod problem;
+pub mod states;
 pub mod status;
 pub mod walker;
 

@@ -10,6 +10,7 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::style::Modifier;
 
+mod jobs;
 mod keys;
 mod line;
 mod looks;
@@ -241,6 +242,7 @@ fn every_view_is_drawn_at_every_size_near_and_far() {
         let mut screen = Screen::new(preset);
         screen.keys("y\rj\rj\r\x1b").keys(keys).keys("i");
         for view in View::ALL {
+            screen.keys(&format!(":view {}\r", view.name()));
             assert_eq!(screen.app.model.view, view);
             for zoom in ["", "+++++", "++++++++++++++++++++++++++++++", "f------"] {
                 screen.keys(zoom);
@@ -248,7 +250,7 @@ fn every_view_is_drawn_at_every_size_near_and_far() {
                     screen.draw(width, height);
                 }
             }
-            screen.keys("ft");
+            screen.keys("f");
         }
     }
 }
@@ -270,14 +272,16 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "limit points under displacement",
         "snaps",
         "distances of the points",
+        "ΔP/Pc over s/λ",
+        "pull off force over A",
     ] {
         let text = screen.text(80, 24);
         assert!(text.contains(title), "{title}: {text}");
         screen.keys("t");
     }
-    screen.keys("TTTTTT");
+    screen.keys("TTTTTTTT");
     assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
-    screen.keys("tttttt");
+    screen.keys("tttttttt");
     let text = screen.text(200, 60);
     for title in ["P/Pc over δ", "s/λ over P/Pc", "p/E* over r/λ", "U over s/λ"] {
         assert!(text.contains(title), "{title}: {text}");
@@ -287,7 +291,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
-    screen.keys("TTTTTT");
+    screen.keys("TTTTTTTT");
     assert!(strokes(&screen) > before + 5, "{}", screen.text(120, 40));
 }
 

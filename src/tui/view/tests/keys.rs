@@ -17,7 +17,7 @@ fn sentences_name_the_keys_of_a_person() {
     bind(
         &mut screen,
         "next-limit = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
-         events = \"F7\"\nsave-as = \"W\"\nwhole = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"",
+         events = \"F7\"\nsave-as = \"W\"\nwhole = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"\nslower = []\nfaster = []",
     );
     let says = |screen: &Screen, text: &str| {
         let shown = screen.text(120, 40);

@@ -7,6 +7,7 @@ use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Overlay;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::problem::Control;
+use ratatui::layout::Rect;
 
 fn prompt(screen: &Screen) -> (String, Option<String>, Option<usize>) {
     match &screen.app.overlay {
@@ -252,4 +253,26 @@ fn the_help_names_commands_and_undo_takes_a_count() {
     assert_eq!(screen.app.model.history.cursor(), Some(steps - 4));
     screen.keys("9u");
     assert_eq!(screen.app.model.history.cursor(), Some(0), "as far as it goes");
+}
+
+#[test]
+fn figures_and_the_screen_are_exported_by_a_line() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.screen = Rect::new(0, 0, 100, 30);
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    screen.keys(&format!(":export figure {}\r", path("a.svg")));
+    screen.keys(&format!(":export figure {} stability\r", path("b.svg")));
+    screen.keys(&format!(":export screen {}\r", path("c.txt")));
+    let read = |name: &str| std::fs::read_to_string(path(name)).unwrap();
+    assert!(read("a.svg").starts_with("<svg") && read("b.svg").contains("log"));
+    assert_ne!(read("a.svg"), read("b.svg"));
+    assert!(read("c.txt").contains("Events on the curve"));
+    // Over what is there only when told.
+    screen.keys(&format!(":export screen {}\r", path("c.txt")));
+    assert!(screen.text(100, 30).contains("y replaces it"), "{}", screen.text(100, 30));
+    screen.keys("n").keys(&format!(":export figure {} walk\r", path("d.svg")));
+    assert!(screen.text(100, 30).contains("export walk writes it"), "{}", screen.text(100, 30));
+    screen.keys("\x1b").keys(&format!(":export figure {} wak\r", path("d.svg")));
+    assert!(screen.text(100, 30).contains("did you mean walk?"), "{}", screen.text(100, 30));
 }

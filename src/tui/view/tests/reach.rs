@@ -205,7 +205,7 @@ fn the_screen_is_exported_as_text() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
     let typed = |screen: &mut Screen, path: &str| {
-        screen.keys("ejjjj\r");
+        screen.keys("ejjjjj\r");
         for _ in 0..60 {
             screen.press(KeyCode::Backspace);
         }
@@ -229,7 +229,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     let mut screen = screen("wavy-sphere");
     let folder = tempfile::tempdir().unwrap();
     let figure = |screen: &mut Screen, name: &str| {
-        screen.keys("ejjjjj\r");
+        screen.keys("ejjjjjj\r");
         assert!(
             screen.text(120, 40).contains("wavy-sphere-force-approach.svg"),
             "{name}: {}",
@@ -244,7 +244,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     };
     let drawn = figure(&mut screen, "a.svg");
     let whole = String::from_utf8_lossy(&drawn);
-    assert!(whole.starts_with("<svg ") && whole.contains("P/Pc") && whole.contains("JKR 1971"));
+    assert!(whole.starts_with("<svg ") && whole.contains("P/P<tspan") && whole.contains("JKR 1971"));
     screen.keys("++");
     assert_ne!(figure(&mut screen, "b.svg"), drawn);
     // The ending chooses the format; one that this build lacks is refused by its name, and the prompt stays.
@@ -288,4 +288,112 @@ fn a_preset_of_ones_own_is_deleted_after_a_question_and_no_other() {
     let left = screen.text(120, 40);
     assert!(left.contains("Open a preset") && left.contains("deleted "), "{left}");
     assert!(!left.contains("  mine "), "{left}");
+}
+
+#[test]
+fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("V");
+    let text = screen.text(80, 24);
+    assert!(text.contains("walk            - nothing is walked yet: n runs"), "{text}");
+    // What was walked, with what it cost and what was changed on the way.
+    screen.keys("\x1bnx>nx  :view walk\r");
+    let text = screen.text(100, 70);
+    for said in ["jumps 2", "limit", "A 0.002525", " @"] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    let path = screen.app.model.history.path().len();
+    // To Charts, to the first line, two further, and there; then back.
+    screen.keys("\t\t").press(KeyCode::Home);
+    assert_eq!(screen.app.model.walk_line, Some(0));
+    screen.keys("jj\r");
+    assert_eq!(screen.app.model.history.path().len(), 3);
+    let text = screen.text(100, 30);
+    assert!(text.contains("walk: 3 states, jumps 0; Enter goes there"), "{text}");
+    screen.keys("u");
+    assert_eq!(screen.app.model.history.path().len(), path);
+    // A table has neither a cross-hair nor a zoom.
+    screen.keys("i+");
+    assert!(screen.app.model.cross.is_none() && screen.app.model.window(View::Walk).is_whole());
+}
+
+#[test]
+fn differences_tell_curves_apart_that_are_closer_than_a_dot() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.model.overlays.smooth = false;
+    screen.keys("V");
+    let text = screen.text(80, 24);
+    assert!(text.contains("differences     - nothing to compare with: p pins"), "{text}");
+    screen.keys("\x1bp:set gap.amplitude=0.0025000001\r:view differences\r");
+    let text = screen.text(120, 40);
+    assert!(text.contains("ΔP/Pc over s/λ") && text.contains("at @: 1 A 0.0025 "), "{text}");
+}
+
+#[test]
+fn a_study_is_looked_at_read_taken_over_and_exported() {
+    let mut screen = Screen::new("wavy-sphere");
+    // The amplitude is selected: its pull-off force is two keys away.
+    screen.keys("Q\r");
+    let text = screen.text(100, 30);
+    for said in ["pull off force over A", "now"] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    // The cross-hair reads a value that was computed, and Enter sets it.
+    screen.keys("illll");
+    let text = screen.text(120, 30);
+    assert!(text.contains("A 0.00") && text.contains(": pull off force -0."), "{text}");
+    let before = screen.app.model.preset.get("gap.amplitude");
+    screen.keys("\r");
+    let after = screen.app.model.preset.get("gap.amplitude");
+    assert_ne!(before, after);
+    // The same study, the mark moved.
+    let study = screen.app.model.study.clone().unwrap();
+    assert!(study.wish.values.contains(&after.clone().unwrap()));
+    screen.keys("u");
+    assert_eq!(screen.app.model.preset.get("gap.amplitude"), before);
+    assert_eq!(screen.app.model.study.as_ref().map(|study| study.wish.id), Some(study.wish.id));
+    // As values, and as a sweep that has them again.
+    let (csv, toml) = (screen.folder.path().join("a.csv"), screen.folder.path().join("a.toml"));
+    screen.keys(&format!(":export study {}\r", csv.display()));
+    screen.keys(&format!(":export study {}\r", toml.display()));
+    let csv = std::fs::read_to_string(csv).unwrap();
+    let rows: Vec<&str> = csv.lines().collect();
+    assert_eq!((rows[0], rows.len()), ("gap.amplitude,pull_off_force,fault", 102));
+    let store = Store::at(screen.folder.path(), &[]);
+    let load = |name: &str, over: &[&str]| {
+        let source = store.resolve(name).map_err(|error| error.to_string())?;
+        Ok(store.load(&source, over).map_err(|error| error.to_string())?.preset)
+    };
+    let spec = std::fs::read_to_string(toml).unwrap();
+    let spec = pulloff_engine::sweep::Spec::read(&load, "a.toml", &spec).unwrap();
+    assert_eq!(spec.rows, 101);
+    for row in [0, 17, 50, 100] {
+        let cells = spec.measure(row, &|| true).unwrap().cells;
+        let found = cells[0].map(|cell| cell.to_string()).unwrap_or_default();
+        let at = usize::try_from(row).unwrap();
+        let Some(pulloff_engine::preset::Value::Number(x)) = spec.values(row).pop() else { panic!("{row}") };
+        let told: Vec<&str> = rows[at + 1].split(',').collect();
+        assert_eq!(told[0].parse(), Ok(x));
+        assert_eq!(told[1].parse::<f64>().ok(), found.parse::<f64>().ok(), "{}", rows[at + 1]);
+    }
+}
+
+#[test]
+fn what_cannot_be_studied_says_why_at_the_view_and_at_the_value() {
+    let mut screen = Screen::new("wavy-sphere");
+    // Far out of range nothing starts: the reason stands at the cross-hair.
+    screen.keys(":set path.start_approach=0.01\r").keys(":study snaps\r");
+    let name = |screen: &Screen| screen.app.model.selected_knob().unwrap().0.key.to_string();
+    assert_eq!(name(&screen), "gap.amplitude");
+    let text = screen.text(100, 30);
+    assert!(text.contains("snaps over A"), "{text}");
+    // A word has no range.
+    while name(&screen) != "gap.shape" {
+        screen.press(KeyCode::Up);
+    }
+    let text = screen.text(100, 30);
+    assert!(text.contains("is no number: there is nothing to vary"), "{text}");
+    screen.keys("V");
+    let text = screen.text(100, 40);
+    assert!(text.contains("study           - gap is no number"), "{text}");
 }

@@ -1,0 +1,88 @@
+//! Which views have something to show now, why the others have not, and the way from one to the next.
+
+use super::command::Id;
+use super::model::{Level, Model};
+use super::node::Node;
+use super::studies::range;
+use super::view::View;
+use pulloff_engine::preset::{Key, Value};
+
+/// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
+pub fn why_not(model: &Model, view: View) -> Option<String> {
+    let node = model.history.current();
+    match view {
+        View::ForceApproach | View::RadiusForce | View::RadiusApproach | View::Stability => None,
+        View::Pressure | View::Gap | View::Contact | View::Energy => {
+            let apart = node.is_some_and(Node::is_apart);
+            apart.then(|| "the bodies are apart: there is no contact".to_owned())
+        }
+        View::Unloading => {
+            let unloading = model.curve.as_ref().map(|curve| &curve.unloading);
+            unloading.and_then(|path| path.as_ref().err().map(|reason| format!("no path: {reason}")))
+        }
+        View::Cycle | View::ContactMap => {
+            let cycle = model.cycle.as_ref().filter(|cycle| cycle.is_of(&model.preset));
+            cycle.and_then(|cycle| Some(format!("no loop: {}", cycle.report.as_ref().err()?.text)))
+        }
+        View::Map => (model.preset.material.work_of_adhesion <= 0.0)
+            .then(|| "a gap without adhesion has no limit points".to_owned()),
+        View::Residuals => model
+            .preset
+            .data
+            .source
+            .is_none()
+            .then(|| "no measured curve: :data FILE lays one behind the chart".to_owned()),
+        View::Differences => (!has_others(model)).then(|| {
+            format!(
+                "nothing to compare with: {} pins a curve, {} draws theory",
+                Id::Pin.named(),
+                Id::Overlays.named()
+            )
+        }),
+        View::Study => study_range(model).err(),
+        View::Walk => (model.history.len() < 2)
+            .then(|| format!("nothing is walked yet: {} runs to a limit point", Id::NextLimit.named())),
+    }
+}
+
+/// The key that a study varies, and the values it takes: those of the selected value.
+/// Errors: Why it has none, in words.
+pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
+    let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
+    range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
+}
+
+/// Whether any other curve is drawn with that of the preset.
+fn has_others(model: &Model) -> bool {
+    let theory = model.curve.as_ref().map(|curve| &curve.base.theory);
+    let overlays = model.overlays;
+    !model.pins.all().is_empty()
+        || overlays.exact
+        || overlays.smooth && theory.is_none_or(|theory| !theory.smooth.is_empty())
+        || overlays.envelope && theory.is_none_or(|theory| theory.envelope.is_some())
+}
+
+/// The next view, or the one before, that has something to show.
+pub fn next(model: &Model, forward: bool) -> View {
+    model.view.others(forward).find(|view| why_not(model, *view).is_none()).unwrap_or(model.view)
+}
+
+/// Shows a view, and says so where there is nothing on it.
+pub(super) fn show(model: &mut Model, view: View) {
+    model.view = view;
+    if let Some(why) = why_not(model, view) {
+        model.tell(Level::Info, format!("{}: {why}", view.name()));
+    }
+}
+
+/// The line of the table of states that is selected, from 0: the walker's, where none was chosen.
+pub fn walk_line(model: &Model) -> usize {
+    let last = model.history.path().len().saturating_sub(1);
+    model.walk_line.map_or(last, |line| line.min(last))
+}
+
+/// Selects a line of the table of states; the last one follows the walker.
+pub(super) fn pick_walk_line(model: &mut Model, line: usize) {
+    let last = model.history.path().len().saturating_sub(1);
+    model.walk_line = Some(line).filter(|line| *line < last);
+}

@@ -1,0 +1,307 @@
+//! A quantity of the sweep's list over the range of one value, computed in the background while it is looked at.
+//!
+//! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing.
+
+use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::{Key, Preset, Row, Value};
+use pulloff_engine::problem::Control;
+use pulloff_engine::sweep::measure::measure;
+use pulloff_engine::sweep::{Cell, Column, Fault};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Values on either side of the preset's.
+const BESIDE: i32 = 50;
+/// How far the range goes up where a value is changed by factors, and down.
+const FACTOR: f64 = 2.0;
+/// The same for the stiffness of the device, which means something over decades.
+const STIFFNESS_FACTOR: f64 = 30.0;
+/// How often it is told how far it has come.
+const PACE: Duration = Duration::from_millis(100);
+
+/// The key of the stiffness of the loading device.
+const STIFFNESS: &str = "path.control.stiffness";
+
+/// What became of one value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// It is still to be computed.
+    Waits,
+    Found(Cell),
+    /// There is none; why.
+    Missing(String),
+}
+
+/// A study that is wanted.
+#[derive(Debug, Clone)]
+pub struct StudyWish {
+    pub id: u64,
+    pub preset: Preset,
+    pub key: Key,
+    pub column: Column,
+    /// The values, ascending.
+    pub values: Vec<Value>,
+}
+
+/// A study, or as much of it as is done.
+#[derive(Debug, Clone)]
+pub struct StudyData {
+    /// What was asked for.
+    pub wish: StudyWish,
+    /// What became of each value.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// The key that is varied and its values, ascending, that of the preset among them.
+/// Errors: Why this value has no range, in words.
+pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
+    let label = &row.label;
+    let (key, values) = match (row.kind, preset.get(&row.key)) {
+        (Kind::Control, Some(Value::Control(Control::Stiffness(k)))) => {
+            (Key::Borrowed(STIFFNESS), by_factors(k, STIFFNESS_FACTOR))
+        }
+        (Kind::Control, _) => return Err("the device has no stiffness to vary: it is no spring".to_owned()),
+        (_, None) => return Err(format!("{label} follows from other values and has none to vary")),
+        (Kind::Positive | Kind::Smoothing, Some(Value::Number(x))) if x > 0.0 => {
+            (row.key.clone(), by_factors(x, FACTOR))
+        }
+        (Kind::NonNegative, Some(Value::Number(x))) if x > 0.0 => {
+            (row.key.clone(), between(0.0, x, FACTOR * x))
+        }
+        (Kind::Finite, Some(Value::Number(x))) if x != 0.0 => {
+            (row.key.clone(), between(x - x.abs(), x, x + x.abs()))
+        }
+        (Kind::Between { min, max }, Some(Value::Number(x))) if x != 0.0 => {
+            (row.key.clone(), between((x - x.abs()).max(min), x, (x + x.abs()).min(max)))
+        }
+        (_, Some(Value::Number(_))) => return Err(format!("{label} is 0 and has no scale to vary it by")),
+        (Kind::Integer { min, max }, Some(Value::Integer(n))) => (row.key.clone(), whole(n, min, max)),
+        _ => return Err(format!("{label} is no number: there is nothing to vary")),
+    };
+    Ok((key, values))
+}
+
+/// From the factor below a value to the factor above it, in equal ratios.
+fn by_factors(x: f64, factor: f64) -> Vec<Value> {
+    let at = |k: i32| x * factor.powf(f64::from(k) / f64::from(BESIDE));
+    (-BESIDE..=BESIDE).map(|k| if k == 0 { x } else { tidy(at(k)) }.into()).collect()
+}
+
+/// From `lo` to `hi` over `x`, in equal steps on either side of it.
+fn between(lo: f64, x: f64, hi: f64) -> Vec<Value> {
+    let at = |k: i32| {
+        let end = if k < 0 { lo } else { hi };
+        x + (end - x) * f64::from(k.abs()) / f64::from(BESIDE)
+    };
+    let mut all: Vec<f64> = (-BESIDE..=BESIDE).map(|k| if k == 0 { x } else { tidy(at(k)) }).collect();
+    all.dedup();
+    all.into_iter().map(Value::from).collect()
+}
+
+/// Whole numbers from half of one to its double, as many as there may be.
+fn whole(n: i64, min: i64, max: i64) -> Vec<Value> {
+    let (lo, hi) = ((n / 2).max(min), n.saturating_mul(2).min(max));
+    let step = ((hi - lo) / (2 * i64::from(BESIDE)) + 1).max(1);
+    let below = (1..).map(|k| n - k * step).take_while(|m| *m >= lo);
+    let mut all: Vec<i64> = below.chain((0..).map(|k| n + k * step).take_while(|m| *m <= hi)).collect();
+    all.sort_unstable();
+    all.into_iter().map(Value::from).collect()
+}
+
+/// Six digits: a value taken from here stays readable.
+fn tidy(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// The place of a number on an axis.
+pub fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(x) => Some(*x),
+        // Exact for every count.
+        #[expect(clippy::cast_precision_loss)]
+        Value::Integer(n) => Some(*n as f64),
+        _ => None,
+    }
+}
+
+/// Threads for a study: one core stays for curve and screen.
+pub fn threads() -> usize {
+    thread::available_parallelism().map_or(1, |cores| cores.get().saturating_sub(1).max(1))
+}
+
+impl StudyWish {
+    /// What becomes of the value at `index`; `None` when `go_on` said no.
+    fn outcome(&self, index: usize, go_on: &dyn Fn() -> bool) -> Option<Outcome> {
+        let missing = |fault: Fault| Outcome::Missing(fault.to_string());
+        let mut preset = self.preset.clone();
+        let value = self.values.get(index).cloned()?;
+        if let Err(invalid) = preset.set(&self.key, value) {
+            return Some(missing(Fault::of_value(&invalid)));
+        }
+        let measured = match catch_unwind(AssertUnwindSafe(|| measure(&preset, &[self.column], go_on))) {
+            Ok(measured) => measured?,
+            Err(payload) => return Some(missing(Fault::of_panic(payload.as_ref()))),
+        };
+        Some(match (measured.cells.first(), measured.fault) {
+            (Some(Some(cell)), _) => Outcome::Found(*cell),
+            (_, Some(fault)) => missing(fault),
+            _ => Outcome::Missing("it is not defined here".to_owned()),
+        })
+    }
+
+    /// Computes it on so many threads, and tells what is done now and then; `None` when `go_on`, which is asked often,
+    /// said no.
+    #[must_use]
+    pub fn run(
+        &self,
+        threads: usize,
+        go_on: &(dyn Fn() -> bool + Sync),
+        told: &mut dyn FnMut(StudyData),
+    ) -> Option<StudyData> {
+        let count = self.values.len();
+        let mut data = StudyData { wish: self.clone(), outcomes: vec![Outcome::Waits; count] };
+        let next = AtomicUsize::new(0);
+        let (send, done) = channel();
+        thread::scope(|scope| {
+            for _ in 0..threads.clamp(1, count.max(1)) {
+                let (send, next) = (send.clone(), &next);
+                scope.spawn(move || {
+                    loop {
+                        let index = next.fetch_add(1, Ordering::Relaxed);
+                        if index >= count || !go_on() {
+                            break;
+                        }
+                        let Some(outcome) = self.outcome(index, &|| go_on()) else { break };
+                        // Fails only when nobody waits for it any more.
+                        let _ = send.send((index, outcome));
+                    }
+                });
+            }
+            drop(send);
+            let mut due = Instant::now() + PACE;
+            loop {
+                match done.recv_timeout(due.saturating_duration_since(Instant::now())) {
+                    Ok((index, outcome)) => data.outcomes[index] = outcome,
+                    Err(RecvTimeoutError::Timeout) => {
+                        told(data.clone());
+                        due = Instant::now() + PACE;
+                    }
+                    Err(RecvTimeoutError::Disconnected) => break,
+                }
+            }
+        });
+        go_on().then_some(data).filter(|data| data.done() == count)
+    }
+}
+
+impl StudyData {
+    /// How many values are done.
+    pub fn done(&self) -> usize {
+        self.outcomes.iter().filter(|outcome| **outcome != Outcome::Waits).count()
+    }
+
+    /// Whether it is that of `preset`, whose value may be another within the range.
+    pub fn is_of(&self, preset: &Preset, key: &str, column: Column) -> bool {
+        self.wish.is_of(preset, key, column)
+    }
+
+    /// The value computed that is nearest to `x`, and its place in the list.
+    pub fn nearest(&self, x: f64) -> Option<(usize, f64)> {
+        let places = self.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
+        places.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()))
+    }
+}
+
+impl StudyWish {
+    /// Whether it is that of `preset`, whose value may be another within the range.
+    pub fn is_of(&self, preset: &Preset, key: &str, column: Column) -> bool {
+        if self.key != key || self.column != column {
+            return false;
+        }
+        if self.preset == *preset {
+            return true;
+        }
+        let ends = [self.values.first(), self.values.last()].map(|value| value.and_then(number));
+        let (Some(value), [Some(lo), Some(hi)]) = (preset.get(key), ends) else { return false };
+        let mut moved = self.preset.clone();
+        number(&value).is_some_and(|x| (lo..=hi).contains(&x))
+            && moved.set(key, value).is_ok()
+            && moved == *preset
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{read, shipped};
+
+    fn preset(changes: &[(&str, &str)]) -> Preset {
+        let mut preset = read("wavy-sphere", shipped::find("wavy-sphere").unwrap().text).unwrap();
+        for (key, text) in changes {
+            preset.assign(key, text).unwrap();
+        }
+        preset
+    }
+
+    fn row(preset: &Preset, key: &str) -> Row {
+        preset.row(key).unwrap()
+    }
+
+    #[test]
+    fn a_range_ascends_has_the_value_itself_and_only_values_that_are_taken() {
+        let spring = preset(&[("path.control", "stiffness=0.3")]);
+        let rings = preset(&[("basis.kind", "rings"), ("basis.rings", "40")]);
+        for (preset, key, varied) in [
+            (&preset(&[]), "gap.amplitude", "gap.amplitude"),
+            (&preset(&[]), "gap.wavelength", "gap.wavelength"),
+            (&preset(&[]), "groups.adhesion", "groups.adhesion"),
+            (&preset(&[("path.start_approach", "-0.002")]), "path.start_approach", "path.start_approach"),
+            (&spring, "path.control", "path.control.stiffness"),
+            (&rings, "basis.rings", "basis.rings"),
+        ] {
+            let (found, values) = range(preset, &row(preset, key)).unwrap();
+            assert_eq!(found, varied);
+            let numbers: Vec<f64> = values.iter().filter_map(number).collect();
+            assert_eq!(numbers.len(), values.len());
+            assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]) && numbers.len() > 20, "{numbers:?}");
+            let own = preset.get(&found).and_then(|value| number(&value)).unwrap();
+            assert!(numbers.iter().any(|x| x.to_bits() == own.to_bits()), "{key}: {own} of {numbers:?}");
+        }
+        let flat = preset(&[("gap.amplitude", "0")]);
+        for (preset, key, said) in [
+            (&flat, "gap.amplitude", "A is 0 and has no scale"),
+            (&flat, "gap.shape", "is no number"),
+            (&flat, "path.control", "it is no spring"),
+        ] {
+            assert!(range(preset, &row(preset, key)).unwrap_err().contains(said), "{key}");
+        }
+    }
+
+    #[test]
+    fn a_study_is_a_row_each_whatever_the_threads_and_ends_when_told() {
+        let preset = preset(&[]);
+        let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
+        let column = Column::named("pull_off_force").unwrap();
+        let wish = StudyWish { id: 1, preset: preset.clone(), key: key.clone(), column, values };
+        let [one, three] = [1, 3].map(|threads| wish.run(threads, &|| true, &mut |_| {}).unwrap());
+        assert_eq!(one.outcomes, three.outcomes);
+        assert_eq!(one.done(), one.outcomes.len());
+        let own = measure(&preset, &[column], &|| true).unwrap();
+        let (at, x) = one.nearest(0.0025).unwrap();
+        assert_eq!(x, 0.0025);
+        assert_eq!(one.outcomes[at], Outcome::Found(own.cells[0].unwrap()));
+        assert!(wish.run(2, &|| false, &mut |_| {}).is_none());
+        // Its value may move within the range, and nothing else.
+        let mut moved = preset.clone();
+        moved.set(&key, 0.003.into()).unwrap();
+        assert!(one.is_of(&moved, &key, column));
+        moved.set("gap.wavelength", 0.06.into()).unwrap();
+        assert!(!one.is_of(&moved, &key, column));
+        moved = preset;
+        moved.set(&key, 0.0051.into()).unwrap();
+        assert!(!one.is_of(&moved, &key, column));
+    }
+}

@@ -1,0 +1,48 @@
+//! A study as documents: its values as CSV, and the spec of a sweep that repeats it.
+
+use super::command::Assignment;
+use super::studies::{Outcome, StudyData, number};
+use pulloff_engine::report::rows::{RowsError, csv as written};
+use pulloff_engine::sweep::Cell;
+use pulloff_engine::sweep::axis::{Points, SweepAxis, overrides};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// A row for each value: the key, the quantity, and why it has none, as in the results of a sweep.
+pub(super) fn csv(study: &StudyData) -> Result<String, RowsError> {
+    let (key, name) = (study.wish.key.to_string(), study.wish.column.name());
+    let columns = [&*key, &*name, "fault"];
+    let rows = study.wish.values.iter().zip(&study.outcomes).map(|(value, outcome)| {
+        let [found, fault] = match outcome {
+            Outcome::Waits => [Value::Null, Value::Null],
+            Outcome::Missing(why) => [Value::Null, Value::from(why.as_str())],
+            Outcome::Found(Cell::Number(x)) => [Value::from(*x), Value::Null],
+            Outcome::Found(Cell::Count(n)) => [Value::from(*n), Value::Null],
+        };
+        let value = match value {
+            pulloff_engine::preset::Value::Integer(n) => Value::from(*n),
+            other => number(other).map_or(Value::Null, Value::from),
+        };
+        let cells = columns.map(str::to_owned).into_iter().zip([value, found, fault]);
+        cells.collect::<BTreeMap<_, _>>()
+    });
+    written(&columns, &rows.collect::<Vec<_>>())
+}
+
+/// The spec of the sweep with the same values; its preset by name, and the values that differ from its file.
+pub(super) fn spec(study: &StudyData, name: &str, over: &[Assignment]) -> String {
+    let wish = &study.wish;
+    let text = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    // What the axis gives to every row cannot be given before.
+    let over = over.iter().filter(|(key, _)| !overrides(&wish.key, key));
+    let over: Vec<String> = over.map(|(key, value)| text(&format!("{key}={value}"))).collect();
+    let set = if over.is_empty() { String::new() } else { format!("set = [{}]\n", over.join(", ")) };
+    let axis = SweepAxis { key: wish.key.to_string(), points: Points::Values(wish.values.clone()) };
+    format!(
+        "preset = {}\n{set}quantities = [{}]\n\n[[axis]]\nkey = {}\n{}\n",
+        text(name),
+        text(&wish.column.name()),
+        text(&axis.key),
+        axis.canonical()
+    )
+}

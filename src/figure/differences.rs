@@ -1,0 +1,218 @@
+//! P minus that of the pinned curves and of theory, over the contact radius: for curves closer than a dot.
+//!
+//! A solid line is taken at equal s, a broken one at equal δ. The others are taken at their own states, and ours from its
+//! solution there, so that nothing is interpolated between drawn points.
+
+use super::bounds::Bounds;
+use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::subject::Subject;
+use crate::explorer::curve::CurvePoint;
+use pulloff_engine::disc::solution::Solution;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::significant;
+use std::mem::discriminant;
+
+/// Halvings of a stretch of the curve: far below what is drawn, and below rounding.
+const HALVINGS: usize = 50;
+
+/// Another curve: δ, P and s of its states in the user's units, from the outermost inward.
+struct Other {
+    role: Role,
+    name: String,
+    states: Vec<[f64; 3]>,
+}
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>) -> Figure {
+    let scale = subject.scale();
+    let (x, force) = (scale.radius_axis("s"), scale.force_axis());
+    let y = Axis { symbol: format!("Δ{}", force.symbol), ..force };
+    let title = format!("{} over {}, broken: at equal δ", y.title(), x.symbol);
+    let mut figure = Figure::empty(title, x, y);
+    let ours = Ours::of(subject);
+    let place = |[s, difference]: [f64; 2]| (scale.radius(s), scale.force(difference));
+    let others = others(subject, &mut figure.notes);
+    if others.is_empty() {
+        figure.missing =
+            Some("nothing to compare with: neither a pinned curve nor theory is drawn".to_owned());
+        return figure;
+    }
+    let walker = subject.walk.last().filter(|node| subject.is_on_curve(node) && !node.is_apart());
+    let walker = walker.map(|node| node.state.in_units(node.setting.units()).contact_radius);
+    let (mut said, mut here) = (Vec::new(), None);
+    for other in &others {
+        let by_radius: Vec<(f64, f64)> = ours.at_equal_radius(&other.states).into_iter().map(place).collect();
+        let by_approach = ours.at_equal_approach(&other.states).into_iter().map(place).collect();
+        if let Some(at) = walker.and_then(|s| between(&by_radius, scale.radius(s))) {
+            said.push(format!("{} {}", other.name, significant(at.1, 3)));
+            here.get_or_insert(at);
+        }
+        figure.lines.push(Line::new(other.role, other.name.clone(), by_approach).broken(true));
+        figure.lines.push(Line::new(other.role, other.name.clone(), by_radius));
+    }
+    figure.bounds = Bounds::of(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
+    if let Some(at) = here {
+        figure.notes.insert(0, format!("at @: {}", said.join(", ")));
+        figure.marks.push(Mark { sign: Sign::Walker, at });
+    }
+    figure
+}
+
+/// The curves to compare with; a pin whose numbers have other units is left out, and said.
+fn others(subject: &Subject<'_>, notes: &mut Vec<String>) -> Vec<Other> {
+    let theory = &subject.curve.base.theory;
+    let overlays = subject.overlays;
+    let mut all = Vec::new();
+    let mut add = |role, name: &str, states: &[[f64; 3]], is_on: bool| {
+        if is_on && !states.is_empty() {
+            all.push(Other { role, name: name.to_owned(), states: states.to_vec() });
+        }
+    };
+    add(Role::Smooth, theory.smooth_name, &theory.smooth, overlays.smooth);
+    if let Some(envelope) = &theory.envelope {
+        add(Role::Envelope, "envelope", &envelope.unloading, overlays.envelope);
+    }
+    add(Role::Exact, theory.exact_name, &theory.exact, overlays.exact);
+    for pin in subject.pins {
+        if discriminant(&pin.preset().units) != discriminant(&subject.preset.units) {
+            notes.push(format!("{} has other units", pin.number));
+            continue;
+        }
+        let state = |at: &CurvePoint| [at.approach, at.force, at.contact_radius];
+        let states: Vec<_> = pin.curve.points.iter().map(state).collect();
+        add(Role::Pin(pin.number), &format!("{} {}", pin.number, pin.name(subject.preset)), &states, true);
+    }
+    all
+}
+
+/// Our curve: its solution, and its states cut where δ turns.
+struct Ours<'a> {
+    solution: &'a dyn Solution,
+    /// The units of length and force.
+    units: [f64; 2],
+    /// From and to in s (reduced), between which the curve is drawn.
+    range: [f64; 2],
+    /// Stretches on which δ rises or falls with s: s and δ of their ends and what lies between, from outside inward.
+    stretches: Vec<Vec<[f64; 2]>>,
+}
+
+impl<'a> Ours<'a> {
+    fn of(subject: &Subject<'a>) -> Self {
+        let (curve, units) = (&subject.curve.base.curve, subject.curve.case.units());
+        // With the limit points themselves: beyond one, the same δ is another branch.
+        let mut states: Vec<[f64; 2]> =
+            curve.samples.iter().map(|at| [at.contact_radius, at.approach]).collect();
+        let limits = curve.limit_points(Control::Displacement).into_iter();
+        states.extend(limits.map(|limit| [limit.contact_radius, limit.approach]));
+        states.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        Self {
+            solution: &*curve.solution,
+            units: [units.length, units.force],
+            range: [curve.innermost(), curve.outermost()],
+            stretches: monotone(states.into_iter(), |at| at[1]),
+        }
+    }
+
+    /// δ and P at a radius, all reduced.
+    fn at(&self, s: f64) -> Option<[f64; 2]> {
+        let local = self.solution.at(self.solution.place(s)?);
+        Some([local.approach, local.force])
+    }
+
+    /// s and our P minus theirs, in the user's units, at each of their radii; not a number where we have none.
+    fn at_equal_radius(&self, states: &[[f64; 3]]) -> Vec<[f64; 2]> {
+        let [length, force] = self.units;
+        let difference = |&[_, p, s]: &[f64; 3]| {
+            let is_ours = (self.range[0]..=self.range[1]).contains(&(s / length));
+            let ours = Some(s / length).filter(|_| is_ours).and_then(|s| self.at(s));
+            [s, ours.map_or(f64::NAN, |[_, ours]| ours * force - p)]
+        };
+        states.iter().map(difference).collect()
+    }
+
+    /// The same at each of their approaches, on the nearest stretch of ours on which δ runs the same way, if it has that
+    /// approach. The line is broken where either branch ends.
+    fn at_equal_approach(&self, states: &[[f64; 3]]) -> Vec<[f64; 2]> {
+        let [length, force] = self.units;
+        let mut found = Vec::new();
+        let branches = monotone(states.iter().copied(), |at| at[0]);
+        for (i, branch) in branches.iter().enumerate() {
+            // A state next to a limit point may be on either side of it: its branch is not known.
+            let (first, last) = (usize::from(i > 0), usize::from(i + 1 < branches.len()));
+            let branch = &branch[first..branch.len() - last];
+            // Both run inward.
+            let way = rises(branch, |at| at[0]);
+            let alike: Vec<_> = self.stretches.iter().filter(|own| rises(own, |at| at[1]) == way).collect();
+            let mut last = None;
+            for [delta, p, s] in branch {
+                let (delta, s) = (delta / length, s / length);
+                let near = (0..alike.len()).min_by(|a, b| away(alike[*a], s).total_cmp(&away(alike[*b], s)));
+                if near != last {
+                    found.push([f64::NAN; 2]);
+                    last = near;
+                }
+                let state = near.and_then(|near| self.radius_on(alike[near], delta));
+                let state = state.and_then(|s| Some((s, self.at(s)?)));
+                found.push(state.map_or([f64::NAN; 2], |(s, [_, ours])| [s * length, ours * force - p]));
+            }
+            found.push([f64::NAN; 2]);
+        }
+        found
+    }
+
+    /// The radius on a stretch at which δ has this value; `None` where it has not.
+    fn radius_on(&self, stretch: &[[f64; 2]], delta: f64) -> Option<f64> {
+        let (first, last) = (stretch.first()?, stretch.last()?);
+        let rises = last[1] > first[1];
+        let is_before = |at: f64| if rises { at < delta } else { at > delta };
+        if is_before(last[1]) || !(is_before(first[1]) || first[1] == delta) {
+            return None;
+        }
+        let next = stretch.partition_point(|at| is_before(at[1])).clamp(1, stretch.len() - 1);
+        let (mut near, mut far) = (stretch[next - 1][0], stretch[next][0]);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near + far);
+            if is_before(self.at(middle)?[0]) { near = middle } else { far = middle }
+        }
+        Some(0.5 * (near + far))
+    }
+}
+
+/// Stretches of at least two states on which `of` only rises or only falls; neighbours share an end.
+fn monotone<T: Copy>(states: impl Iterator<Item = T>, of: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
+    let mut stretches: Vec<Vec<T>> = Vec::new();
+    let mut last: Option<T> = None;
+    for state in states {
+        match (stretches.last_mut(), last) {
+            (Some(stretch), Some(before))
+                if stretch.len() < 2 || (of(&state) > of(&before)) == rises(stretch, &of) =>
+            {
+                stretch.push(state);
+            }
+            (_, before) => stretches.push(before.into_iter().chain([state]).collect()),
+        }
+        last = Some(state);
+    }
+    stretches.retain(|stretch| stretch.len() > 1);
+    stretches
+}
+
+/// How far a radius is from those of a stretch.
+fn away(stretch: &[[f64; 2]], s: f64) -> f64 {
+    let Some((outer, inner)) = stretch.first().zip(stretch.last()) else { return f64::INFINITY };
+    (s - outer[0]).max(inner[0] - s).max(0.0)
+}
+
+/// Whether `of` rises along a stretch.
+fn rises<T>(stretch: &[T], of: impl Fn(&T) -> f64) -> bool {
+    stretch.first().zip(stretch.last()).is_some_and(|(first, last)| of(last) > of(first))
+}
+
+/// The point of a line at `x`, between its neighbours.
+fn between(points: &[(f64, f64)], x: f64) -> Option<(f64, f64)> {
+    points.windows(2).find_map(|pair| {
+        let [(a, y), (b, z)] = [pair[0], pair[1]];
+        let share = (x - a) / (b - a);
+        ((0.0..=1.0).contains(&share) && y.is_finite() && z.is_finite()).then(|| (x, y + (z - y) * share))
+    })
+}

@@ -1,0 +1,147 @@
+//! A quantity over the range of one value, the value of the preset marked.
+
+use super::bounds::Bounds;
+use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::subject::Subject;
+use crate::explorer::studies::{Outcome, StudyData, number};
+use pulloff_engine::preset::{Preset, Row};
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::sweep::quantity::Under;
+use pulloff_engine::sweep::{Cell, Column};
+use pulloff_engine::units::Quantity;
+
+/// The quantity in words: its name, and the control where it is not the preset's own.
+fn words(column: Column) -> String {
+    let name = column.quantity.name.replace('_', " ");
+    match column.under {
+        Under::Own => name,
+        Under::Displacement => format!("{name} under displacement"),
+        Under::Force => format!("{name} under force"),
+    }
+}
+
+/// Builds the view.
+pub fn figure(subject: &Subject<'_>) -> Figure {
+    let none = || Axis::pure(String::new());
+    let empty = |why: &str| Figure {
+        missing: Some(why.to_owned()),
+        ..Figure::empty("study".to_owned(), none(), none())
+    };
+    match &subject.study {
+        Some(Ok(data)) => of(data, subject.preset),
+        Some(Err(why)) => empty(why),
+        None => empty("the study is being computed"),
+    }
+}
+
+/// The row of the value that is varied.
+fn row(data: &StudyData, preset: &Preset) -> Option<Row> {
+    preset.row(&data.wish.key).or_else(|| data.wish.preset.row(&data.wish.key))
+}
+
+/// The figure of a study, `preset` marked on it.
+pub fn of(data: &StudyData, preset: &Preset) -> Figure {
+    let (wish, units) = (&data.wish, &data.wish.preset.units);
+    let quantity = wish.column.quantity.unit;
+    let row = row(data, preset);
+    let shown = |x: f64| row.as_ref().map_or(x, |row| row.shown(units, x).number);
+    let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| row.label.to_string());
+    let unit = row.as_ref().and_then(|row| row.unit_in(units)).map_or_else(String::new, ToString::to_string);
+    let x = Axis { shown: unit, ..Axis::pure(label) };
+    let unit = units.unit(quantity).map_or_else(String::new, ToString::to_string);
+    let y = Axis { shown: unit, ..Axis::pure(words(wish.column)) };
+    let mut figure = Figure::empty(format!("{} over {}", y.title(), x.title()), x, y);
+    let value = |cell: &Cell| match cell {
+        Cell::Number(y) => units.shown(quantity, *y).number,
+        // Exact for every count.
+        #[expect(clippy::cast_precision_loss)]
+        Cell::Count(n) => *n as f64,
+    };
+    let places: Vec<(f64, Option<f64>)> = wish
+        .values
+        .iter()
+        .zip(&data.outcomes)
+        .filter_map(|(x, outcome)| {
+            let y = if let Outcome::Found(cell) = outcome { Some(value(cell)) } else { None };
+            Some((shown(number(x)?), y))
+        })
+        .collect();
+    let is_counted = data.outcomes.iter().any(|outcome| matches!(outcome, Outcome::Found(Cell::Count(_))));
+    for part in places.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
+        let points: Vec<(f64, f64)> = part.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect();
+        if !points.is_empty() {
+            let points = if is_counted { stairs(&points) } else { points };
+            figure.lines.push(Line::new(Role::Body, words(wish.column), drawn(points)));
+        }
+    }
+    let found = places.iter().filter_map(|(x, y)| Some((*x, (*y)?)));
+    let ends = [places.first(), places.last()].into_iter().flatten();
+    let found: Vec<(f64, f64)> = found.collect();
+    let level = found.first().map_or(0.0, |(_, y)| *y);
+    figure.bounds = Bounds::of(found.iter().copied().chain(ends.map(|(x, _)| (*x, level))));
+    if let Some(x) = preset.get(&wish.key).and_then(|value| number(&value)).map(shown) {
+        let ends = figure.bounds.y.map(|y| (x, y));
+        figure.lines.insert(0, Line::new(Role::Level, "now", ends.to_vec()));
+        // On the line itself where the value was computed.
+        let at = found.iter().find(|(at, _)| (at - x).abs() <= 1e-12 * x.abs());
+        figure.marks.extend(at.map(|at| Mark { sign: Sign::Preset, at: *at }));
+    }
+    let (done, count) = (data.done(), data.outcomes.len());
+    if done < count {
+        figure.notes.push(format!("{done} of {count}"));
+    }
+    let missing = data.outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Missing(_))).count();
+    if missing > 0 {
+        figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
+    }
+    figure
+}
+
+/// Steps between counts, half way between the values: between them a count is no line.
+fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    for (x, y) in points {
+        if let Some((before, last)) = steps.last().copied().filter(|(_, last)| last != y) {
+            let middle = 0.5 * (before + x);
+            steps.extend([(middle, last), (middle, *y)]);
+        }
+        steps.push((*x, *y));
+    }
+    steps
+}
+
+/// A value alone is drawn as a line of no length.
+fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    if let [only] = points[..] {
+        points.push(only);
+    }
+    points
+}
+
+/// What the study says nearest to `x` of its axis: the value and the quantity, or why there is none.
+pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
+    let units = &data.wish.preset.units;
+    let row = row(data, preset)?;
+    let (at, value) = taken(data, preset, x)?;
+    let shown = row.shown(units, value);
+    let value = shown.text(&significant(shown.number, 5), false);
+    let found = match data.outcomes.get(at)? {
+        Outcome::Waits => "is being computed".to_owned(),
+        Outcome::Missing(why) => format!("none: {why}"),
+        Outcome::Found(Cell::Count(n)) => n.to_string(),
+        Outcome::Found(Cell::Number(y)) => {
+            let quantity: Quantity = data.wish.column.quantity.unit;
+            with_unit(units, quantity, *y, false, |y| significant(y, 5))
+        }
+    };
+    Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
+}
+
+/// The value computed that is nearest to `x` of its axis, in the units of the preset, and its place in the list.
+pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> {
+    let row = row(data, preset)?;
+    let units = &data.wish.preset.units;
+    let all = data.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
+    let away = |value: f64| (row.shown(units, value).number - x).abs();
+    all.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))
+}

@@ -1,0 +1,122 @@
+//! The table of the states walked: what was done, a line each.
+
+use super::parts::{panel, whole_words};
+use crate::explorer::node::{Node, NodeKind};
+use crate::explorer::pins::changed;
+use crate::explorer::reach::{walk_line, why_not};
+use crate::explorer::walk_table::kind_name;
+use crate::explorer::{Model, View};
+use crate::tui::app::App;
+use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
+use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::units::Quantity;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+/// Draws the states that led to the walker.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
+    let (model, theme) = (&app.model, app.theme);
+    let path = model.history.path();
+    let jumps = path.iter().filter(|(_, node)| matches!(node.kind, NodeKind::Jump(_))).count();
+    let said = if selected { "; Enter goes there" } else { "" };
+    let title = format!("walk: {} states, jumps {jumps}{said}", path.len());
+    let block = panel(theme, &title, selected);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    if let Some(why) = why_not(model, View::Walk) {
+        let line = Line::styled(format!(" {}", theme.text(&app.keymap.spelled(&why))), theme.dim());
+        frame.render_widget(line, inner);
+        return;
+    }
+    let room = usize::from(inner.width);
+    let rows = usize::from(inner.height.saturating_sub(1));
+    let chosen = walk_line(model);
+    let first = first(path.len(), chosen, rows);
+    let mut lines = vec![Line::styled(whole_words(theme, &theme.text(&head(model)), room), theme.dim())];
+    lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
+        let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
+        let here = if i + 1 == path.len() { " @" } else { "" };
+        let mark = if i == chosen && selected { '>' } else { ' ' };
+        let text = format!("{mark}{}{here}", row(model, node, before));
+        let style = if i == chosen && selected { theme.selection() } else { Style::new() };
+        Line::styled(whole_words(theme, &theme.text(&text), room), style)
+    }));
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The first line shown, so that the chosen one is in the middle as far as there are lines.
+fn first(count: usize, chosen: usize, rows: usize) -> usize {
+    chosen.saturating_sub(rows / 2).min(count.saturating_sub(rows))
+}
+
+/// The line in this row of the screen, in the chart `area`.
+pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
+    // Three lines are the frame and the column heads.
+    let rows = usize::from(area.height.saturating_sub(3));
+    let count = model.history.path().len();
+    let below = usize::from(row.checked_sub(area.y + 2)?);
+    let line = first(count, walk_line(model), rows) + below;
+    (below < rows && line < count).then_some(line)
+}
+
+/// The column heads, with the units of the preset.
+fn head(model: &Model) -> String {
+    let units = &model.preset.units;
+    let [length, force] = [Quantity::Length, Quantity::Force]
+        .map(|quantity| units.unit(quantity).map_or_else(String::new, |unit| format!(" {unit}")));
+    let force = if is_divided(model) { "P/Pc".to_owned() } else { format!("P{force}") };
+    format!(
+        " step {:<9} {:>10} {force:>8} {:>10} {:>5}  lost, changed",
+        "",
+        format!("δ{length}"),
+        format!("s{length}"),
+        "crest"
+    )
+}
+
+/// Whether forces are over `P_c`.
+fn is_divided(model: &Model) -> bool {
+    model.curve.as_ref().is_some_and(|curve| curve.base.critical_force > 0.0)
+}
+
+/// A state in one line; `before` is the one before it.
+fn row(model: &Model, node: &Node, before: Option<&Node>) -> String {
+    let setting = &node.setting;
+    let state = node.state.in_units(setting.units());
+    let units = &setting.preset.units;
+    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
+    let force = if critical > 0.0 {
+        fixed(state.force / critical, 3)
+    } else {
+        significant(units.shown(Quantity::Force, state.force).number, 3)
+    };
+    let (force, radius, crest) = if node.is_apart() {
+        ("apart".to_owned(), "-".to_owned(), "-".to_owned())
+    } else {
+        let crest = wave_index(node.state.contact_radius, setting.reduced.gap.wavelength());
+        (force, length(state.contact_radius), crest.map_or_else(|| "-".to_owned(), |m| m.to_string()))
+    };
+    let mut said: Vec<String> = Vec::new();
+    if let NodeKind::Jump(event) = &node.kind {
+        let lost = EventReport::new(&setting.reduced, node.control, event).dissipated;
+        let energy = |x| with_unit(units, Quantity::Energy, x, false, loss);
+        said.push(lost.map_or_else(|| "no bound".to_owned(), energy));
+    }
+    said.extend(before.and_then(|before| changed(&setting.preset, &before.setting.preset)));
+    if !node.is_apart() && !node.admissibility.holds {
+        said.push("!".to_owned());
+    }
+    let kind = kind_name(&node.kind);
+    let line = format!(
+        "{:>5} {kind:<9} {:>10} {force:>8} {radius:>10} {crest:>5}  {}",
+        node.step,
+        length(state.approach),
+        said.join(", ")
+    );
+    line.trim_end().to_owned()
+}
