@@ -87,6 +87,7 @@ fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
         inward: !back,
         length: 0.02,
         curve: Arc::clone(&curve),
+        pace: None,
     };
     let mut radii = Vec::new();
     let outcome = walk(&request, &mut |made| {

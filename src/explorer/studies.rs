@@ -104,10 +104,10 @@ fn between(lo: f64, x: f64, hi: f64) -> Vec<Value> {
 /// Whole numbers from half of one to its double, as many as there may be.
 fn whole(n: i64, min: i64, max: i64) -> Vec<Value> {
     let (lo, hi) = ((n / 2).max(min), n.saturating_mul(2).min(max));
-    let step = ((hi - lo) / (2 * i64::from(BESIDE)) + 1).max(1);
-    let below = (1..).map(|k| n - k * step).take_while(|m| *m >= lo);
-    let mut all: Vec<i64> = below.chain((0..).map(|k| n + k * step).take_while(|m| *m <= hi)).collect();
-    all.sort_unstable();
+    let step = hi.saturating_sub(lo) / (2 * i64::from(BESIDE)) + 1;
+    let at = |k: i32| n.saturating_add(i64::from(k).saturating_mul(step));
+    let mut all: Vec<i64> = (-2 * BESIDE..=2 * BESIDE).map(at).filter(|m| (lo..=hi).contains(m)).collect();
+    all.dedup();
     all.into_iter().map(Value::from).collect()
 }
 
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(one.done(), one.outcomes.len());
         let own = measure(&preset, &[column], &|| true).unwrap();
         let (at, x) = one.nearest(0.0025).unwrap();
-        assert_eq!(x, 0.0025);
+        assert_eq!(x.to_bits(), 0.0025_f64.to_bits());
         assert_eq!(one.outcomes[at], Outcome::Found(own.cells[0].unwrap()));
         assert!(wish.run(2, &|| false, &mut |_| {}).is_none());
         // Its value may move within the range, and nothing else.

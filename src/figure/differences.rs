@@ -165,7 +165,8 @@ impl<'a> Ours<'a> {
         let (first, last) = (stretch.first()?, stretch.last()?);
         let rises = last[1] > first[1];
         let is_before = |at: f64| if rises { at < delta } else { at > delta };
-        if is_before(last[1]) || !(is_before(first[1]) || first[1] == delta) {
+        let is_after = |at: f64| if rises { at > delta } else { at < delta };
+        if is_before(last[1]) || is_after(first[1]) {
             return None;
         }
         let next = stretch.partition_point(|at| is_before(at[1])).clamp(1, stretch.len() - 1);
@@ -213,6 +214,6 @@ fn between(points: &[(f64, f64)], x: f64) -> Option<(f64, f64)> {
     points.windows(2).find_map(|pair| {
         let [(a, y), (b, z)] = [pair[0], pair[1]];
         let share = (x - a) / (b - a);
-        ((0.0..=1.0).contains(&share) && y.is_finite() && z.is_finite()).then(|| (x, y + (z - y) * share))
+        ((0.0..=1.0).contains(&share) && y.is_finite() && z.is_finite()).then_some((x, y + (z - y) * share))
     })
 }

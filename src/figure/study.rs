@@ -101,7 +101,7 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
 fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut steps: Vec<(f64, f64)> = Vec::new();
     for (x, y) in points {
-        if let Some((before, last)) = steps.last().copied().filter(|(_, last)| last != y) {
+        if let Some((before, last)) = steps.last().copied().filter(|(_, last)| last.total_cmp(y).is_ne()) {
             let middle = 0.5 * (before + x);
             steps.extend([(middle, last), (middle, *y)]);
         }

@@ -25,6 +25,7 @@ use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
 use pulloff_engine::theory::Exact;
 use pulloff_engine::verify::cases::{smooth, sphere};
 use pulloff_engine::verify::convergence::radius_at;
+use std::fmt::Write;
 
 /// A figure of the paper.
 #[derive(Debug, Clone)]
@@ -125,7 +126,8 @@ fn ends(data: &CurveData, view: View, figure: &mut Figure) -> String {
         let (force, approach) = (scale.force(point.force), point.approach);
         figure.marks.push(Mark { sign: Sign::Letter(letter), at: scale.place(view, place(point)) });
         let [force, approach] = [force, approach].map(|x| significant(x, 4));
-        said.push_str(&format!(" {letter}: the {what}, P = {force} P_c at δ = {approach} R."));
+        // Writing to a string cannot fail.
+        let _ = write!(said, " {letter}: the {what}, P = {force} P_c at δ = {approach} R.");
     }
     said
 }
@@ -331,16 +333,18 @@ fn errors() -> Result<Sheet, PaperError> {
         lines.push(Line::new(Role::Zero, "1/N", vec![(fewest, error), (most, error * fewest / most)]));
     }
     // Those of JKR are the last two: contact radius, force.
-    let slower = if let [.., radius, force] = orders[..] { (force < radius).then_some(()) } else { None };
+    let slower = if let [.., radius, force] = orders[..] { force < radius } else { false };
     let axis = |title: &str| Axis::pure(title.to_owned()).running(Run::Logarithmic);
     let caption = format!(
         "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
          number of rings N, computed at the marks; the thin line falls as 1/N. The observed orders at the finest meshes are \
          {}.{}",
         words.join("; "),
-        slower.map_or("", |_| {
+        if slower {
             " With adhesion our force converges slower than the contact radius here; the paper finds the force more accurate."
-        })
+        } else {
+            ""
+        }
     );
     let figure = Figure { marks, ..Figure::of(axis("N"), axis("relative error"), lines) };
     Ok(Sheet { name: "fig-5", figure, caption })
