@@ -14,5 +14,5 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let run = |of: &AxisReport| if of.logarithmic { Run::Logarithmic } else { Run::Linear };
     let (x, y) = (x.axis.running(run(&report.x)), y.axis.running(run(&report.y)));
     let missing = lines.is_empty().then(|| "no limit point is born or lost here".to_owned());
-    Figure { bounds, marks, missing, ..Figure::of(x, y, lines) }
+    Figure { marks, bounds, missing, ..Figure::of(x, y, lines) }
 }

@@ -114,7 +114,7 @@ fn owners(layers: &[Layer], cell: usize) -> impl Iterator<Item = usize> + '_ {
 pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -> Vec<Option<usize>> {
     let (width, height) = (usize::from(plot.width), usize::from(plot.height));
     let mut all = vec![None; width * height];
-    for cell in 0..width * height {
+    for (cell, shown) in all.iter_mut().enumerate() {
         let (column, row) = (cell % width, cell / width);
         let meets = |kind: Meets| {
             owners(layers, cell).filter(move |at| layers[*at].stroke.meets == kind).collect::<Vec<_>>()
@@ -125,7 +125,7 @@ pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -
         let Some(at) = shared.or(tints.last().copied()).or(below) else {
             continue;
         };
-        all[cell] = Some(at);
+        *shown = Some(at);
         // Both shapes are seen where two meet.
         let bits = if sharing.is_empty() {
             layers[at].bits[cell]

@@ -240,29 +240,33 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
             let with_data = rest.takes("with-data");
             Command::SaveAs { name, with_data, replace: rest.takes("replace") }
         }
-        Id::Export if !bare => {
-            let word = rest.need("a document")?;
-            if let Some(picture) = PICTURES.into_iter().find(|picture| picture.name() == word.text) {
-                let path = file(&mut rest, picture.endings())?;
-                let view = rest.words.first().and_then(|word| View::named(&word.text));
-                let picture = match picture {
-                    Picture::Figure(_) if view.is_some() => {
-                        rest.next();
-                        Picture::Figure(view)
-                    }
-                    picture => picture,
-                };
-                return rest.picture(picture, path);
-            }
-            let names = ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name));
-            let names: Vec<&str> = names.collect();
-            let what = ExportKind::ALL.into_iter().find(|what| what.name() == word.text);
-            let what = what.ok_or_else(|| unknown(word, "document", &names))?;
-            let path = file(&mut rest, what.endings())?;
-            Command::Export { what, path, replace: rest.takes("replace") }
-        }
+        Id::Export if !bare => return export(rest),
         id => id.into(),
     };
+    rest.done(command)
+}
+
+/// An export of a document or of a picture.
+fn export(mut rest: Rest<'_>) -> Result<Command, Fault> {
+    let word = rest.need("a document")?;
+    if let Some(picture) = PICTURES.into_iter().find(|picture| picture.name() == word.text) {
+        let path = file(&mut rest, picture.endings())?;
+        let view = rest.words.first().and_then(|word| View::named(&word.text));
+        let picture = match picture {
+            Picture::Figure(_) if view.is_some() => {
+                rest.next();
+                Picture::Figure(view)
+            }
+            picture => picture,
+        };
+        return rest.picture(picture, path);
+    }
+    let names = ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name));
+    let names: Vec<&str> = names.collect();
+    let what = ExportKind::ALL.into_iter().find(|what| what.name() == word.text);
+    let what = what.ok_or_else(|| unknown(word, "document", &names))?;
+    let path = file(&mut rest, what.endings())?;
+    let command = Command::Export { what, path, replace: rest.takes("replace") };
     rest.done(command)
 }
 

@@ -151,12 +151,11 @@ impl CellEncoder {
         let mut far = String::new();
         // Writing to a string cannot fail, here and below.
         let _ = write!(far, "\x1b[{};{}H", u32::from(to.y) + 1, u32::from(to.x) + 1);
-        match near.filter(|near| near.len() < far.len()) {
-            Some(near) => self.frame.extend_from_slice(near.as_bytes()),
-            None => {
-                self.frame.extend_from_slice(far.as_bytes());
-                self.is_sure = true;
-            }
+        if let Some(near) = near.filter(|near| near.len() < far.len()) {
+            self.frame.extend_from_slice(near.as_bytes());
+        } else {
+            self.frame.extend_from_slice(far.as_bytes());
+            self.is_sure = true;
         }
     }
 

@@ -271,7 +271,6 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "contacts over the way of δ",
         "limit points under displacement",
         "snaps",
-        "distances of the points",
         "ΔP/Pc over s/λ",
         "pull off force over A",
     ] {
@@ -279,9 +278,9 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         assert!(text.contains(title), "{title}: {text}");
         screen.keys("t");
     }
-    screen.keys("TTTTTTTT");
+    screen.keys("TTTTTTT");
     assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
-    screen.keys("tttttttt");
+    screen.keys("ttttttt");
     let text = screen.text(200, 60);
     for title in ["P/Pc over δ", "s/λ over P/Pc", "p/E* over r/λ", "U over s/λ"] {
         assert!(text.contains(title), "{title}: {text}");
@@ -291,7 +290,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
-    screen.keys("TTTTTTTT");
+    screen.keys("TTTTTTT");
     assert!(strokes(&screen) > before + 5, "{}", screen.text(120, 40));
 }
 

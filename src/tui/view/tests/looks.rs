@@ -40,11 +40,15 @@ fn passed(points: &[(f64, f64)], bounds: &Bounds, plot: Rect) -> HashSet<(u16, u
         if !steps.is_finite() {
             continue;
         }
-        for step in 0..=steps as u32 {
-            let share = f64::from(step) / steps.max(1.0);
+        let mut step = 0.0;
+        while step <= steps {
+            let share = step / steps.max(1.0);
+            step += 1.0;
             let at = [from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1)];
             if at[0] >= 0.0 && at[1] >= 0.0 && at[0] < f64::from(plot.width) && at[1] < f64::from(plot.height)
             {
+                // Below the sides of the plot.
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
                 passed.insert((plot.x + at[0] as u16, plot.y + at[1] as u16));
             }
         }
