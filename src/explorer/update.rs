@@ -20,7 +20,7 @@ mod walk;
 use super::availability::{is_available, why_unavailable};
 use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
-use super::fitting::{fit, fit_came, mark, want_distances};
+use super::fit::{fit, fit_came, mark, want_distances};
 use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};

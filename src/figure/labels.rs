@@ -1,8 +1,8 @@
 //! Where the labels of a map stand: numbers of snaps in their regions, crests on their lines.
 
 use super::bounds::Bounds;
-use super::map::Places;
 use super::parts::{Mark, Sign};
+use super::places::Places;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::RowReport;
 use std::collections::VecDeque;

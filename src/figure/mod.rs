@@ -17,6 +17,7 @@
 //! | [`differences`] | P minus that of the others |
 //! | [`stability`] | the law of stability over the contact radius |
 //! | `labels` | where the labels of a map stand |
+//! | [`places`] | where the numbers of an axis of a map stand |
 //! | [`map`] | lines of a map of two numbers, limit points over one |
 //! | [`study`] | a quantity over the range of one value |
 //! | [`state`] | pressure, gap and potential of the walker's state |
@@ -36,6 +37,7 @@ pub mod loops;
 pub mod map;
 pub mod measured;
 pub mod parts;
+pub mod places;
 pub mod range;
 pub mod reading;
 pub mod residuals;

@@ -47,6 +47,9 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let radius = scale.radius(inside.profile.contact_radius * inside.units.length);
     let drawing = Drawing { scale, inside, widest: widest.max(radius) };
     figure.title = format!("{}, {} {}", figure.title, scale.radius_axis("s").symbol, significant(radius, 4));
+    if view == View::Contact {
+        figure.title.push_str(", half of it");
+    }
     match view {
         View::Pressure => drawing.pressure(subject.curve.base.theory.exact_name, &mut figure),
         View::Gap => drawing.gap(&mut figure),

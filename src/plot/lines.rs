@@ -1,6 +1,7 @@
 //! Lines in two numbers at which snaps begin or end, and limit points over one, on paper.
 
-use crate::figure::map::{Places, laid};
+use crate::figure::map::laid;
+use crate::figure::places::Places;
 use crate::figure::{Figure, Run};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;

@@ -27,6 +27,7 @@
 //! | [`measured`] | the columns of a measured profile → rows of a gap; where they come from |
 //! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 
+mod attached;
 pub mod build;
 pub mod changes;
 pub mod data;

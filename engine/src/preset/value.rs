@@ -34,6 +34,11 @@ pub enum Value {
 }
 
 impl Value {
+    /// Whether it is the word that takes a file away.
+    pub(in crate::preset) fn is_none(&self) -> bool {
+        matches!(self, Self::Text(word) if word == NONE)
+    }
+
     /// As TOML; numbers keep every digit.
     #[must_use]
     pub fn to_toml(&self) -> String {

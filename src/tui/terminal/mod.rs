@@ -44,7 +44,7 @@
 //!         }
 //!         dirty = true;
 //!     }
-//!     if dirty && display.is_due() {
+//!     if dirty && std::time::Instant::now() >= display.due() {
 //!         display.draw(|frame| frame.render_widget("q quits", frame.area()));
 //!         dirty = false;
 //!     }

@@ -31,7 +31,7 @@ const READING: &[&str] = &[
      next stable part, and the energy between is lost. A dot is a limit point that is not on the quasi-static path.",
     "States that cannot be have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. They stand behind the events. \
-     The real path has rings of contact there: its loop is drawn with l (loading) and u (unloading), and \u{1}events\u{1} lists it.",
+     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own, and \u{1}events\u{1} lists it.",
     "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap \
      outside it and the potential over the radius at the walker's state, and the unloading with its losses shaded. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \

@@ -85,7 +85,7 @@ impl Preset {
             key if key == CHOOSERS[2] && value.to_string() != SYSTEMS[1] => {
                 values.retain(|key, _| !family::is_unit(key));
             }
-            data::FILE if data::is_none(&value) => {
+            data::FILE if value.is_none() => {
                 values.remove(data::FILE);
                 return;
             }

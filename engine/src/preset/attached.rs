@@ -1,0 +1,171 @@
+//! The table `[data]` of a preset, read; and its points.
+
+use super::data::{BASELINE, COLUMNS, DataSpec, FILE, FREE, OFFSET, SEGMENT, SEGMENTS, TILT};
+use super::given::Given;
+use super::invalid::Invalid;
+use super::model::Preset;
+use super::value::Value;
+use crate::measured::branches::Asked;
+use crate::measured::points::stiffness;
+use crate::measured::source::Reading;
+use crate::measured::{Branches, Segment, Source};
+use crate::problem::Control;
+use std::sync::Arc;
+
+impl Given<'_> {
+    /// The measured curve; a control that nothing says becomes the spring that the file states.
+    pub(super) fn data(&mut self, control: &mut Control) -> DataSpec {
+        let optional = |given: &mut Self, key| given.values.contains_key(key).then(|| given.number(key));
+        let segment = self.values.contains_key(SEGMENT).then(|| self.text(SEGMENT));
+        let source = match self.values.get(FILE) {
+            Some(Value::Points(source)) => Some(Arc::clone(source)),
+            Some(value @ Value::Text(name)) if !value.is_none() => match (self.files.points)(None, name) {
+                Ok(bytes) => Some(Arc::new(Source::new(name.clone(), None, bytes.into()))),
+                Err(cause) => {
+                    self.faults.push(Invalid::Made { key: FILE.into(), cause });
+                    None
+                }
+            },
+            _ => None,
+        };
+        let spec = DataSpec {
+            source,
+            columns: self.text(COLUMNS),
+            offset: optional(self, OFFSET),
+            baseline: optional(self, BASELINE),
+            tilt: optional(self, TILT),
+            free: self.text(FREE),
+            segment: segment
+                .map(|word| if word == SEGMENTS[0] { Segment::Approach } else { Segment::Retraction }),
+        };
+        let Some(source) = &spec.source else { return spec };
+        let has_control = self.values.contains_key("path.control");
+        let found = source.measured(&spec.columns).and_then(|measured| {
+            let words = |error: crate::measured::PointsError| error.to_string();
+            measured.check_units(&self.units).map_err(words)?;
+            stiffness(measured.stiffness, *control, &self.units).map_err(words)
+        });
+        match found {
+            Ok(Some(k)) if !has_control => *control = Control::Stiffness(k),
+            Ok(_) => {}
+            Err(cause) => self.faults.push(Invalid::Made {
+                key: FILE.into(),
+                cause: format!("{}: {}", super::measured::shown_file(source), cause.replace('\n', "; ")),
+            }),
+        }
+        spec
+    }
+}
+
+impl Preset {
+    /// How the points of a measured curve are made for this preset.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        let spring = match self.path.control {
+            Control::Stiffness(k) => Some(k),
+            Control::Displacement | Control::Force => None,
+        };
+        let asked = Asked { segment: self.data.segment, ..Asked::default() };
+        Reading { columns: self.data.columns.clone(), units: self.units.clone(), spring, asked }
+    }
+
+    /// The branches of its measured curve; `None` without one.
+    ///
+    /// # Errors
+    /// Why its points have none, in words.
+    #[must_use]
+    pub fn branches(&self) -> Option<Result<Arc<Branches>, String>> {
+        self.data.source.as_ref().map(|source| source.branches(&self.reading()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::FILES;
+    use crate::preset::{read_in, write};
+    use std::path::Path;
+
+    const HEAD: &str = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='sphere'\nradius_of_curvature=1\n";
+
+    fn read(folder: &Path, units: &str, more: &str) -> Result<Preset, String> {
+        let text = format!("{units}{HEAD}{more}");
+        read_in(FILES, Some(folder), "p.toml", &text, &[] as &[&str]).map_err(|error| error.to_string())
+    }
+
+    /// A folder with a table without units, one in micrometres, and one of an instrument that states its spring.
+    fn folder() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> = (0..20).map(|i| format!("{}\t{}", -i, 0.1 * f64::from(i))).collect();
+        let rows = rows.join("\n");
+        let put = |name: &str, head: &str| {
+            std::fs::write(folder.path().join(name), format!("{head}{rows}")).unwrap();
+        };
+        put("plain.txt", "delta\tforce\n");
+        put("units.txt", "delta [um]\tforce [uN]\n");
+        put(
+            "curve.tab",
+            "# BEGIN METADATA\n# {\n#   \"spring constant\": 0.25\n# }\n# END METADATA\n# height (measured)\tforce\n",
+        );
+        folder
+    }
+
+    #[test]
+    fn a_curve_is_read_from_beside_its_preset_and_written_back() {
+        let folder = folder();
+        let more = "[data]\nfile='plain.txt'\noffset=-3\nbaseline=0.5\nsegment='retraction'\n";
+        let preset = read(folder.path(), "", more).unwrap();
+        let branches = preset.branches().unwrap().unwrap();
+        assert_eq!(branches.list.iter().map(|branch| branch.attached.len()).sum::<usize>(), 20);
+        assert_eq!(preset.data.segment, Some(Segment::Retraction));
+        let back = read_in(FILES, Some(folder.path()), "p.toml", &write(&preset), &[] as &[&str]).unwrap();
+        assert_eq!(back, preset);
+        // The same branches are not found twice.
+        assert!(Arc::ptr_eq(&branches, &preset.clone().branches().unwrap().unwrap()));
+        let mut changed = preset.clone();
+        changed.set(FILE, "none".into()).unwrap();
+        assert_eq!((changed.data.source.as_ref(), changed.data.offset), (None, Some(-3.0)));
+        assert!(!write(&changed).contains("plain.txt"));
+        changed.set(FILE, folder.path().join("plain.txt").to_str().unwrap().into()).unwrap();
+        assert_eq!(changed.placed_in(folder.path()).get(FILE).unwrap().to_string(), "plain.txt");
+        let error = changed.set(COLUMNS, "x=1,force=7".into()).unwrap_err().to_string();
+        assert!(error.contains("there is no column 7: a row has 2"), "{error}");
+        let error = read(folder.path(), "", "[data]\nfile='gone.txt'\n").unwrap_err();
+        assert!(error.starts_with("p.toml:8: data.file: "), "{error}");
+    }
+
+    #[test]
+    fn units_and_springs_that_contradict_the_preset_are_refused() {
+        let folder = folder();
+        let error = read(folder.path(), "", "[data]\nfile='units.txt'\n").unwrap_err();
+        assert!(
+            error.contains("the approach has a unit, um, and the problem is in reduced units"),
+            "{error}"
+        );
+        read(folder.path(), "units='SI'\n", "[data]\nfile='units.txt'\n").unwrap();
+        // A file that states its spring gives it to a preset that says nothing of its device.
+        let data = "[data]\nfile='curve.tab'\n";
+        let preset = read(folder.path(), "units='SI'\n", data).unwrap();
+        assert_eq!(preset.path.control, Control::Stiffness(0.25));
+        let with = |control: &str| {
+            read(folder.path(), "units='SI'\n", &format!("[path]\ncontrol={control}\n{data}"))
+        };
+        assert_eq!(with("{stiffness=0.25}").unwrap().path.control, Control::Stiffness(0.25));
+        let error = with("{stiffness=0.3}").unwrap_err();
+        assert!(
+            error.contains("the file states a spring of 0.25 N/m") && error.contains("0.3 N/m"),
+            "{error}"
+        );
+        assert!(read(folder.path(), "", data).unwrap_err().contains("reduced units"));
+        // Chosen later it takes the place of a device without a stiffness, and not of another spring.
+        let mut preset = read(folder.path(), "units='SI'\n", "").unwrap();
+        let file = folder.path().join("curve.tab");
+        preset.set(FILE, file.to_str().unwrap().into()).unwrap();
+        assert_eq!(preset.path.control, Control::Stiffness(0.25));
+        preset.set(FILE, "none".into()).unwrap();
+        preset.set("path.control.stiffness", 7.0.into()).unwrap();
+        let error = preset.set(FILE, file.to_str().unwrap().into()).unwrap_err().to_string();
+        assert!(error.contains("one of them is wrong"), "{error}");
+        assert_eq!(preset.data.source, None);
+    }
+}

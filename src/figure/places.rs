@@ -1,0 +1,77 @@
+//! Where the numbers of an axis of a map stand on it.
+
+use super::parts::Axis;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::map::AxisReport;
+use pulloff_engine::report::number::significant;
+use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::text::greek;
+use pulloff_engine::units::Quantity;
+
+/// Where the numbers of an axis stand on it.
+#[derive(Debug, Clone)]
+pub struct Places {
+    /// What stands beside it.
+    pub axis: Axis,
+    factor: f64,
+    logarithmic: bool,
+    middle: Option<f64>,
+    pub(super) ends: Option<[f64; 2]>,
+}
+
+impl Places {
+    /// The places of an axis of a map of `preset`; with `even` those of a logarithmic axis are logarithms.
+    pub fn of(axis: &AxisReport, preset: &Preset, control: Control, even: bool) -> Self {
+        let quantity = match axis.key.as_str() {
+            "control" if control == Control::Force => Quantity::Force,
+            "force" => Quantity::Force,
+            "control" | "approach" => Quantity::Length,
+            key => preset.row(key).map_or(Quantity::Number, |row| row.quantity),
+        };
+        let symbol = match axis.key.as_str() {
+            "control" if control == Control::Force => "P".to_owned(),
+            "control" if matches!(control, Control::Stiffness(_)) => "Δ".to_owned(),
+            "control" | "approach" => "δ".to_owned(),
+            "force" => "P".to_owned(),
+            COMPLIANCE => "1/k".to_owned(),
+            key => preset.row(key).map_or_else(|| key.to_owned(), |row| greek(&row.label)),
+        };
+        let row = preset.row(&axis.key);
+        let own = row.as_ref().and_then(|row| row.unit_in(&preset.units));
+        let unit = own.or_else(|| preset.units.unit(quantity));
+        let shown = unit.map_or_else(String::new, ToString::to_string);
+        let factor = unit.map_or(1.0, |unit| unit.from_si(1.0));
+        let logarithmic = axis.logarithmic && even;
+        let symbol = match axis.middle {
+            Some(middle) => format!("c/(c + {}), c = 1/k", significant(middle, 3)),
+            None if logarithmic => format!("log {symbol}"),
+            None => symbol,
+        };
+        let axis_of = Axis { shown, ..Axis::pure(symbol) };
+        let mut places = Self { axis: axis_of, factor, logarithmic, middle: axis.middle, ends: None };
+        places.ends = axis.from.map(|from| [places.at(Some(from)), places.at(axis.to)]);
+        places
+    }
+
+    /// The place of a number, in SI or reduced units; `None` is infinity.
+    pub fn at(&self, value: Option<f64>) -> f64 {
+        match (self.middle, value) {
+            (Some(_), None) => 1.0,
+            (Some(middle), Some(value)) => value / (value + middle),
+            (None, Some(value)) if self.logarithmic => (value * self.factor).log10(),
+            (None, Some(value)) => value * self.factor,
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// The number at a place; `None` is infinity.
+    pub fn value(&self, place: f64) -> Option<f64> {
+        match self.middle {
+            Some(_) if place >= 1.0 => None,
+            Some(middle) => Some(middle * place.max(0.0) / (1.0 - place)),
+            None if self.logarithmic => Some(10f64.powf(place) / self.factor),
+            None => Some(place / self.factor),
+        }
+    }
+}
