@@ -260,6 +260,31 @@ fn presets_are_saved_opened_and_never_replaced_unasked() {
 }
 
 #[test]
+fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
+    let set = |session: &mut Session, amplitude: &str| {
+        session.does(Command::Assign(vec![("gap.amplitude".into(), amplitude.into())]));
+    };
+    // The smooth sphere is a way off the waves: the state nearest to it is not a stable one.
+    let mut session = Session::new("wavy-sphere");
+    set(&mut session, "0");
+    set(&mut session, "0.003");
+    let node = session.model.history.current().unwrap();
+    assert!(node.stability.under(node.control), "{}", session.status());
+    let direct = {
+        let mut session = Session::new("wavy-sphere");
+        set(&mut session, "0.003");
+        session.model.history.current().unwrap().state.contact_radius
+    };
+    assert!((node.state.contact_radius - direct).abs() < 1e-9 * direct);
+    // From an unstable state its own branch is followed.
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextLimit, Id::Step]);
+    set(&mut session, "0.00251");
+    let node = session.model.history.current().unwrap();
+    assert!(!node.stability.under(node.control), "{}", session.status());
+}
+
+#[test]
 fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
     let mut session = Session::new("fig-8");
     session.all(&[Id::NextLimit, Id::Jump]);

@@ -47,6 +47,8 @@ pub enum Action {
         state: State,
         /// Its edges, where there are rings.
         rings: Option<Box<Before>>,
+        /// Whether it was stable, or at the end of what is: then a stable state is looked for.
+        was_stable: bool,
     },
     /// The first touch of bodies that were apart, and what it jumps to.
     Begin,
@@ -55,7 +57,11 @@ pub enum Action {
 impl Action {
     /// Solves the state of a node again for other values.
     pub fn solve(node: &Node) -> Self {
-        Self::Solve { state: node.state.in_units(node.setting.units()), rings: Before::of(node) }
+        Self::Solve {
+            state: node.state.in_units(node.setting.units()),
+            rings: Before::of(node),
+            was_stable: node.stability.under(node.control) || matches!(node.kind, NodeKind::Limit),
+        }
     }
 }
 
@@ -131,11 +137,11 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             None => return Outcome::Stopped("the curve has changed meanwhile".to_owned()),
         },
         Action::Begin => walk.first_touch(&mut arrive),
-        Action::Solve { state, rings: Some(before) } => before.follow(&request.curve, state, &mut arrive),
-        Action::Solve { state, rings: None } => {
+        Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
+        Action::Solve { state, rings: None, was_stable } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
-            walk.solve(value, state.contact_radius / units.length, &mut arrive)
+            walk.solve(value, state.contact_radius / units.length, *was_stable, &mut arrive)
         }
     };
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);

@@ -90,10 +90,25 @@ pub enum FamilyError {
     /// The key holds no number.
     #[error("{0}: an axis of a map is a number of the preset, a group, or compliance")]
     NoNumber(String),
+    /// The gap is too fine at an end of an axis.
+    #[error(
+        "{axis}: at {value:?} the disc at the start holds {count} waves, a map takes up to {MOST_FEATURES}"
+    )]
+    TooFine {
+        /// The axis.
+        axis: String,
+        /// The value there, in base units.
+        value: f64,
+        /// How many waves, or features, the disc holds.
+        count: f64,
+    },
     /// Both axes are the same.
     #[error("{0}: the two axes of a map are two keys")]
     Twice(String),
 }
+
+/// Waves, or other features of the gap, in the disc at the start: with more of them a map would take minutes.
+const MOST_FEATURES: f64 = 3000.0;
 
 /// What the law needs to know of one state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -183,7 +198,25 @@ impl Family {
         }
         let start = family.start_of(&family.base, family.base.reduced.work_of_adhesion)?;
         family.radii = [preset.end_contact_radius(start * length) / length, start];
+        family.check_features()?;
         Ok(family)
+    }
+
+    /// Refuses an axis on which the gap becomes too fine to be tabulated again and again.
+    fn check_features(&self) -> Result<(), FamilyError> {
+        for (axis, _) in self.axes.iter().zip(&self.roles).filter(|(_, role)| **role == Role::Other) {
+            for end in axis.range {
+                let Ok(preset) = self.with(&[(axis, end)]) else { continue };
+                let made = Made::of(preset, self.length);
+                let feature = made.reduced.gap.feature_length().unwrap_or(f64::INFINITY);
+                let count = self.radii[1] / feature;
+                if count > MOST_FEATURES {
+                    let axis = axis.to_string();
+                    return Err(FamilyError::TooFine { axis, value: end, count: count.round() });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The preset with these values.

@@ -72,8 +72,9 @@ impl Walk<'_> {
         WalkEnd::AtLimit
     }
 
-    /// Goes to the state at this value of the control, nearest to the contact radius `s` before the problem changed.
-    pub fn solve(&self, value: f64, s: f64, emit: &mut Emit<'_>) -> WalkEnd {
+    /// Goes to the state at this value of the control, nearest to the contact radius `s` before the problem changed. From a
+    /// stable state it goes to the nearest stable one, where there is one: bodies would not stay in another.
+    pub fn solve(&self, value: f64, s: f64, was_stable: bool, emit: &mut Emit<'_>) -> WalkEnd {
         let equilibrium = self.equilibrium();
         let problem = &equilibrium.problem;
         // Newton may find another state far away on a wavy gap: the old radius' own branch is wanted.
@@ -90,7 +91,13 @@ impl Walk<'_> {
                 point.rounds = solved.rounds;
                 Some(point)
             });
-        let Some(point) = newton.or_else(|| self.nearest_crossing(value, s)) else {
+        let is_stable = |point: &Point| equilibrium.stability(point).under(self.control);
+        let stable = |found: Option<Point>| match found {
+            Some(point) if !was_stable || is_stable(&point) => Some(point),
+            found => self.nearest_crossing(value, s, &is_stable).filter(|_| was_stable).or(found),
+        };
+        let found = newton.or_else(|| self.nearest_crossing(value, s, &|_| true));
+        let Some(point) = stable(found) else {
             return WalkEnd::Failed(WalkFailure::NotSolved);
         };
         emit(self.of_disc(Arrival::Solved, point));
@@ -361,8 +368,8 @@ impl Walk<'_> {
         Some(Ahead { after, dissipated })
     }
 
-    /// The state nearest to the radius `s` at which the curve takes the control value.
-    fn nearest_crossing(&self, value: f64, s: f64) -> Option<Point> {
+    /// The state that is `wanted`, nearest to the radius `s`, at which the curve takes the control value.
+    fn nearest_crossing(&self, value: f64, s: f64, wanted: &dyn Fn(&Point) -> bool) -> Option<Point> {
         let curve = self.curve;
         let solution = &*curve.solution;
         let monotone = curve.monotone(self.control);
@@ -373,13 +380,11 @@ impl Walk<'_> {
         };
         let radius = |place: Place| solution.at(place).contact_radius;
         let on_curve = |s: &f64| curve.innermost() <= *s && *s <= curve.outermost();
-        monotone
-            .crossings(solution, value)
-            .into_iter()
-            .map(|(place, _)| radius(place))
-            .filter(on_curve)
-            .min_by(|a, b| (a - s).abs().total_cmp(&(b - s).abs()))
-            .and_then(|s| self.equilibrium().explicit(s))
+        let mut radii: Vec<f64> =
+            monotone.crossings(solution, value).into_iter().map(|(place, _)| radius(place)).collect();
+        radii.retain(on_curve);
+        radii.sort_by(|a, b| (a - s).abs().total_cmp(&(b - s).abs()));
+        radii.into_iter().filter_map(|s| self.equilibrium().explicit(s)).find(|point| wanted(point))
     }
 }
 
