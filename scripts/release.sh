@@ -27,7 +27,7 @@ if [ -z "$program" ]; then
     if [ ! -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
         rustup target add "$target"
     fi
-    cargo build --locked --release --target "$target"
+    cargo build --locked --release --target "$target" -p pulloff
     program=target/$target/release/pulloff
     if readelf -d "$program" 2>/dev/null | grep -q NEEDED; then
         echo 'the program needs shared libraries' >&2
