@@ -7,7 +7,7 @@ mod session;
 
 use pulloff::explorer::maps::MapAxes;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, Id, Panel, View};
+use pulloff::explorer::{Command, EventSource, Id, Panel, View};
 use pulloff::figure::{Figure, Role, Sign, Subject};
 use session::Session;
 
@@ -59,6 +59,11 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
         assert!(!chosen.contains(&line.points), "event {number} has the curve of another");
         chosen.push(line.points.clone());
     }
+    // Folded, the events are still those of the curve.
+    while session.model.events != EventSource::Folded {
+        session.does(Id::Events);
+    }
+    assert!(figure(&session).lines.iter().any(|line| line.role == Role::Chosen));
 }
 
 #[test]

@@ -29,6 +29,7 @@
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
 //! | [`maps`], [`studies`], `study_table` | the map of two numbers; a quantity over one, and its documents |
+//! | [`fitting`], `fit` | a fit and the distances of measured points; the commands about them |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |

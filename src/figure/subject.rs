@@ -8,7 +8,7 @@ use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::reach::study_range;
 use crate::explorer::studies::StudyData;
-use crate::explorer::{Axes, CurveData, EventSource, Model, Node, Overlays, View, device};
+use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{BasisSpec, Preset};
@@ -56,7 +56,7 @@ impl<'a> Subject<'a> {
             device: device::line(model),
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             map: model.map.as_ref().map(|map| map.report()),
-            event: (model.events == EventSource::Curve).then_some(model.event + 1),
+            event: model.events.is_curve().then_some(model.event + 1),
             measured: Points::of(&model.preset).and_then(Result::ok),
             distances: model.distances.as_ref().map(|distances| &distances.found),
             study: study(model),

@@ -25,6 +25,7 @@
 //! | `former` | keys and words of before, and what to write for them |
 //! | [`groups`] | the dimensionless groups as values to set |
 //! | [`measured`] | the columns of a measured profile → rows of a gap; where they come from |
+//! | [`data`], `attached` | what the table `[data]` holds: a measured curve; how it is read, and its points |
 //! | [`profile`] | reading a measured profile: two columns, each fault with its line |
 
 mod attached;
