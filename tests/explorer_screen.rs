@@ -26,15 +26,12 @@ fn line(pty: &Pty, text: &str) -> String {
 /// Goes down the parameters to the one of this label.
 fn select(pty: &mut Pty, label: &str) {
     let selected = format!(">{label}");
-    // The line alone: what is computed changes the rest of the screen at any time.
-    let line = |screen: &str| screen.lines().find(|line| line.contains("│>")).map(str::to_owned);
-    while !pty.screen().contains(&selected) {
-        let before = line(&pty.screen());
-        pty.keys("j");
-        // At the last parameter nothing moves, and this fails.
-        // Half a frame may have no such line.
-        pty.wait_for(|screen| line(screen).is_some_and(|now| Some(now) != before), "another parameter");
-    }
+    pty.press_until("j", |screen| word_after(screen, "│>"), |screen| screen.contains(&selected));
+}
+
+/// The first word behind a mark.
+fn word_after(screen: &str, mark: &str) -> Option<String> {
+    screen.split_once(mark)?.1.split_whitespace().next().map(str::to_owned)
 }
 
 #[test]
@@ -104,11 +101,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     pty.wait_for(|screen| screen.contains("Events on the curve: 6"), "the curve");
     pty.keys("o");
     pty.wait_for(|screen| screen.contains("lab-3"), "the list");
-    while !pty.screen().contains("> lab-3") {
-        let before = pty.screen();
-        pty.keys("j");
-        pty.wait_for(|screen| screen != before, "the next preset");
-    }
+    pty.press_until("j", |screen| word_after(screen, "> "), |screen| screen.contains("> lab-3"));
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains(" lab-3  control") && screen.contains("0.003 "), "the preset");
     pty.keys("q");

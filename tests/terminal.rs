@@ -271,11 +271,8 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
         pty.keys("\r");
         pty.wait_for(|screen| !screen.contains("Open a preset"), "the refusal");
     }
-    while !selects(&pty.screen(), "file") {
-        let before = pty.screen();
-        pty.keys("j");
-        pty.wait_for(|screen| screen != before, "another knob");
-    }
+    let label = |screen: &str| screen.split_once("│>")?.1.split_whitespace().next().map(str::to_owned);
+    pty.press_until("j", label, |screen| selects(screen, "file"));
     // The files beside the data: those with hostile names are not offered.
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("Profiles in") && screen.contains("good.csv"), "the folder");

@@ -173,6 +173,31 @@ impl Pty {
         }
     }
 
+    /// Presses a key until the screen is as wanted, each time when the mark that the key moves has come to stand
+    /// elsewhere. What is computed meanwhile changes the rest of the screen, and is no answer to the key.
+    pub fn press_until(
+        &mut self,
+        key: &str,
+        mark: impl Fn(&str) -> Option<String>,
+        wanted: impl Fn(&str) -> bool,
+    ) {
+        while !wanted(&self.screen()) {
+            let before = mark(&self.screen());
+            self.keys(key);
+            // At the end of a list nothing moves, and this fails. Half a frame may have no mark, or half of it: a
+            // second look must find the same.
+            let moved = |pty: &Self| mark(&pty.screen()).filter(|now| before.as_ref() != Some(now));
+            self.wait_until(
+                |pty| {
+                    let first = moved(pty);
+                    thread::sleep(LOOK);
+                    first.is_some() && moved(pty) == first
+                },
+                "the mark moved",
+            );
+        }
+    }
+
     /// The screen's text, a line per row.
     pub fn screen(&self) -> String {
         self.with_screen(vt100::Screen::contents)
