@@ -9,18 +9,23 @@ use pulloff_engine::theory::{Disc, Exact};
 
 /// Points of a smooth curve.
 const SMOOTH_POINTS: u32 = 200;
+/// Theory goes on beyond both ends of the curve, as far as a chart shows it: outward to this many times the start,
+/// inward to this share of the end.
+const BEYOND: [f64; 2] = [1.1, 0.1];
+/// The states of the exact solution beyond each end of the curve.
+const BEYOND_POINTS: u32 = 16;
 
 /// δ, P and s of one state, in the user's units.
 pub type Place = [f64; 3];
 
-/// Theory over the radii of a curve, in the user's units.
+/// Theory over the radii of a curve and a little beyond, in the user's units.
 #[derive(Debug, Clone)]
 pub struct Theory {
     /// The smooth sphere of the same curvature and adhesion; empty without a radius of curvature.
     pub smooth: Vec<Place>,
     /// Its name: Hertz or JKR; without a sphere what is missing.
     pub smooth_name: &'static str,
-    /// The exact solution of the gap, over the radii of the curve and as fine.
+    /// The exact solution of the gap, as fine as the curve.
     pub exact: Vec<Place>,
     pub exact_name: &'static str,
     /// The envelope of small waves; none without adhesion, and for wavy spheres alone.
@@ -41,10 +46,11 @@ pub struct Envelope {
 }
 
 impl Theory {
-    /// The theory of `case` between its start and its end.
+    /// The theory of `case` from beyond its start to beyond its end.
     pub fn of(case: &Case, curve: &Curve) -> Self {
         let units = case.units();
-        let (from, to) = (case.start * units.length, case.end * units.length);
+        let (start, end) = (case.start * units.length, case.end * units.length);
+        let [from, to] = [BEYOND[0] * start, BEYOND[1] * end];
         let smooth: Vec<f64> = (0..=SMOOTH_POINTS)
             .map(|i| {
                 // Even in √s: the curve behaves like √s towards the axis.
@@ -52,7 +58,12 @@ impl Theory {
                 (from.sqrt() + (to.sqrt() - from.sqrt()) * x).powi(2)
             })
             .collect();
-        let fine: Vec<f64> = curve.samples.iter().map(|at| at.contact_radius * units.length).collect();
+        let steps = |from: f64, to: f64| {
+            (0..BEYOND_POINTS).map(move |i| from + (to - from) * f64::from(i) / f64::from(BEYOND_POINTS))
+        };
+        let own = curve.samples.iter().map(|at| at.contact_radius * units.length);
+        let inward = steps(0.0, end - to).map(|less| end - less).skip(1);
+        let fine: Vec<f64> = steps(from, start).chain(own).chain(inward).chain([to]).collect();
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
         Self {
             smooth: jkr.map_or_else(Vec::new, |jkr| along(&jkr, &smooth)),

@@ -10,7 +10,6 @@ use super::scale::Scale;
 use super::subject::Subject;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, CycleStateReport, PathStateReport};
-use pulloff_engine::units::Quantity;
 
 /// Builds the view.
 pub fn figure(subject: &Subject<'_>) -> Figure {
@@ -23,9 +22,9 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 
 fn blank(control: Control, scale: Scale<'_>) -> Figure {
     let mut x = match control {
-        Control::Displacement => scale.length("δ"),
+        Control::Displacement => scale.length_axis("δ"),
         Control::Force => scale.force_axis(),
-        Control::Stiffness(_) => scale.length("Δ"),
+        Control::Stiffness(_) => scale.length_axis("Δ"),
     };
     x = Axis { symbol: format!("way of {}", x.symbol), ..x };
     Figure::empty(format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
@@ -91,7 +90,7 @@ impl<'a> Way<'a> {
         } else {
             control_value - self.first
         };
-        if self.is_force { self.scale.force(gone) } else { self.scale.shown(Quantity::Length, gone) }
+        if self.is_force { self.scale.force(gone) } else { self.scale.length(gone) }
     }
 }
 

@@ -62,10 +62,14 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 fn others(subject: &Subject<'_>, notes: &mut Vec<String>) -> Vec<Other> {
     let theory = &subject.curve.base.theory;
     let overlays = subject.overlays;
+    let (curve, unit) = (&subject.curve.base.curve, subject.curve.case.units().length);
+    let ours = curve.innermost() * unit..=curve.outermost() * unit;
     let mut all = Vec::new();
     let mut add = |role, name: &str, states: &[[f64; 3]], is_on: bool| {
+        // Theory goes on beyond our curve, where other branches have the same δ.
+        let states: Vec<_> = states.iter().copied().filter(|at| ours.contains(&at[2])).collect();
         if is_on && !states.is_empty() {
-            all.push(Other { role, name: name.to_owned(), states: states.to_vec() });
+            all.push(Other { role, name: name.to_owned(), states });
         }
     };
     add(Role::Smooth, theory.smooth_name, &theory.smooth, overlays.smooth);
@@ -73,15 +77,18 @@ fn others(subject: &Subject<'_>, notes: &mut Vec<String>) -> Vec<Other> {
         add(Role::Envelope, "envelope", &envelope.unloading, overlays.envelope);
     }
     add(Role::Exact, theory.exact_name, &theory.exact, overlays.exact);
+    let mut pinned = Vec::new();
     for pin in subject.pins {
         if discriminant(&pin.preset().units) != discriminant(&subject.preset.units) {
             notes.push(format!("{} has other units", pin.number));
             continue;
         }
         let state = |at: &CurvePoint| [at.approach, at.force, at.contact_radius];
-        let states: Vec<_> = pin.curve.points.iter().map(state).collect();
-        add(Role::Pin(pin.number), &format!("{} {}", pin.number, pin.name(subject.preset)), &states, true);
+        let states = pin.curve.points.iter().map(state).collect();
+        let name = format!("{} {}", pin.number, pin.name(subject.preset));
+        pinned.push(Other { role: Role::Pin(pin.number), name, states });
     }
+    all.extend(pinned);
     all
 }
 

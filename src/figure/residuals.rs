@@ -9,7 +9,6 @@ use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::{Abscissa, Segment};
-use pulloff_engine::units::Quantity;
 
 /// Deviations between which nearly all of normal noise lies.
 const USUAL: f64 = 3.0;
@@ -18,9 +17,9 @@ const USUAL: f64 = 3.0;
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     let x = match subject.distances.and_then(|found| found.as_ref().ok()) {
-        Some((Abscissa::Radius, _)) => scale.length("s"),
-        Some((Abscissa::Position, _)) => scale.length("Δ"),
-        _ => scale.length("δ"),
+        Some((Abscissa::Radius, _)) => scale.length_axis("s"),
+        Some((Abscissa::Position, _)) => scale.length_axis("Δ"),
+        _ => scale.length_axis("δ"),
     };
     let mut figure =
         Figure::empty("distances of the points from the curve".to_owned(), x, Axis::pure("r/σ".to_owned()));
@@ -40,9 +39,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         }
     };
     let offset = subject.preset.data.offset.unwrap_or(0.0);
-    let at = |residual: &Residual| {
-        (scale.shown(Quantity::Length, residual.datum.point.x - offset), residual.residual)
-    };
+    let at = |residual: &Residual| (scale.length(residual.datum.point.x - offset), residual.residual);
     let step = residuals.len().div_ceil(DRAWN).max(1);
     for segment in [Segment::Approach, Segment::Retraction] {
         let of = residuals.iter().filter(|residual| residual.datum.segment == segment);

@@ -1,4 +1,11 @@
 //! What the axes are divided by.
+//!
+//! | quantity | reduced axes | in its unit instead |
+//! |---|---|---|
+//! | force | P_c | without adhesion |
+//! | radii | λ, else as other lengths | |
+//! | other lengths | R, where the preset has no units | in an SI preset |
+//! | pressure | E* | |
 
 use super::parts::Axis;
 use crate::explorer::{Axes, CurveData, View};
@@ -12,6 +19,8 @@ pub struct Scale<'a> {
     pub force: Option<f64>,
     /// λ.
     pub wave: Option<f64>,
+    /// R, of a preset without units.
+    pub curvature: Option<f64>,
     pub modulus: Option<f64>,
     /// The units in which the other axes are shown.
     pub units: &'a UnitSystem,
@@ -22,20 +31,26 @@ impl<'a> Scale<'a> {
     pub fn of(curve: &'a CurveData, axes: Axes) -> Self {
         let units = &curve.setting.preset.units;
         if axes == Axes::Raw {
-            return Self { force: None, wave: None, modulus: None, units };
+            return Self::raw(units);
         }
         let problem = &curve.case.problem;
         Self {
             force: Some(curve.base.critical_force).filter(|force| *force > 0.0),
             wave: problem.shape.wavelength(),
+            curvature: problem.shape.radius_of_curvature().filter(|_| *units == UnitSystem::Reduced),
             modulus: Some(problem.effective_modulus),
             units,
         }
     }
 
+    /// No divisors.
+    pub fn raw(units: &'a UnitSystem) -> Self {
+        Self { force: None, wave: None, curvature: None, modulus: None, units }
+    }
+
     /// The place of δ, P and s (in the user's units) in a view of the curve.
     pub fn place(self, view: View, [approach, force, radius]: [f64; 3]) -> (f64, f64) {
-        let approach = self.shown(Quantity::Length, approach);
+        let approach = self.length(approach);
         let force = self.force(force);
         let radius = self.radius(radius);
         match view {
@@ -47,7 +62,12 @@ impl<'a> Scale<'a> {
 
     /// A radius on its axis.
     pub fn radius(self, r: f64) -> f64 {
-        self.wave.map_or_else(|| self.shown(Quantity::Length, r), |wave| r / wave)
+        self.wave.map_or_else(|| self.length(r), |wave| r / wave)
+    }
+
+    /// Any other length on its axis.
+    pub fn length(self, x: f64) -> f64 {
+        self.curvature.map_or_else(|| self.shown(Quantity::Length, x), |curvature| x / curvature)
     }
 
     /// A pressure on its axis.
@@ -59,8 +79,8 @@ impl<'a> Scale<'a> {
     pub fn axes(self, view: View) -> [Axis; 2] {
         match view {
             View::RadiusForce => [self.force_axis(), self.radius_axis("s")],
-            View::RadiusApproach => [self.length("δ"), self.radius_axis("s")],
-            _ => [self.length("δ"), self.force_axis()],
+            View::RadiusApproach => [self.length_axis("δ"), self.radius_axis("s")],
+            _ => [self.length_axis("δ"), self.force_axis()],
         }
     }
 
@@ -68,7 +88,7 @@ impl<'a> Scale<'a> {
     pub fn radius_axis(self, name: &str) -> Axis {
         match self.wave {
             Some(_) => Axis::pure(format!("{name}/λ")),
-            None => self.length(name),
+            None => self.length_axis(name),
         }
     }
 
@@ -93,9 +113,12 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The axis of a length of this name.
-    pub fn length(self, name: &str) -> Axis {
-        self.axis(name, "length", Quantity::Length)
+    /// The axis of another length of this name.
+    pub fn length_axis(self, name: &str) -> Axis {
+        match self.curvature {
+            Some(_) => Axis::pure(format!("{name}/R")),
+            None => self.axis(name, "length", Quantity::Length),
+        }
     }
 
     /// The axis of a quantity that is divided by nothing.

@@ -15,9 +15,9 @@ const BEYOND: f64 = 1.5;
 
 /// The undeformed gap of `preset` in its own units.
 pub fn undeformed(preset: &Preset) -> Figure {
-    let scale = Scale { force: None, wave: None, modulus: None, units: &preset.units };
+    let scale = Scale::raw(&preset.units);
     let name = preset.gap.name().to_owned();
-    let mut figure = Figure::empty(name, scale.length("r"), scale.length("h"));
+    let mut figure = Figure::empty(name, scale.length_axis("r"), scale.length_axis("h"));
     let disc = match preset.path.start {
         Start::ContactRadius(s) => Some(s),
         Start::Approach(_) | Start::Force(_) => None,

@@ -26,7 +26,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let scale = subject.scale();
     let (x, y) = match view {
         View::Pressure => (scale.radius_axis("r"), scale.pressure_axis()),
-        View::Gap => (scale.radius_axis("r"), scale.length("gap")),
+        View::Gap => (scale.radius_axis("r"), scale.length_axis("gap")),
         View::Contact => (scale.radius_axis("x"), scale.radius_axis("y")),
         _ => (scale.radius_axis("s"), potential_axis(scale, subject.curve.case.control)),
     };
@@ -168,7 +168,7 @@ impl Drawing<'_> {
             profile
                 .outside
                 .iter()
-                .map(|at| (self.radius(at.radius), self.scale.shown(Quantity::Length, value(at) * length)))
+                .map(|at| (self.radius(at.radius), self.scale.length(value(at) * length)))
                 .collect()
         };
         let deformed = line(&|at| at.gap);

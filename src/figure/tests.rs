@@ -74,7 +74,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         assert!(figure.walker().is_some() && is_fit(&figure));
     }
     let titles = View::ALL.map(|view| session.figure(view).title);
-    assert_eq!(titles[..3], ["P/Pc over δ", "s/λ over P/Pc", "s/λ over δ"]);
+    assert_eq!(titles[..3], ["P/Pc over δ/R", "s/λ over P/Pc", "s/λ over δ/R"]);
     session.does(Id::Axes);
     assert_eq!(session.figure(View::RadiusForce).title, "s over P");
     assert_eq!(session.figure(View::RadiusForce).x.unit, "force");
@@ -83,7 +83,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
 #[test]
 fn radii_are_counted_in_waves_only_where_the_gap_has_one_alone() {
     for (preset, title) in
-        [("formula", "s over P/Pc"), ("harmonics", "s over P/Pc"), ("wavy-sphere", "s/λ over P/Pc")]
+        [("formula", "s/R over P/Pc"), ("harmonics", "s/R over P/Pc"), ("wavy-sphere", "s/λ over P/Pc")]
     {
         let session = Session::new(preset);
         let curve = session.model.curve.as_ref().unwrap();
@@ -125,10 +125,17 @@ fn overlays_are_drawn_where_they_exist() {
     let figure = session.figure(View::ForceApproach);
     assert_eq!((count(&figure, Role::Exact), count(&figure, Role::Envelope)), (1, 2));
     assert!(figure.notes[0].starts_with("Kesari-Lew peak 1.49"), "{:?}", figure.notes);
-    // The exact curve lies on the computed one as far as 200 rings are good.
-    let exact = figure.lines.iter().find(|line| line.role == Role::Exact).unwrap();
+    // Theory has every radius of the computed curve, and goes on over the edges of the chart.
     let computed = session.model.curve.as_ref().unwrap();
-    assert_eq!(exact.points.len(), computed.points.len());
+    let own = |s: f64| (0.999 * computed.case.end..1.001 * computed.case.start).contains(&s);
+    let theory = &computed.base.theory;
+    let count_own = theory.exact.iter().filter(|at| own(at[2])).count();
+    assert!(count_own >= computed.points.len(), "{count_own} of {}", computed.points.len());
+    for role in [Role::Exact, Role::Smooth] {
+        let [x, y] = [figure.bounds.x[1], figure.bounds.y[1]];
+        let line = figure.lines.iter().find(|line| line.role == role).unwrap();
+        assert!(line.points.iter().any(|at| at.0 > x || at.1 > y), "{role:?} ends within the chart");
+    }
     session.does(Command::Overlay(Overlay::Smooth));
     assert_eq!(count(&session.figure(View::ForceApproach), Role::Smooth), 0);
     let mut sphere = Session::new("fig-3-jkr");
@@ -305,7 +312,7 @@ fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
     let axes = [&figure.x, &figure.y];
     let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [-1.0, 1.0] };
     let text = reading::coordinates(&deep, axes, (0.5 + 5e-10, 0.25));
-    assert_eq!(text, "δ 0.500000000500, P/Pc 0.250");
+    assert_eq!(text, "δ/R 0.500000000500, P/Pc 0.250");
 }
 
 #[test]

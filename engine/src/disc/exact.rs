@@ -21,8 +21,9 @@ use std::sync::Arc;
 /// for the rounding of the phase of some hundred waves.
 const EDGE_ROUNDING: f64 = 1e-3;
 
-/// Points of a picture of the pressure per wave, and the fewest and most of them.
-const PICTURE_POINTS_PER_WAVE: f64 = 20.0;
+/// Points of a picture of the pressure per wave, so many that its crests are round on paper, and the fewest and most of
+/// them.
+const PICTURE_POINTS_PER_WAVE: f64 = 48.0;
 const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 
 /// Fewer digits than this are warned of.

@@ -263,11 +263,11 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "s/λ over P/Pc",
         "s/λ over δ",
         "p/E* over r/λ",
-        "gap over r/λ",
+        "gap/R over r/λ",
         "contact, s/λ",
         "U over s/λ",
         "unloading",
-        "cycle: P/Pc over δ",
+        "cycle: P/Pc over δ/R",
         "contacts over the way of δ",
         "limit points under displacement",
         "snaps",
@@ -340,7 +340,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("i");
     let text = screen.text(120, 40);
-    assert!(text.contains("* δ ") && text.contains("; + δ ") && text.contains("stable"), "{text}");
+    assert!(text.contains("* δ ") && text.contains("; + δ/R ") && text.contains("stable"), "{text}");
     let before = screen.app.model.cross;
     screen.press(KeyCode::Up);
     screen.press(KeyCode::Right);
