@@ -76,7 +76,7 @@ fn data_beside_a_figure_are_the_points_drawn() {
     assert!(output.status.success());
     assert!(std::fs::read_to_string(folder.path().join("jkr.svg")).unwrap().contains(r#"width="178mm""#));
     let text = std::fs::read_to_string(folder.path().join("jkr.csv")).unwrap();
-    assert_eq!(text.lines().next().unwrap(), "name,curve,δ,P/Pc");
+    assert_eq!(text.lines().next().unwrap(), "name,curve,δ/R,P/Pc");
     let least = text
         .lines()
         .filter(|line| line.starts_with("stable") || line.starts_with("unstable"))

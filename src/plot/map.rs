@@ -1,15 +1,19 @@
-//! A quantity of a sweep over its two axes: filled contours, and the line from which the edge snaps.
+//! A quantity of a sweep over its two axes: filled contours and the line from which the edge snaps, or, of a count, flat
+//! regions with their whole numbers.
 
 use super::Width;
 use super::ink;
-use super::svg::{cropped, entry, finish, frame, hatched, hatches, line, outline, plain};
+use super::svg::{cropped, entry, filled, finish, frame, hatched, hatches, line, outline, plain};
 use crate::figure::Line;
 use crate::mend::Mend;
 use crate::sweep::Results;
 use crate::sweep::results::ResultsError;
-use kuva::plot::ContourPlot;
+use kuva::plot::colormap::ColorMap;
 use kuva::plot::legend::{LegendEntry, LegendShape};
+use kuva::plot::{ContourPlot, LinePlot};
+use kuva::render::color::Color;
 use kuva::render::layout::ComputedLayout;
+use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, render_multiple};
 use pulloff_engine::text::quote;
 use std::collections::VecDeque;
@@ -20,6 +24,8 @@ const SNAPS: &str = "snaps";
 const ONE_SNAP: f64 = 0.5;
 /// Bands of colour.
 const BANDS: usize = 12;
+/// Colours of counts at most: more cannot be told apart.
+const COUNTS: f64 = 9.0;
 /// An axis of equal factors is logarithmic where it reaches over this factor at least.
 const DECADE: f64 = 10.0;
 
@@ -122,28 +128,28 @@ impl Map {
         let range = |axis: &[f64]| [axis[0], axis[axis.len() - 1]];
         let (legend, holes) = (self.legend(), self.holes());
         let logarithmic = [is_logarithmic(x), is_logarithmic(y)];
-        let known = || self.cells.iter().flatten().copied().filter(|cell| cell.is_finite());
-        let values = [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)];
         let ranges = [range(x), range(y)];
-        let layout = frame(width, self.titles.clone(), ranges, logarithmic, values, &legend);
-        let filled = ContourPlot::new()
-            .with_grid(self.filled(), x.clone(), y.clone())
-            .with_n_levels(BANDS)
-            .with_filled()
-            .with_line_color("none")
-            .with_legend(plain(&self.quantity));
-        let mut plots = vec![filled.into()];
-        if let Some(snaps) = &self.snaps {
-            let line = ContourPlot::new()
-                .with_grid(counts(snaps), x.clone(), y.clone())
-                .with_levels(&[ONE_SNAP])
-                .with_line_color("black")
-                .with_line_width(1.2);
-            plots.push(line.into());
-        }
+        let counts = self.counts();
+        let colors = counts.is_none().then(|| self.range());
+        let layout = frame(width, self.titles.clone(), ranges, logarithmic, colors, &legend);
+        let mut plots = if counts.is_some() {
+            // Without anything to draw the library draws no axes either.
+            vec![LinePlot::new().into()]
+        } else {
+            self.contours()
+        };
         plots.extend(self.lines.iter().flat_map(line));
         let field = ComputedLayout::from_layout(&layout);
         let mut scene = render_multiple(plots, layout);
+        for count in counts.iter().flatten() {
+            let places = self.places(|cell| count.holds(cell));
+            let area: String = places.iter().map(|place| outline(place, &field)).collect();
+            let begin =
+                scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
+            scene
+                .elements
+                .insert(begin.map_or(0, |begin| begin + 1), filled(area, Color::from(count.color.as_str())));
+        }
         if !holes.is_empty() {
             // One area, without seams.
             let area: String = holes.iter().map(|hole| outline(hole, &field)).collect();
@@ -155,16 +161,66 @@ impl Map {
         finish(&scene, cropped(&legend))
     }
 
+    /// The filled contours, and the line from which the edge snaps.
+    fn contours(&self) -> Vec<Plot> {
+        let [x, y] = &self.values;
+        let filled = ContourPlot::new()
+            .with_grid(self.filled(), x.clone(), y.clone())
+            .with_n_levels(BANDS)
+            .with_filled()
+            .with_line_color("none")
+            .with_legend(plain(&self.quantity));
+        let line = self.snaps.as_ref().map(|snaps| {
+            ContourPlot::new()
+                .with_grid(counts(snaps), x.clone(), y.clone())
+                .with_levels(&[ONE_SNAP])
+                .with_line_color("black")
+                .with_line_width(1.2)
+        });
+        std::iter::once(filled).chain(line).map(Plot::from).collect()
+    }
+
+    /// The least and the largest value.
+    fn range(&self) -> [f64; 2] {
+        let known = || self.cells.iter().flatten().copied().filter(|cell| cell.is_finite());
+        [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Of a quantity that is counted its counts with their colours, or ranges of them where there are many; `None` of any
+    /// other.
+    fn counts(&self) -> Option<Vec<Count>> {
+        let is_count = |cell: &f64| !cell.is_finite() || (*cell >= 0.0 && cell.fract() == 0.0);
+        if !self.cells.iter().flatten().all(is_count) {
+            return None;
+        }
+        let [least, most] = self.range();
+        let wide = ((most - least + 1.0) / COUNTS).ceil();
+        let firsts = std::iter::successors(Some(least), |first| Some(first + wide));
+        let all = firsts.take_while(|first| *first <= most).map(|from| {
+            let share = if most > least { (from - least) / (most - least) } else { 0.0 };
+            Count { from, to: (from + wide - 1.0).min(most), color: ColorMap::Viridis.map(share) }
+        });
+        Some(all.collect())
+    }
+
     /// What is drawn besides the colours.
     fn legend(&self) -> Vec<LegendEntry> {
         let snaps =
             self.snaps.as_ref().map(|snaps| counts(snaps).into_iter().flatten().collect::<Vec<f64>>());
         let begins =
             |snaps: &Vec<f64>| snaps.iter().any(|n| *n < ONE_SNAP) && snaps.iter().any(|n| *n > ONE_SNAP);
-        let line = snaps.filter(begins).map(|_| entry("snaps begin", "black", LegendShape::Line, ""));
+        let counts = self.counts();
+        let named = |(at, count): (usize, &Count)| {
+            let title = if at == 0 { format!("{} {}", self.quantity, count.name()) } else { count.name() };
+            entry(&title, &count.color, LegendShape::Rect, "")
+        };
+        let regions: Vec<LegendEntry> = counts.iter().flatten().enumerate().map(named).collect();
+        let line = snaps
+            .filter(|snaps| counts.is_none() && begins(snaps))
+            .map(|_| entry("snaps begin", "black", LegendShape::Line, ""));
         let has_holes = self.cells.iter().flatten().any(|cell| !cell.is_finite());
         let mut entries: Vec<LegendEntry> =
-            line.into_iter().chain(has_holes.then(|| hatched("no value"))).collect();
+            regions.into_iter().chain(line).chain(has_holes.then(|| hatched("no value"))).collect();
         for line in self.lines.iter().filter(|line| !line.name.is_empty()) {
             let stroke = ink::stroke(line.role);
             if entries.iter().all(|entry| entry.label != line.name) {
@@ -192,21 +248,44 @@ impl Map {
         cells
     }
 
-    /// The outlines of the places where the sweep has no value: neighbours in a row are one.
+    /// The outlines of the places where the sweep has no value.
     fn holes(&self) -> Vec<[(f64, f64); 4]> {
+        self.places(|cell| !cell.is_finite())
+    }
+
+    /// The outlines of the cells that are wanted: neighbours in a row are one.
+    fn places(&self, is_wanted: impl Fn(f64) -> bool) -> Vec<[(f64, f64); 4]> {
         let [along, up] = [&self.values[0], &self.values[1]].map(|axis| borders(axis));
-        let mut holes = Vec::new();
+        let mut places = Vec::new();
         for (row, y) in self.cells.iter().zip(up.windows(2)) {
             let mut at = 0;
-            for run in row.chunk_by(|a, b| a.is_finite() == b.is_finite()) {
+            for run in row.chunk_by(|a, b| is_wanted(*a) == is_wanted(*b)) {
                 let (from, to) = (along[at], along[at + run.len()]);
                 at += run.len();
-                if run.iter().all(|cell| !cell.is_finite()) {
-                    holes.push([(from, y[0]), (to, y[0]), (to, y[1]), (from, y[1])]);
+                if is_wanted(run[0]) {
+                    places.push([(from, y[0]), (to, y[0]), (to, y[1]), (from, y[1])]);
                 }
             }
         }
-        holes
+        places
+    }
+}
+
+/// Neighbouring counts of one colour.
+struct Count {
+    from: f64,
+    to: f64,
+    color: String,
+}
+
+impl Count {
+    fn holds(&self, cell: f64) -> bool {
+        (self.from..=self.to).contains(&cell)
+    }
+
+    fn name(&self) -> String {
+        let (from, to) = (self.from, self.to);
+        if from < to { format!("{from}-{to}") } else { format!("{from}") }
     }
 }
 
@@ -264,7 +343,7 @@ mod tests {
             titles: ["a".to_owned(), "b".to_owned()],
             quantity: "enhancement".to_owned(),
             values: [vec![0.0, 1.0, 2.0], vec![1.0, 10.0, 100.0]],
-            cells: vec![vec![1.0, 2.0, 3.0], vec![2.0, f64::NAN, 4.0], vec![3.0, 4.0, 5.0]],
+            cells: vec![vec![1.5, 2.0, 3.0], vec![2.0, f64::NAN, 4.0], vec![3.0, 4.0, 5.0]],
             snaps: Some(vec![vec![0.0, 0.0, 1.0], vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]]),
             lines: Vec::new(),
         };
@@ -276,7 +355,31 @@ mod tests {
         assert!(text.contains("url(#") && text.contains("no value") && text.contains("snaps begin"));
         assert_eq!(map.holes().len(), 1);
         assert_eq!(map.filled()[1], [2.0, 2.0, 4.0]);
-        let full = Map { cells: vec![vec![1.0, 2.0, 3.0]; 3], snaps: None, ..map };
+        let full = Map { cells: vec![vec![1.5, 2.0, 3.0]; 3], snaps: None, ..map };
         assert!(full.holes().is_empty() && full.legend().is_empty());
+    }
+
+    #[test]
+    fn counts_are_flat_regions_with_whole_numbers() {
+        let map = |cells: Vec<Vec<f64>>| Map {
+            titles: ["a".to_owned(), "b".to_owned()],
+            quantity: "snaps".to_owned(),
+            values: [vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]],
+            snaps: Some(cells.clone()),
+            cells,
+            lines: Vec::new(),
+        };
+        let few = map(vec![vec![0.0, 0.0, 1.0], vec![0.0, f64::NAN, 2.0], vec![1.0, 2.0, 4.0]]);
+        let names = |map: &Map| map.legend().into_iter().map(|entry| entry.label).collect::<Vec<_>>();
+        assert_eq!(names(&few), ["snaps 0", "1", "2", "3", "4", "no value"]);
+        let colors: Vec<String> = few.legend().into_iter().map(|entry| entry.color).collect();
+        let text = few.svg(Width::ONE_COLUMN);
+        // What is drawn has the colours of the legend, and nothing lies between two counts: 3 is in no cell.
+        let drawn = |color: &String| text.matches(color.as_str()).count();
+        assert!(drawn(&colors[0]) >= 2 && drawn(&colors[4]) >= 2 && drawn(&colors[3]) <= drawn(&colors[0]));
+        assert_eq!(few.places(|cell| few.counts().unwrap()[0].holds(cell)).len(), 2);
+        let many = map(vec![vec![0.0, 10.0, 20.0]; 3]);
+        assert_eq!(names(&many)[..2], ["snaps 0-2", "3-5"]);
+        assert_eq!(names(&many).last().map(String::as_str), Some("18-20"));
     }
 }

@@ -65,13 +65,13 @@ pub(super) fn cropped(legend: &[LegendEntry]) -> f64 {
     if legend.is_empty() { 0.0 } else { CROPPED }
 }
 
-/// The frame of a map of `values` over two ranges, which its colours stand beside.
+/// The frame of a map over two ranges; the scale of its colours stands beside it, where it has one, over `values`.
 pub(super) fn frame(
     width: Width,
     titles: [String; 2],
     ranges: [[f64; 2]; 2],
     logarithmic: [bool; 2],
-    values: [f64; 2],
+    values: Option<[f64; 2]>,
     legend: &[LegendEntry],
 ) -> Layout {
     let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
@@ -82,8 +82,10 @@ pub(super) fn frame(
     let wide = width.get() * UNITS_PER_MM;
     let beside_colors = |high: f64| {
         let mut layout = layout(&figure, legend, wide, high);
-        layout.show_colorbar = true;
-        layout.colorbar_tick_format = ticks(values);
+        if let Some(values) = values {
+            layout.show_colorbar = true;
+            layout.colorbar_tick_format = ticks(values);
+        }
         layout
     };
     let trial = ComputedLayout::from_layout(&beside_colors(wide));
@@ -346,7 +348,7 @@ pub(super) fn hatches(areas: impl Iterator<Item = String>, tint: &str, scene: &m
     areas.flat_map(|area| fills.clone().map(|fill| filled(area.clone(), fill))).collect()
 }
 
-fn filled(d: String, fill: Color) -> Primitive {
+pub(super) fn filled(d: String, fill: Color) -> Primitive {
     Primitive::Path(Box::new(PathData {
         d,
         fill: Some(fill),
