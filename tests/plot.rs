@@ -387,7 +387,7 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     };
     let whole = svg(folder.path(), &["--sweep", "r.csv", "--quantity", "kesari_lew"]);
     let texts = structure(&whole).join("\n");
-    assert!(texts.contains("\"A (") && texts.contains("\"kesari_lew\""), "{texts}");
+    assert!(texts.contains("\"amplitude of the wave, A (µm)") && texts.contains("\"kesari lew, "), "{texts}");
     assert_eq!(shapes(&whole).0, 5);
     // A row without a value: its mark is missing and the line is in two.
     let path = folder.path().join("r.csv");

@@ -87,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (None, Some(Curve::Force)) => Ordinate::Force,
         (None, _) => Ordinate::Control,
     };
-    let over = arguments.over(&x, &y)?;
+    let over = arguments.over(&preset, &x, &y)?;
     let report = MapReport::compute(&preset, x, &y, CELLS, &|| true)?;
     warn(&report.notes);
     if let Some(onset) = &report.onset {
@@ -141,9 +141,16 @@ impl Arguments {
     }
 
     /// The map of a sweep, whose axes must be those of the lines.
-    fn over(&self, x: &Axis, y: &Ordinate) -> Result<Option<Map>, Failure> {
+    fn over(&self, preset: &Preset, x: &Axis, y: &Ordinate) -> Result<Option<Map>, Failure> {
         let Some(path) = &self.over else { return Ok(None) };
-        let results = Results::open(path).map_err(MapError::from)?;
+        let mut results = Results::open(path).map_err(MapError::from)?;
+        // The lines are in the units of this preset; the sweep's may be shown in others.
+        for column in &mut results.columns {
+            let row = preset.row(&column.name);
+            column.shown = row
+                .and_then(|row| row.unit_in(&preset.units).map(ToString::to_string))
+                .or(column.shown.take());
+        }
         if results.axes != [x.key.as_str(), y.name()] {
             return Err(Failure::Usage(format!(
                 "--over {}: is a sweep over {}, not over {} and {}",

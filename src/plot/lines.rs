@@ -2,10 +2,11 @@
 
 use crate::figure::map::laid;
 use crate::figure::places::Places;
-use crate::figure::{Figure, Run};
+use crate::figure::{Axis, Figure, Run};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
+use pulloff_engine::text::headline;
 
 /// The figure of `report`, with `preset` at its place.
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
@@ -13,7 +14,12 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let (x, y) = (places(&report.x), places(&report.y));
     let (lines, marks, bounds) = laid(report, preset, &x, &y);
     let run = |of: &AxisReport| if of.logarithmic { Run::Logarithmic } else { Run::Linear };
-    let (x, y) = (x.axis.running(run(&report.x)), y.axis.running(run(&report.y)));
+    let titled = |places: Places, of: &AxisReport| {
+        let words = preset.row(&of.key).map(|row| headline(&row.meaning).to_owned());
+        let symbol = words.map(|words| format!("{words}, {}", places.axis.symbol));
+        Axis { symbol: symbol.unwrap_or(places.axis.symbol), ..places.axis }.running(run(of))
+    };
+    let (x, y) = (titled(x, &report.x), titled(y, &report.y));
     let missing = lines.is_empty().then(|| "no limit point is born or lost here".to_owned());
     Figure { marks, bounds, missing, ..Figure::of(x, y, lines) }
 }

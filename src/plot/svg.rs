@@ -104,8 +104,31 @@ pub(super) fn finish(scene: &Scene, cropped: f64) -> String {
         text = text.replace(&format!("#{name})"), &format!("#{FIELD})"));
     }
     // The pull-off force of the smooth sphere, as formulas have it.
-    text = text.replace("/Pc<", &format!("/P<tspan dy=\"2.5\" font-size=\"{SUBSCRIPT}\">c</tspan><"));
+    text = subscripted(&text.replace("/Pc<", "/P_c<"));
     in_millimetres(&text, scene.width, scene.height - cropped)
+}
+
+/// The document with the indices of forces below the line: `P_min`, `P_c`.
+fn subscripted(text: &str) -> String {
+    const FORCE: &str = "P_";
+    /// How far below the line, in the library's units.
+    const BELOW: f64 = 2.5;
+    let mut parts = text.split(FORCE);
+    let mut written = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(part.len());
+        let (index, rest) = part.split_at(end);
+        // Writing to a String cannot fail.
+        let _ = write!(written, "P<tspan dy=\"{BELOW}\" font-size=\"{SUBSCRIPT}\">{index}</tspan>");
+        let mut behind = rest.chars();
+        if let Some(first) = behind.next().filter(|first| *first != '<') {
+            // Back to the line: the first letter takes all behind it along.
+            let _ = write!(written, "<tspan dy=\"-{BELOW}\">{first}</tspan>{}", behind.as_str());
+        } else {
+            written.push_str(rest);
+        }
+    }
+    written
 }
 
 /// The document with its size on paper: the library knows only its own units.
@@ -376,6 +399,18 @@ fn hatch(figure: &Figure, field: &ComputedLayout, scene: &mut Scene) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn indices_stand_below_the_line_and_what_follows_on_it() {
+        let index = |text: &str| format!("P<tspan dy=\"2.5\" font-size=\"8\">{text}</tspan>");
+        let back = |text: &str| format!("<tspan dy=\"-2.5\">{text}</tspan>");
+        assert_eq!(subscripted("<text>P/P_c</text>"), format!("<text>P/{}</text>", index("c")));
+        assert_eq!(
+            subscripted("<text>P_min/P_c (N)</text>"),
+            format!("<text>{}{}{}{}(N)</text>", index("min"), back("/"), index("c"), back(" "))
+        );
+        assert_eq!(subscripted("<text>P</text>"), "<text>P</text>");
+    }
     use crate::figure::Area;
 
     fn figure(lines: Vec<Line>) -> Figure {

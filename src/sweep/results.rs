@@ -72,10 +72,16 @@ impl Results {
         self.read(names, |cell| Some(cell.to_owned()))
     }
 
-    /// The same as numbers; an empty cell is none.
+    /// The same as numbers, in the units in which they are shown; an empty cell is none.
     /// Errors: As [`texts`](Self::texts), or a cell is neither empty nor a number.
     pub fn numbers(&self, names: &[&str]) -> Result<Vec<Vec<Option<f64>>>, ResultsError> {
-        self.read(names, |cell| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) })
+        let number = |cell: &str| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) };
+        let mut columns = self.read(names, number)?;
+        for (column, name) in columns.iter_mut().zip(names) {
+            let Some(info) = self.columns.iter().find(|info| info.name == *name) else { continue };
+            column.iter_mut().flatten().for_each(|number| *number = info.shown(*number));
+        }
+        Ok(columns)
     }
 
     fn read<T>(

@@ -11,8 +11,8 @@ use crate::store::file::{self, FileError, read_text};
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::sweep::document::SpecText;
 use pulloff_engine::sweep::spec::of_canonical;
-use pulloff_engine::text::{greek, sanitize, show_path};
-use pulloff_engine::units::{Quantity, UnitSystem};
+use pulloff_engine::text::{greek, headline, sanitize, show_path};
+use pulloff_engine::units::{Quantity, Unit, UnitSystem};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -53,6 +53,8 @@ pub struct ColumnInfo {
     pub symbol: Option<String>,
     /// The unit of its numbers; `None` for pure numbers, texts, and in reduced units.
     pub unit: Option<String>,
+    /// The unit in which a figure shows them, where that is another.
+    pub shown: Option<String>,
     pub meaning: String,
 }
 
@@ -101,16 +103,16 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
         spec.rows,
         canonical(spec)
     );
-    for ColumnInfo { name, symbol, unit, meaning } in columns(spec) {
+    for ColumnInfo { name, symbol, unit, shown, meaning } in columns(spec) {
         let quoted = |text: String| Value::String(text).to_string();
         let line = |key: &str, value: Option<String>| {
             value.map_or_else(String::new, |value| format!("{key} = {}\n", quoted(value)))
         };
-        let (symbol, unit) = (line("symbol", symbol), line("unit", unit));
+        let (symbol, unit, shown) = (line("symbol", symbol), line("unit", unit), line("shown", shown));
         // Writing to a String cannot fail.
         let _ = write!(
             text,
-            "\n[[column]]\nname = {}\n{symbol}{unit}meaning = {}\n",
+            "\n[[column]]\nname = {}\n{symbol}{unit}{shown}meaning = {}\n",
             quoted(name),
             quoted(meaning)
         );
@@ -185,41 +187,64 @@ fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> 
 }
 
 fn columns(spec: &Spec) -> Vec<ColumnInfo> {
-    let is_si = spec.preset.units != UnitSystem::Reduced;
-    let unit = |quantity: Quantity| is_si.then(|| quantity.si()).flatten().map(str::to_owned);
-    let meanings = spec.axes.iter().map(|axis| {
-        let row = spec.preset.row(&axis.key);
-        let symbol = row.as_ref().map(|row| greek(&row.label));
-        (symbol, row.as_ref().and_then(|row| unit(row.quantity)), row.map(|row| row.meaning.to_string()))
-    });
-    let meanings = std::iter::once((None, None, Some("number of the row, from 0".to_owned())))
-        .chain(meanings)
-        .chain(spec.columns.iter().map(|column| {
-            let under = match column.name().strip_prefix(column.quantity.name) {
-                Some("") if column.quantity.is_of_control() => ", under path.control",
-                Some("_displacement") => ", the approach held",
-                Some("_force") => ", the force held",
-                _ => "",
-            };
-            (None, unit(column.quantity.unit), Some(format!("{}{under}", column.quantity.meaning)))
-        }))
-        .chain([(None, None, Some("why a quantity could not be had; empty where all is well".to_owned()))]);
-    let column = |(name, (symbol, unit, meaning)): (String, (_, _, Option<String>))| ColumnInfo {
-        name,
-        symbol,
-        unit,
-        meaning: meaning.unwrap_or_default(),
+    let units = &spec.preset.units;
+    let column = |name: &str, meaning: &str| ColumnInfo {
+        name: name.to_owned(),
+        symbol: None,
+        unit: None,
+        shown: None,
+        meaning: meaning.to_owned(),
     };
-    record::names(spec).into_iter().zip(meanings).map(column).collect()
+    let measured = |info: ColumnInfo, quantity: Quantity, shown: Option<&Unit>| ColumnInfo {
+        unit: (*units != UnitSystem::Reduced).then(|| quantity.si()).flatten().map(str::to_owned),
+        shown: shown.map(ToString::to_string),
+        ..info
+    };
+    let axes = spec.axes.iter().map(|axis| match spec.preset.row(&axis.key) {
+        Some(row) => {
+            let info = ColumnInfo { symbol: Some(greek(&row.label)), ..column(&axis.key, &row.meaning) };
+            measured(info, row.quantity, row.unit_in(units))
+        }
+        None => column(&axis.key, ""),
+    });
+    let quantities = spec.columns.iter().map(|wanted| {
+        let (name, quantity) = (wanted.name(), wanted.quantity);
+        let under = match name.strip_prefix(quantity.name) {
+            Some("") if quantity.is_of_control() => ", under path.control",
+            Some("_displacement") => ", the approach held",
+            Some("_force") => ", the force held",
+            _ => "",
+        };
+        let symbol = Some(quantity.symbol).filter(|symbol| !symbol.is_empty()).map(str::to_owned);
+        let info = ColumnInfo { symbol, ..column(&name, &format!("{}{under}", quantity.meaning)) };
+        measured(info, quantity.unit, units.unit(quantity.unit))
+    });
+    let row = column(record::ROW, "number of the row, from 0");
+    let error = column(record::ERROR, "why a quantity could not be had; empty where all is well");
+    std::iter::once(row).chain(axes).chain(quantities).chain([error]).collect()
 }
 
 impl ColumnInfo {
-    /// What stands beside an axis: its symbol or name, and its unit.
+    /// What stands beside an axis: what it is in words, its symbol, and the unit in which it is shown.
     #[must_use]
     pub fn title(&self) -> String {
-        let name = self.symbol.as_ref().unwrap_or(&self.name);
-        let unit = self.unit.as_ref().map(|unit| unit.replace("^2", "²"));
-        unit.map_or_else(|| name.clone(), |unit| format!("{name} ({unit})"))
+        // A key of a preset has a dot in it and says what it is; a quantity is called what it is.
+        let words = if self.name.contains('.') {
+            headline(&self.meaning).to_owned()
+        } else {
+            self.name.replace("pull_off", "pull-off").replace('_', " ")
+        };
+        let words = if words.is_empty() { self.name.clone() } else { words };
+        let symbol = self.symbol.as_ref().map_or_else(String::new, |symbol| format!(", {symbol}"));
+        let unit = self.shown.clone().or_else(|| self.unit.as_ref().map(|unit| unit.replace("^2", "²")));
+        format!("{words}{symbol}{}", unit.map_or_else(String::new, |unit| format!(" ({unit})")))
+    }
+
+    /// A number of the column as it is shown.
+    #[must_use]
+    pub fn shown(&self, number: f64) -> f64 {
+        let unit = self.shown.as_ref().and_then(|unit| Unit::parse(unit, 0).ok());
+        unit.map_or(number, |unit| unit.from_si(number))
     }
 }
 

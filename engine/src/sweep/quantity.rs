@@ -11,6 +11,8 @@ use crate::units::Quantity as Unit;
 pub struct Quantity {
     /// Its name in a spec and in the results.
     pub name: &'static str,
+    /// What it is called in formulas; empty where it has no such name.
+    pub symbol: &'static str,
     pub unit: Unit,
     pub meaning: &'static str,
     pub(super) of: Stage,
@@ -33,59 +35,59 @@ pub(super) enum Stage {
     Loop(fn(&Loop) -> Option<Cell>),
 }
 
-/// Makes [`QUANTITIES`] of the table: name, unit, meaning, and from what it is computed.
+/// Makes [`QUANTITIES`] of the table: name, symbol, unit, meaning, and from what it is computed.
 macro_rules! quantities {
-    ($($name:literal $unit:ident $meaning:literal: $of:expr;)*) => {
+    ($($name:literal $symbol:literal $unit:ident $meaning:literal: $of:expr;)*) => {
         /// The quantities.
         pub static QUANTITIES: &[Quantity] =
-            &[$(Quantity { name: $name, unit: Unit::$unit, meaning: $meaning, of: $of }),*];
+            &[$(Quantity { name: $name, symbol: $symbol, unit: Unit::$unit, meaning: $meaning, of: $of }),*];
     };
 }
 
 quantities! {
-    "pull_off_force" Force "force at the pull-off, negative: a pull":
+    "pull_off_force" "P" Force "force at the pull-off, negative: a pull":
         Stage::Unloading(|path| path.pull_off(|state| state.force));
-    "pull_off_approach" Length "approach at the pull-off":
+    "pull_off_approach" "δ" Length "approach at the pull-off":
         Stage::Unloading(|path| path.pull_off(|state| state.approach));
-    "pull_off_radius" Length "contact radius at the pull-off":
+    "pull_off_radius" "s" Length "contact radius at the pull-off":
         Stage::Unloading(|path| path.pull_off(|state| state.contact_radius));
-    "snaps" Number "jumps before the pull-off": Stage::Unloading(|path| Some(path.snaps()));
-    "snap_loss" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
-    "pull_off_loss" Energy "energy lost at the pull-off; none under a dead load":
+    "snaps" "" Number "jumps before the pull-off": Stage::Unloading(|path| Some(path.snaps()));
+    "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
+    "pull_off_loss" "" Energy "energy lost at the pull-off; none under a dead load":
         Stage::Unloading(UnloadingPath::pull_off_loss);
-    "inadmissible_share" Number "share of the path, by contact radius, on which the next crest would already touch":
+    "inadmissible_share" "" Number "share of the path, by contact radius, on which the next crest would already touch":
         Stage::Passed;
-    "cycle_loss" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(Loop::loss);
-    "first_touch_force" Force "force after the jump into contact at the first touch":
+    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(Loop::loss);
+    "first_touch_force" "P" Force "force after the jump into contact at the first touch":
         Stage::Loop(|whole| whole.first_touch(|state| state.force));
-    "first_touch_radius" Length "outermost edge of the contact after that jump":
+    "first_touch_radius" "s" Length "outermost edge of the contact after that jump":
         Stage::Loop(|whole| whole.first_touch(|state| state.contact_radius));
-    "touches" Number "crests that touched apart from the contact on the way up, after the first touch":
+    "touches" "" Number "crests that touched apart from the contact on the way up, after the first touch":
         Stage::Loop(|whole| Some(whole.touches()));
-    "rings_at_most" Number "rings of contact at most at a time in the stable states of the loop, a disc not counted":
+    "rings_at_most" "" Number "rings of contact at most at a time in the stable states of the loop, a disc not counted":
         Stage::Loop(|whole| Some(whole.rings_at_most()));
-    "contact_share" Number "contact area at the turn over that of the circle in its outermost edge":
+    "contact_share" "" Number "contact area at the turn over that of the circle in its outermost edge":
         Stage::Loop(Loop::contact_share);
-    "limit_points" Number "limit points of the control on the curve": Stage::Limits;
-    "start_contact_radius" Length "contact radius at the start, the largest of the curve":
+    "limit_points" "" Number "limit points of the control on the curve": Stage::Limits;
+    "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));
-    "least_force" Force "smallest force of the curve": Stage::Curve(|line| line.least(|s| s.force));
-    "least_force_radius" Length "contact radius at the smallest force":
+    "least_force" "P" Force "smallest force of the curve": Stage::Curve(|line| line.least(|s| s.force));
+    "least_force_radius" "s" Length "contact radius at the smallest force":
         Stage::Curve(|line| line.least(|s| s.contact_radius));
-    "least_approach" Length "smallest approach of the curve": Stage::Curve(CurveMinima::least_approach);
-    "enhancement" Number "smallest force over that of the smooth sphere, P_min/P_c in size":
+    "least_approach" "δ" Length "smallest approach of the curve": Stage::Curve(CurveMinima::least_approach);
+    "enhancement" "P_min/P_c" Number "smallest force over that of the smooth sphere, P_min/P_c in size":
         Stage::Curve(CurveMinima::enhancement);
-    "waves" Number "waves in the disc at the smallest force, s/lambda": Stage::Curve(CurveMinima::waves);
-    "critical_force" Force "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere":
+    "waves" "s/λ" Number "waves in the disc at the smallest force, s/lambda": Stage::Curve(CurveMinima::waves);
+    "critical_force" "P_c" Force "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere":
         Stage::Preset(PresetValues::critical_force);
-    "kesari_lew" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves":
+    "kesari_lew" "P_min/P_c" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves":
         Stage::Preset(PresetValues::kesari_lew);
-    "johnson" Number "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))":
+    "johnson" "α" Number "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))":
         Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number));
-    "adhesion" Number "gamma' = 2 pi gamma/(E* R)": Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number));
-    "connectivity" Number "lambda^2/(A R); above 8.58 the gap rises monotonically":
+    "adhesion" "γ'" Number "gamma' = 2 pi gamma/(E* R)": Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number));
+    "connectivity" "λ²/AR" Number "lambda^2/(A R); above 8.58 the gap rises monotonically":
         Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number));
-    "tabor" Number "Tabor's mu, where the range of action is known":
+    "tabor" "μ" Number "Tabor's mu, where the range of action is known":
         Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number));
 }
 

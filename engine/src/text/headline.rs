@@ -1,0 +1,21 @@
+//! The beginning of a longer description.
+
+/// What stands before the first comma, colon, semicolon or bracket of a text: a heading made of a description.
+#[must_use]
+pub fn headline(text: &str) -> &str {
+    let end = text.find([',', ':', ';', '(']).unwrap_or(text.len());
+    text[..end].trim_end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::headline;
+
+    #[test]
+    fn a_description_is_cut_before_its_first_mark() {
+        assert_eq!(headline("work of adhesion: twice a face's surface energy"), "work of adhesion");
+        assert_eq!(headline("wavelength"), "wavelength");
+        assert_eq!(headline("stiffness (of the device)"), "stiffness");
+        assert_eq!(headline(""), "");
+    }
+}
