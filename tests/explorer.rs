@@ -571,6 +571,20 @@ fn another_shape_keeps_what_both_know() {
     assert_eq!(value(&session, "gap.parameters.R"), Some(1.1.into()));
 }
 
+#[test]
+fn a_gap_of_other_lengths_is_told_of() {
+    let told = |shape: &str, preset: &str| {
+        let mut session = Session::new(preset);
+        session.set("gap.shape", shape);
+        let (_, said) = session.model.message.clone().unwrap_or((Level::Info, String::new()));
+        said.contains("lengths are counted otherwise here").then_some(said)
+    };
+    let said = told("profile", "wavy-sphere").unwrap();
+    assert!(said.contains("that before had 1: E*, γ and the path keep their numbers"), "{said}");
+    // Gaps of one length, and metres in both.
+    assert_eq!([told("sphere", "wavy-sphere"), told("sphere", "fig-9-si")], [None, None]);
+}
+
 fn browse(folder: Option<std::path::PathBuf>) -> Command {
     Command::Browse { key: "gap.file".into(), folder }
 }

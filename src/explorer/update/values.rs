@@ -16,7 +16,7 @@ use pulloff_engine::preset::{Preset, Row, Value, groups};
 use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{closest, greek, show_name, show_path};
-use pulloff_engine::units::Quantity;
+use pulloff_engine::units::{Quantity, UnitSystem};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -102,18 +102,18 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             let assignments = vec![(row.key.clone(), name)];
             return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
         }
-        value => value.and_then(|value| set_in_range(&mut preset, key, value)),
+        value => value.and_then(|value| put(&mut preset, key, value)),
     };
     match result {
-        Ok(moved) => {
+        Ok(said) => {
             if row.key == "gap.formula" {
                 let before = before_tried(model).clone();
                 tell_new_parameters(model, &before, &preset);
             }
             model.untried = None;
             tell_effect(model, &row.key, &preset);
-            if let Some(moved) = moved {
-                model.tell(Level::Info, moved);
+            if let Some(said) = said {
+                model.tell(Level::Info, said);
             }
             change(model, preset)
         }
@@ -124,6 +124,38 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     }
 }
 
+/// Whether another gap comes with another value of this key.
+fn is_gap(key: &str) -> bool {
+    matches!(key, "gap.shape" | "gap.file")
+}
+
+/// Gives `preset` another value; what is to be known of it beside the value is returned in words.
+fn put(preset: &mut Preset, key: &str, value: Value) -> Result<Option<String>, Invalid> {
+    let before = preset.clone();
+    let moved = set_in_range(preset, key, value)?;
+    // A value of the gap that is turned makes no other gap.
+    let lengths = if is_gap(key) { other_lengths(&before, preset) } else { None };
+    let said: Vec<String> = moved.into_iter().chain(lengths).collect();
+    Ok((!said.is_empty()).then(|| said.join("; ")))
+}
+
+/// What is to be known when a gap is put in place of one of another size, where lengths have no unit: the numbers that stay
+/// mean something else then.
+fn other_lengths(before: &Preset, changed: &Preset) -> Option<String> {
+    /// Between gaps of one size the numbers may well be meant alike.
+    const LIKE: f64 = 3.0;
+    let [was, is] = [before, changed].map(|preset| preset.gap.length());
+    let (was, is) = was.zip(is)?;
+    let apart = (is / was).max(was / is);
+    (changed.units == UnitSystem::Reduced && apart > LIKE).then(|| {
+        format!(
+            "lengths are counted otherwise here, this gap's is {}, that before had {}: E*, γ and the path keep their numbers",
+            short(is, 4),
+            short(was, 4)
+        )
+    })
+}
+
 /// Gives `preset` another value; a start that is not on the profile it gets moves onto it, which is returned in words.
 fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<String>, Invalid> {
     /// The start on a profile that the start before does not fit, over the last radius.
@@ -131,7 +163,7 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
     /// A start below this share of the last radius is of another size than the profile.
     const FITTING: f64 = 0.05;
     let Start::ContactRadius(start) = preset.path.start else { return preset.set(key, value).map(|()| None) };
-    if !matches!(key, "gap.shape" | "gap.file") {
+    if !is_gap(key) {
         return preset.set(key, value).map(|()| None);
     }
     let mut changed = preset.clone();
@@ -232,10 +264,9 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
     let read = format!("{name}: {} rows", rows.radii.len());
     let said = std::iter::once(read).chain(notes).collect::<Vec<_>>().join("; ");
     let mut preset = model.preset.clone();
-    match set_in_range(&mut preset, "gap.file", Value::Profile(rows)) {
-        Ok(moved) => {
-            let said = moved.map_or(said.clone(), |moved| format!("{said}; {moved}"));
-            model.tell(Level::Info, said);
+    match put(&mut preset, "gap.file", Value::Profile(rows)) {
+        Ok(more) => {
+            model.tell(Level::Info, std::iter::once(said).chain(more).collect::<Vec<_>>().join("; "));
             change(model, preset)
         }
         Err(invalid) => {
