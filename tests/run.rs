@@ -246,3 +246,36 @@ fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
     fs::write(home.path("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
     assert!(home.quiet(&["man"]).contains("[number of steps] (F4)"));
 }
+
+#[test]
+fn a_script_draws_what_is_seen() {
+    let home = Scripts::new();
+    let script = "step 5\nexport figure curve.svg\nexport figure cycle.png cycle\nexport figure in.svg pressure\n\
+                  export figure law.svg stability\nexport screen screen.txt\n";
+    home.quiet(script, &[]);
+    let drawn = |name: &str| fs::read_to_string(home.at("here").join(name)).unwrap();
+    let axes = |name: &str| {
+        let text = drawn(name);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        document.descendants().filter_map(|node| node.text().map(str::to_owned)).collect::<Vec<_>>().join("|")
+    };
+    assert!(
+        axes("curve.svg").contains("δ/R") && axes("curve.svg").contains("state"),
+        "{}",
+        axes("curve.svg")
+    );
+    assert!(axes("in.svg").contains("p/E*") && axes("law.svg").contains("s/λ"));
+    assert_eq!(fs::read(home.at("here/cycle.png")).unwrap()[1..4], *b"PNG");
+    // The screen of 100x30, with the walk in it.
+    let screen = drawn("screen.txt");
+    assert_eq!(screen.lines().count(), 30);
+    assert!(
+        screen.lines().all(|line| line.chars().count() <= 100) && screen.contains("Walker, step 5"),
+        "{screen}"
+    );
+    // Nothing is replaced unasked; what cannot be drawn says why.
+    home.fails("export screen screen.txt\n", &[], 2, "exists");
+    home.fails("export figure walk.svg walk\n", &[], 2, "export walk writes it");
+    home.fails("export figure far.svg residuals\n", &[], 2, "no measured curve");
+    home.fails("export figure curve.txt\n", &[], 2, "must end in");
+}
