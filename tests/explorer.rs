@@ -276,12 +276,39 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
         session.model.history.current().unwrap().state.contact_radius
     };
     assert!((node.state.contact_radius - direct).abs() < 1e-9 * direct);
+    // Where its part of the curve is still there, nothing is said; where a limit point has passed it, that is.
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextLimit, Id::Reverse]).does(Command::Steps(1));
+    set(&mut session, "0.00251");
+    assert!(!session.status().contains("next stable one"), "{}", session.status());
+    set(&mut session, "0.004");
+    assert!(session.status().contains("on the next stable one, s "), "{}", session.status());
     // From an unstable state its own branch is followed.
     let mut session = Session::new("wavy-sphere");
     session.all(&[Id::NextLimit, Id::Step]);
     set(&mut session, "0.00251");
     let node = session.model.history.current().unwrap();
     assert!(!node.stability.under(node.control), "{}", session.status());
+}
+
+#[test]
+fn the_least_force_is_one_key_away_under_every_control() {
+    for control in ["displacement", "force"] {
+        let mut session = Session::new("wavy-sphere");
+        session.set("path.control", control).does(Id::LeastForce);
+        let model = &session.model;
+        let least = model.curve.as_ref().unwrap().report.as_ref().unwrap().min_force;
+        let node = model.history.current().unwrap();
+        let force = node.state.force * node.setting.units().force;
+        assert!((force - least).abs() < 1e-9 * least.abs(), "{control}: {force} {least}");
+        assert_eq!(node.is_limit(node.control), control == "force", "{}", session.status());
+        // It is a place like any other: the script says it.
+        let place = if control == "force" { "select-event" } else { "move-to" };
+        assert!(model.script().unwrap().last().unwrap().starts_with(place), "{:?}", model.script());
+        session.does(Id::Undo);
+        let node = session.model.history.current().unwrap();
+        assert!((node.state.force * node.setting.units().force - least).abs() > 1e-3 * least.abs());
+    }
 }
 
 #[test]

@@ -6,12 +6,14 @@
 //! | `curve` | what follows from a new curve |
 //! | `walk` | steps, runs, jumps |
 //! | `turns` | what waits for what, and what undo can take back |
+//! | `places` | the walker sent to a radius, an event, the least force |
 //! | `travel` | undo, redo, branches |
 //! | `values` | parameters changed |
 //! | `files` | opening, saving and exporting |
 
 mod curve;
 mod files;
+mod places;
 mod travel;
 mod turns;
 mod values;
@@ -25,17 +27,16 @@ use super::job::{Done, Job};
 use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
 use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map, want_study};
-use super::view::{Axes, EventSource, Panel, View};
-use super::walk::{Action, ROOM};
+use super::view::{Axes, Panel, View};
+use super::walk::Action;
 use super::{background_jobs, look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::{checked, curve_came, give_up};
 use files::{export, export_page, file_done, save, save_back};
+use places::{go_to_event, move_to, select_event, to_least_force};
 use pulloff_engine::preset::{Row, Value, groups};
-use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{greek, show_name};
-use pulloff_engine::units::Quantity;
-use travel::{by_states, go_to, go_to_state, travel, travel_to};
+use travel::{by_states, go_to, go_to_state, travel};
 use turns::{Turn, enqueue, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
 use walk::{restart, run, scale_length, scale_pace, walk, walked};
@@ -262,6 +263,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
             return effects;
         }
         Id::Jump => return walk(model, Action::Jump),
+        Id::LeastForce => return to_least_force(model),
         Id::Run => return if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) },
         Id::Slower => return scale_pace(model, 0.5),
         Id::Faster => return scale_pace(model, 2.0),
@@ -392,35 +394,6 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
     }
 }
 
-/// The walker goes to the state of this contact radius, in the user's units.
-fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
-    let Some(curve) = &model.curve else { return Vec::new() };
-    let reduced = radius / curve.case.units().length;
-    if reduced > ROOM * curve.case.start {
-        let largest = ROOM * curve.case.start * curve.case.units().length;
-        let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| short(s, 6));
-        let (asked, largest) = (length(radius), length(largest));
-        model.tell(Level::Error,
-            format!(
-                "contact radius {asked} is out of range: it must be at most {largest}, three times that of the start"
-            ),
-        );
-        return Vec::new();
-    }
-    walk(model, Action::MoveTo(reduced))
-}
-
-/// The event of a number, where the list has it.
-fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
-    let count = model.shown_events().len();
-    if !(1..=count).contains(&number) {
-        model.tell(Level::Error, format!("there is no event {number}: the list has {count}"));
-        return Vec::new();
-    }
-    model.event = number - 1;
-    go_to_event(model)
-}
-
 /// Enter on an event.
 fn select(model: &mut Model) -> Vec<Effect> {
     match model.panel {
@@ -439,49 +412,4 @@ fn go_to_line(model: &mut Model) -> Vec<Effect> {
     let numbering = model.history.numbering();
     // As a command of its own: it waits for its turn, and can be taken back.
     state.map_or_else(Vec::new, |node| update(model, Command::GoTo { node, numbering }))
-}
-
-/// The walker goes to the limit point of the selected event.
-fn go_to_event(model: &mut Model) -> Vec<Effect> {
-    if model.events == EventSource::Walked {
-        let events = model.walked_events();
-        let Some((node, _)) = events.get(model.event) else { return Vec::new() };
-        let Some(parent) = model.history.node(*node).and_then(|n| n.parent) else { return Vec::new() };
-        // The state before the jump, as it was walked.
-        return travel_to(model, parent);
-    }
-    if model.events == EventSource::Cycle {
-        return go_to_loop_event(model);
-    }
-    let Some(curve) = model.curve.clone() else { return Vec::new() };
-    let Ok(unloading) = &curve.unloading else { return Vec::new() };
-    let Some(event) = unloading.events.get(model.event) else {
-        if !model.shown_inadmissible().is_empty() {
-            model.tell(Level::Info, "no state to go to: the next crest would touch before");
-        }
-        return Vec::new();
-    };
-    let away = |s: f64| (s - event.before.contact_radius).abs();
-    let radius = |i: &usize| curve.limits[*i].contact_radius;
-    let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
-    model.inward = true;
-    let event = model.event;
-    nearest.map_or_else(Vec::new, |limit| walk(model, Action::MoveToEvent { event, limit }))
-}
-
-/// The walker goes to the state before an event of the loop, where that is one disc.
-fn go_to_loop_event(model: &mut Model) -> Vec<Effect> {
-    let before = model.cycle.as_ref().and_then(|cycle| {
-        let event = cycle.report()?.events.get(model.event)?;
-        event.before.as_ref().map(|before| (before.contacts.clone(), before.contact_radius))
-    });
-    match before {
-        Some((contacts, radius)) if contacts.len() == 1 && contacts[0][0] == 0.0 => move_to(model, radius),
-        Some(_) => {
-            let text = "that state has rings of contact, and the walker is on the curve of one disc";
-            model.tell(Level::Info, text);
-            Vec::new()
-        }
-        None => Vec::new(),
-    }
 }

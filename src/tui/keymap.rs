@@ -124,6 +124,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::NextLimit => &[Char('n')],
         Id::PreviousLimit => &[Char('N')],
         Id::Jump => &[Char('x')],
+        Id::LeastForce => &[Char('L')],
         Id::Reverse => &[Char('b')],
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],

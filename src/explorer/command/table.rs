@@ -74,6 +74,7 @@ commands! {
         Slower "slower" Nothing "slower": "half as many states a second in a run, at first 20";
         Faster "faster" Nothing "faster": "twice as many";
         MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
+        LeastForce "least-force" Curve "least P": "the walker to the least force of the path: the strongest pull";
         Reverse "reverse" Walker "reverse": "walk the other way";
         Halve "halve-step" Nothing "half step": "halve the step length";
         Double "double-step" Nothing "double step": "double the step length";

@@ -32,6 +32,7 @@ impl Turn {
                 | Id::Jump
                 | Id::Restart
                 | Id::MoveTo
+                | Id::LeastForce
                 | Id::SelectEvent
                 | Id::Control
                 | Id::Pin,

@@ -10,7 +10,8 @@ use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::walk::At;
-use pulloff_engine::report::number::short;
+use pulloff_engine::report::number::{short, significant, with_unit};
+use pulloff_engine::units::Quantity;
 use std::sync::Arc;
 
 /// Asks for a walk on the curve on the screen, or says why there is none.
@@ -73,6 +74,32 @@ pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
     effects
 }
 
+/// The contact radius of a walker that is stable in one disc, in the user's units.
+fn stood_stable(model: &Model) -> Option<f64> {
+    let node = model.history.current()?;
+    let is_within = node.stability.under(node.control) && node.kind != NodeKind::Limit && !node.has_rings();
+    is_within.then(|| node.state.contact_radius * node.setting.units().length)
+}
+
+/// Says so when a walker that was stable at `before` stands on another stable part of the curve, for other values.
+fn tell_of_fold(model: &mut Model, before: f64) {
+    let (Some(curve), Some(after)) = (&model.curve, stood_stable(model)) else { return };
+    let between = |s: f64| (s - before) * (s - after) < 0.0;
+    if !curve.shown_limits().iter().any(|limit| between(limit[2])) {
+        return;
+    }
+    let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| significant(s, 4));
+    let text = format!(
+        "the part of the curve on which the walker stood has no such state now: it is on the next stable one, \
+         s {} in place of {}",
+        length(after),
+        length(before)
+    );
+    // What was said of the values stands before it.
+    let said = model.message.take().filter(|(level, _)| *level == Level::Info).map(|(_, said)| said);
+    model.tell(Level::Info, said.into_iter().chain([text]).collect::<Vec<_>>().join("; "));
+}
+
 /// Another pace, of the run under way too.
 pub(super) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect> {
     let pace = (model.pace * by).clamp(*PACES.start(), *PACES.end());
@@ -103,8 +130,12 @@ pub(super) fn walked(
     }
     model.journal.made(made.len());
     let numbering = model.history.numbering();
+    let before = solves.then(|| stood_stable(model)).flatten();
     for state in made {
         append(model, id, state);
+    }
+    if let Some(before) = before {
+        tell_of_fold(model, before);
     }
     model.history.shorten(&model.undo.nodes());
     if numbering == 0 && model.history.numbering() > 0 {

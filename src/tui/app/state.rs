@@ -25,6 +25,8 @@ use pulloff_engine::units::Quantity;
 use ratatui::layout::Rect;
 use tui_input::backend::crossterm::EventHandler;
 
+/// So often at most a command without a number of its own is done for one that was typed before it.
+const REPEATED: usize = 100;
 /// Longest count typed before a command.
 const COUNT: usize = 9999;
 
@@ -250,6 +252,11 @@ impl App {
             return Vec::new();
         }
         let count = self.count.take();
+        if let (Some(times), Some(id)) = (count, self.keymap.command(key))
+            && is_repeated(id)
+        {
+            return (0..times.clamp(1, REPEATED)).flat_map(|_| self.act(id, None)).collect();
+        }
         let Some(id) = self.keymap.command(key) else {
             if let Some(effects) = self.page_key(key) {
                 return effects;
@@ -458,4 +465,28 @@ impl App {
             }
         }
     }
+}
+
+/// Whether a number before a command means that it is done so often.
+fn is_repeated(id: Id) -> bool {
+    matches!(
+        id,
+        Id::NextLimit
+            | Id::PreviousLimit
+            | Id::Jump
+            | Id::Less
+            | Id::More
+            | Id::MuchLess
+            | Id::MuchMore
+            | Id::Halve
+            | Id::Double
+            | Id::Up
+            | Id::Down
+            | Id::Left
+            | Id::Right
+            | Id::NextView
+            | Id::PreviousView
+            | Id::ZoomIn
+            | Id::ZoomOut
+    )
 }

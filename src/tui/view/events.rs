@@ -27,8 +27,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let selected = is_selected(app, Panel::Events);
     let title = theme.text(&title(model, &app.keymap));
     let room = usize::from(area.width).saturating_sub(title.chars().count() + 3);
-    let block = panel(theme, &title, selected)
-        .title_top(Line::styled(theme.text(&headline(model, room)), theme.strong()).right_aligned());
+    let block = panel(theme, &title, selected).title_top(
+        Line::styled(theme.text(&headline(model, &app.keymap, room)), theme.strong()).right_aligned(),
+    );
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let [head, body] = Layout::vertical([Constraint::Length(1), Constraint::Fill(1)]).areas(inner);
@@ -172,7 +173,7 @@ fn critical(model: &Model, wide: bool) -> f64 {
 }
 
 /// Pull-off and total loss, as much of it as there is room for.
-fn headline(model: &Model, room: usize) -> String {
+fn headline(model: &Model, keymap: &Keymap, room: usize) -> String {
     let Some(curve) = &model.curve else { return String::new() };
     let units = &model.preset.units;
     let lost = |total: f64, bounded: bool| {
@@ -205,10 +206,12 @@ fn headline(model: &Model, room: usize) -> String {
         lost(report.total_dissipated, bounded),
     ];
     let [force, approach, lost] = &parts;
-    let whole = both.map(|both| format!("least P {both}, {approach}, {lost}"));
+    let key = keymap.first(Id::LeastForce);
+    let whole = both.map(|both| format!("least P {both} ({key}), {approach}, {lost}"));
     whole
         .into_iter()
-        .chain([parts.join(", "), format!("{force}, {lost}"), force.clone()])
+        .chain([format!("{force} ({key}), {approach}, {lost}"), parts.join(", "), format!("{force}, {lost}")])
+        .chain([force.clone()])
         .find(|text| text.chars().count() <= room)
         .unwrap_or_default()
 }

@@ -1,8 +1,8 @@
 //! The help in three pages: how to read the screen, first steps, and every key, read from the one table of commands.
 
 use super::parts::panel;
-use crate::explorer::Model;
 use crate::explorer::command::ROWS;
+use crate::explorer::{Model, View};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Help;
@@ -57,6 +57,14 @@ const SHORT: &[(&str, &str)] = &[
     ("stable δ yes", "whether the state stays with the displacement (δ), the force (P), the spring (k) held"),
     ("step 0.02", "the longest step by hand, as a share of the range of δ, P and s of the curve"),
     ("dP/dδ", "the slope of the curve; with s held: that of a punch of this radius"),
+    ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
+    ("× pull-off", "the limit point from which nothing stable is left: the bodies come apart"),
+    ("○ landing", "where a jump comes to rest"),
+    ("touch", "a crest outside the disc meets the other body: a ring of contact begins"),
+    (
+        "spring",
+        "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
+    ),
     ("lost 3e-4", "energy lost in jumps; with a + behind it, a jump without bound comes on top"),
     ("no bound", "a dead load falls for ever: what is lost at the pull-off has no end"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
@@ -145,6 +153,11 @@ fn reading(app: &App) -> Vec<HelpLine> {
     entries.extend(SHORT.iter().map(|(short, text)| {
         let label = format!("  {:<1$}", theme.text(short), MEANING - 2);
         HelpLine::new(&label, theme.text(text), Style::new())
+    }));
+    section(&mut entries, theme, "Views");
+    entries.extend(View::ALL.map(|view| {
+        let label = format!("  {:<1$}", view.name(), MEANING - 2);
+        HelpLine::new(&label, theme.text(view.meaning()), Style::new())
     }));
     section(&mut entries, theme, "The chart");
     entries.extend(READING.iter().map(|text| spelled(app, text)));

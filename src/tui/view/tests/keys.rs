@@ -74,3 +74,21 @@ fn what_was_refused_in_a_prompt_names_keys_too() {
     assert!(screen.text(100, 30).contains("y quits, Esc stays."), "{}", screen.text(100, 30));
     assert_eq!(screen.app.keymap.first(Id::SaveAs), ":save-as");
 }
+
+#[test]
+fn a_number_before_a_command_does_it_so_often() {
+    let state = |keys: &str| {
+        let mut screen = Screen::new("wavy-sphere");
+        screen.keys(keys);
+        let node = screen.app.model.history.current().unwrap();
+        let preset = &screen.app.model.preset;
+        // Solved once for each value or for the last alone: the same to rounding.
+        (format!("{:.9}", node.state.contact_radius), preset.get("gap.amplitude"))
+    };
+    assert_eq!(state("3n"), state("nnn"));
+    assert_eq!(state("n2xn"), state("nxxn"));
+    assert_eq!(state("4>2n"), state(">>>>nn"));
+    assert_ne!(state("3n"), state("n"));
+    // Each is a command of its own to undo.
+    assert_eq!(state("3>u"), state(">>"));
+}
