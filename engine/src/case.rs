@@ -6,6 +6,7 @@
 use crate::continuation::Branch;
 use crate::disc::table::Kept;
 use crate::disc::{Basis, Exact, Table, TableError};
+use crate::elementary::cbrt;
 use crate::gap::function::Scaled;
 use crate::gap::panels::Refused;
 use crate::gap::{Gap, Shape};
@@ -394,11 +395,11 @@ static TABLES: Kept<(Shape, u64)> = Mutex::new(Vec::new());
 /// How far the table of a gap reaches to begin with.
 fn reach(reduced: &Reduced, wanted: Start) -> f64 {
     // Twice the paraboloid of R = 1 with its adhesion: as far as a start is looked for first.
-    let unit = |elastic: f64| 2.0 * elastic.max(reduced.work_of_adhesion.cbrt());
+    let unit = |elastic: f64| 2.0 * elastic.max(cbrt(reduced.work_of_adhesion));
     match wanted {
         Start::ContactRadius(s) => s,
         Start::Approach(delta) => unit(delta.abs().sqrt()),
-        Start::Force(p) => unit(p.abs().cbrt()),
+        Start::Force(p) => unit(cbrt(p.abs())),
     }
 }
 

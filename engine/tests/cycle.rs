@@ -1,6 +1,10 @@
 //! Whole loops against those of another program, and what holds for every loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests judge by functions that share nothing with what they judge"
+)]
 
 mod support;
 

@@ -10,6 +10,7 @@ use super::elliptic;
 use super::ground::{Ground, Under};
 use super::state::State;
 use crate::disc::outside;
+use crate::elementary::{asin, sin};
 use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, PI};
 use wide::f64x4;
@@ -222,23 +223,19 @@ impl super::nodes::Nodes {
         let n = y.len();
         let [a, b] = self.ends;
         let half = self.half();
-        let theta = 2.0 * ((r - a) / (b - a)).sqrt().clamp(0.0, 1.0).asin();
+        let theta = 2.0 * asin(((r - a) / (b - a)).sqrt().clamp(0.0, 1.0));
         let (t, stretch) = self.angle(theta);
         let angles = &self.rule.angles;
         // Q(t) = (1/n) Σ Q_k [1 + 2 Σ cos m t_k cos m t] and y = (π/n) Q.
         let kernel = |at: f64| -> f64 {
             let term = |angle: f64| {
-                let sine = (0.5 * angle).sin();
-                if sine.abs() < 1e-12 {
-                    (2 * n) as f64 - 1.0
-                } else {
-                    ((n as f64 - 0.5) * angle).sin() / sine
-                }
+                let sine = sin(0.5 * angle);
+                if sine.abs() < 1e-12 { (2 * n) as f64 - 1.0 } else { sin((n as f64 - 0.5) * angle) / sine }
             };
             0.5 * (term(at - t) + term(at + t))
         };
         let sum: f64 = angles.iter().zip(y).map(|(at, y)| y * kernel(*at)).sum();
-        sum / PI / (stretch * half * theta.sin())
+        sum / PI / (stretch * half * sin(theta))
     }
 
     /// t and dθ/dt at the angle θ.

@@ -15,6 +15,7 @@
 
 use super::nodes::{Graded, Nodes};
 use super::rule::Rule;
+use crate::elementary::{atan2, pow, sin};
 use std::f64::consts::PI;
 use wide::f64x4;
 
@@ -25,9 +26,9 @@ const POWER: f64 = 8.0;
 fn sigmoid(u: f64) -> [f64; 2] {
     let [v, v_slope] = ramp(u);
     let [w, w_slope] = ramp(1.0 - u);
-    let (vp, wp) = (v.powf(POWER), w.powf(POWER));
+    let (vp, wp) = (pow(v, POWER), pow(w, POWER));
     let sum = vp + wp;
-    let slope = POWER * (v * w).powf(POWER - 1.0) * (v_slope * w + v * w_slope) / (sum * sum);
+    let slope = POWER * pow(v * w, POWER - 1.0) * (v_slope * w + v * w_slope) / (sum * sum);
     [vp / sum, slope]
 }
 
@@ -99,7 +100,7 @@ impl Graded {
 
 /// θ of a radius on a ring.
 pub fn angle_of([a, b]: [f64; 2], r: f64) -> f64 {
-    2.0 * ((r - a).max(0.0).sqrt()).atan2((b - r).max(0.0).sqrt())
+    2.0 * atan2((r - a).max(0.0).sqrt(), (b - r).max(0.0).sqrt())
 }
 
 impl Nodes {
@@ -142,9 +143,9 @@ impl Nodes {
         let from_border = |k: usize, border: usize| {
             let (own, off) = angles[k];
             let difference = if own == border { off } else { theta[k] - borders[border] };
-            width * (0.5 * (theta[k] + borders[border])).sin() * (0.5 * difference).sin()
+            width * sin(0.5 * (theta[k] + borders[border])) * sin(0.5 * difference)
         };
-        let from_inner: Vec<f64> = (0..n).map(|k| width * (0.5 * theta[k]).sin().powi(2)).collect();
+        let from_inner: Vec<f64> = (0..n).map(|k| width * sin(0.5 * theta[k]).powi(2)).collect();
         let radii: Vec<f64> = (0..n).map(|k| radii_of(angles[k].0) + from_border(k, angles[k].0)).collect();
         let (first_break, last_break) = (radii_of(1), radii_of(last));
         let (inward, outward) = ((first_break - a).recip(), (b - last_break).recip());
@@ -160,7 +161,7 @@ impl Nodes {
         let mut quotients = [vec![0.0; n * n], vec![0.0; n * n]];
         for i in 0..n {
             let at = i * n + i;
-            lift[at] = stretches[i] * theta[i].sin() / rule.angles[i].sin();
+            lift[at] = stretches[i] * sin(theta[i]) / sin(rule.angles[i]);
             quotients[0][at] = if i < in_first { -inward } else { 0.0 };
             quotients[1][at] = if i >= in_last { outward } else { 0.0 };
             for k in i + 1..n {
@@ -169,7 +170,7 @@ impl Nodes {
                 } else {
                     (borders[angles[k].0] - borders[angles[i].0]) + (angles[k].1 - angles[i].1)
                 };
-                let product = (0.5 * (theta[i] + theta[k])).sin() * (0.5 * difference).sin();
+                let product = sin(0.5 * (theta[i] + theta[k])) * sin(0.5 * difference);
                 let ratio = product / (rule.sines[i + k + 1] * rule.sines[k - i]);
                 for at in [i * n + k, k * n + i] {
                     apart[at] = width * product;

@@ -4,6 +4,7 @@
 //! analytic for |Im v| < π/2 however near to the disc the ring begins.
 
 use crate::disc::{Panels, Table, TableError};
+use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -72,9 +73,9 @@ pub struct Under {
 
 impl Under {
     fn push(&mut self, edge: f64, v: f64, weight: f64) {
-        let sech = v.cosh().recip();
+        let sech = cosh(v).recip();
         let square = sech * sech;
-        self.radius.push(edge * v.tanh());
+        self.radius.push(edge * tanh(v));
         self.below.push(edge * edge * square);
         self.weight.push(edge * weight * square);
     }
@@ -83,7 +84,7 @@ impl Under {
     pub fn even(s: f64, edge: f64) -> Self {
         let end = artanh(s, edge);
         let beta = FRAC_PI_2 / end;
-        let n = up(DIGITS / (4.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0);
+        let n = up(DIGITS / (4.0 * ln(beta + (beta * beta + 1.0).sqrt())) + 2.0);
         let mut nodes = Self::default();
         for [x, weight] in &gauss(2 * n)[n..] {
             nodes.push(edge, end * x, end * weight);
@@ -96,8 +97,7 @@ impl Under {
         let end = artanh(s, edge);
         let beta = PI / end;
         let phase = 0.5 * wavenumber * edge * end.min(4.0);
-        let n =
-            up(DIGITS / (2.0 * (beta + (beta * beta + 1.0).sqrt()).ln()) + 2.0 + phase + 4.0 * phase.cbrt());
+        let n = up(DIGITS / (2.0 * ln(beta + (beta * beta + 1.0).sqrt())) + 2.0 + phase + 4.0 * cbrt(phase));
         let mut nodes = Self::default();
         for [x, weight] in gauss(n) {
             nodes.push(edge, 0.5 * end * (1.0 + x), 0.5 * end * weight);
@@ -108,7 +108,7 @@ impl Under {
 
 /// artanh(s/edge).
 fn artanh(s: f64, edge: f64) -> f64 {
-    0.5 * ((edge + s) / (edge - s)).ln()
+    0.5 * ln((edge + s) / (edge - s))
 }
 
 /// The next multiple of four.

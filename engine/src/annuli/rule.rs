@@ -8,6 +8,7 @@
 //!
 //! all exact for cosine series up to degree n − 1.
 
+use crate::elementary::{cos, sin, tan};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -44,18 +45,16 @@ impl Rule {
     fn new(n: usize) -> Self {
         let size = n as f64;
         let angles: Vec<f64> = (0..n).map(|k| PI * (k as f64 + 0.5) / size).collect();
-        let outward: Vec<f64> = angles.iter().map(|t| (0.5 * t).sin().powi(2)).collect();
-        let inward: Vec<f64> = angles.iter().map(|t| (0.5 * t).cos().powi(2)).collect();
+        let outward: Vec<f64> = angles.iter().map(|t| sin(0.5 * t).powi(2)).collect();
+        let inward: Vec<f64> = angles.iter().map(|t| cos(0.5 * t).powi(2)).collect();
         // By symmetry about j = n, so that the ends are exact.
-        let sines: Vec<f64> =
-            (0..=2 * n).map(|j| (PI * j.min(2 * n - j) as f64 / (2.0 * size)).sin()).collect();
-        let cosines: Vec<f64> = (0..2 * n).map(|j| (PI * j as f64 / size).cos()).collect();
+        let sines: Vec<f64> = (0..=2 * n).map(|j| sin(PI * j.min(2 * n - j) as f64 / (2.0 * size))).collect();
+        let cosines: Vec<f64> = (0..2 * n).map(|j| cos(PI * j as f64 / size)).collect();
         let sum = |j: usize| -> f64 { (1..n).map(|m| cosines[(m * j) % (2 * n)] / m as f64).sum() };
         let log_sums = (0..=2 * n).map(|j| 2.0 * sum(j) + std::f64::consts::LN_2).collect();
         let alternating = |k: usize| if k.is_multiple_of(2) { 1.0 / PI } else { -1.0 / PI };
-        let inner = angles.iter().enumerate().map(|(k, t)| alternating(k) / (0.5 * t).tan()).collect();
-        let outer =
-            angles.iter().enumerate().map(|(k, t)| alternating(n - 1 - k) * (0.5 * t).tan()).collect();
+        let inner = angles.iter().enumerate().map(|(k, t)| alternating(k) / tan(0.5 * t)).collect();
+        let outer = angles.iter().enumerate().map(|(k, t)| alternating(n - 1 - k) * tan(0.5 * t)).collect();
         Self { halves: [inward, outward], angles, sines, log_sums, ends: [inner, outer] }
     }
 }

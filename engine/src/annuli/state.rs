@@ -9,6 +9,7 @@ use super::kernel::{self, Moved};
 use super::nodes::Nodes;
 use super::rule::MOST_POINTS;
 use crate::disc::outside;
+use crate::elementary::{atan2, cbrt, ln, log10};
 use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 use std::sync::Arc;
@@ -136,8 +137,8 @@ pub fn points(ground: &Ground, contacts: &Contacts) -> Resolution {
     let wants = |j: usize| {
         let [a, b] = contacts.rings[j];
         let phase = PI * (b - a) / ground.wave;
-        let waves = phase + 8.0 * phase.cbrt() + 8.0;
-        FEWEST_POINTS.max(waves).max(TOLERANCE / ellipse(contacts, j).ln()).min(most)
+        let waves = phase + 8.0 * cbrt(phase) + 8.0;
+        FEWEST_POINTS.max(waves).max(TOLERANCE / ln(ellipse(contacts, j))).min(most)
     };
     let up = |n: f64, step: usize| {
         // Positive, and some hundred at most.
@@ -173,7 +174,7 @@ fn digits(ground: &Ground, contacts: &Contacts, nodes: &[Nodes]) -> f64 {
     let of = |j: usize| {
         let breaks = ground.inside(contacts.rings[j]);
         let count = nodes[j].radii.len() as f64;
-        let analytic = count * ellipse(contacts, j).log10();
+        let analytic = count * log10(ellipse(contacts, j));
         // As found on a ring with as many breaks: one takes 98 points for ten digits, two 136 for eight; knots of a spline at 96 five.
         let broken = match breaks.len() {
             0 => return analytic,
@@ -375,7 +376,7 @@ impl Ground {
         let s = contacts.disc;
         let n = points.r.len();
         let shade: Vec<f64> = if s > 0.0 {
-            points.root.iter().map(|root| 0.5 * root.atan2(s)).collect()
+            points.root.iter().map(|root| 0.5 * atan2(*root, s)).collect()
         } else {
             vec![FRAC_PI_4; n]
         };

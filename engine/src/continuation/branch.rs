@@ -2,6 +2,7 @@
 
 use super::system::{Column, Columns, Linearization, SizeError, System, Vector};
 use super::tangent::Algebra;
+use crate::elementary::atan2;
 use serde::Serialize;
 
 /// One solution on a branch, with the local frame of the curve.
@@ -108,7 +109,7 @@ fn angle(a: &(impl Iterator<Item = f64> + Clone), b: &(impl Iterator<Item = f64>
     // atan2 of the difference and sum of the unit vectors: exact for small angles, where acos loses half the digits.
     let (of_a, of_b) = (norm(a.clone()), norm(b.clone()));
     let pairs = || a.clone().map(|a| a / of_a).zip(b.clone().map(|b| b / of_b));
-    2.0 * norm(pairs().map(|(a, b)| a - b)).atan2(norm(pairs().map(|(a, b)| a + b)))
+    2.0 * atan2(norm(pairs().map(|(a, b)| a - b)), norm(pairs().map(|(a, b)| a + b)))
 }
 
 /// What a branch has cost.

@@ -7,6 +7,7 @@
 //! about ten digits. Next to the border of the region in which the equations are defined one of the two sides is y itself.
 
 use super::system::{Linearization, Matrix, System, Vector};
+use crate::elementary::cbrt;
 
 /// Room for `J_v`.
 #[derive(Debug, Clone)]
@@ -37,7 +38,7 @@ impl Second {
         if system.second(at, v, self.along.as_view_mut()).is_some() {
             return Some(());
         }
-        let step = f64::EPSILON.cbrt() * y.amax().max(1.0) / v.norm();
+        let step = cbrt(f64::EPSILON) * y.amax().max(1.0) / v.norm();
         let mut distance = 0.0;
         self.along.fill(0.0);
         for side in [1.0, -1.0] {

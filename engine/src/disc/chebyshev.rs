@@ -6,6 +6,7 @@
 //!
 //! Coefficients are slices, lowest first. L. N. Trefethen, *Approximation Theory and Approximation Practice* (SIAM 2013).
 
+use crate::elementary::cos;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 use wide::f64x4;
@@ -36,7 +37,7 @@ impl Rule {
         let angle = |k: usize, j: usize| {
             // Reduced exactly, so that symmetric nodes are symmetric to the last bit.
             let turns = (k * (2 * j + 1)) % (4 * n);
-            let eighth = |t: usize| (PI * t as f64 / (2 * n) as f64).cos();
+            let eighth = |t: usize| cos(PI * t as f64 / (2 * n) as f64);
             match turns {
                 t if t == n || t == 3 * n => 0.0,
                 t if t < n => eighth(t),

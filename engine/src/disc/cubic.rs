@@ -18,6 +18,7 @@
 //! points of their block, from which the panels see them that are at least the width of the block away: the weights are
 //! those of the interpolation of the kernel 1/√(a² − r²), transposed. The singularity of the kernel leaves 5.8⁻²⁰ of it.
 
+use crate::elementary::{atan2, cos, sin};
 use crate::gap::Piece;
 use gauss_quad::GaussLegendre;
 use std::array;
@@ -68,7 +69,7 @@ impl Piece {
 /// The nodes of a panel as shares of its largest y, which is √(hi − lo): Chebyshev's of the first kind, descending.
 pub fn nodes() -> [f64; NODES] {
     // (1 + cos x)/2 as a square keeps the digits of the small ones.
-    array::from_fn(|j| (PI * (2 * j + 1) as f64 / (4 * NODES) as f64).cos().powi(2))
+    array::from_fn(|j| cos(PI * (2 * j + 1) as f64 / (4 * NODES) as f64).powi(2))
 }
 
 /// g and dg/dy, y = √(a − lo), at the [`nodes`] of every piece of `pieces[from..]`; `None` when `go_on` said no, which is
@@ -189,13 +190,13 @@ impl Panel {
                     let end = ((from_lo[lane] + (self.lo - piece.hi)) * (a + piece.hi)).sqrt();
                     (piece.hi, piece.width(), end)
                 };
-                let largest = begin.atan2(piece.lo);
+                let largest = atan2(begin, piece.lo);
                 // Of sin(φ₁ − φ₀) = (r₀√(a² − r₁²) − r₁√(a² − r₀²))/a², times the sum of the two.
                 let sine = a * width * ((hi + piece.lo) / (begin * hi + end * piece.lo)) * a;
-                let length = sine.atan2(hi * piece.lo + begin * end);
+                let length = atan2(sine, hi * piece.lo + begin * end);
                 for &(x, weight) in rule {
                     let below = length * (1.0 - x);
-                    let t = 2.0 * a * (largest - 0.5 * below).sin() * (0.5 * below).sin();
+                    let t = 2.0 * a * sin(largest - 0.5 * below) * sin(0.5 * below);
                     let weight = weight * length;
                     slopes[lane] += weight * piece.slope(t);
                     bends[lane] += weight * (piece.lo + t) * piece.bend(t);
@@ -273,7 +274,7 @@ impl<'a> Sources<'a> {
         let points: [(f64, f64); POINTS] = array::from_fn(|m| {
             let angle = PI * (2 * m + 1) as f64 / (4 * POINTS) as f64;
             let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
-            (angle.cos().powi(2), sign * (2.0 * angle).sin())
+            (cos(angle).powi(2), sign * sin(2.0 * angle))
         });
         let samples: Vec<_> = pieces.iter().map(|piece| Samples::of_piece(piece, &rule)).collect();
         let mut levels: Vec<Vec<Samples<POINTS>>> =

@@ -12,6 +12,7 @@ use super::panels::{Panels, Values};
 use super::solution::{ExactSolution, Solution};
 use super::span::Place;
 use super::table::{Table, TableError};
+use crate::elementary::sin;
 use crate::gap::Gap;
 use crate::problem::Reduced;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -206,7 +207,7 @@ impl Basis for Exact {
         let points = (PICTURE_POINTS_PER_WAVE * waves).clamp(least, most).ceil();
         // r = s sin θ: evenly spaced near the axis and, as √(s² − r²) = s cos θ, near the edge too, which itself is left out.
         let angles = std::iter::successors(Some(0.0), |j| Some(j + 1.0)).take_while(|j| *j < points);
-        let radii = angles.map(|j| s * (FRAC_PI_2 * j / points).sin());
+        let radii = angles.map(|j| s * sin(FRAC_PI_2 * j / points));
         radii.map(|r| (r, outside::pressure(&panels, s, delta, r))).collect()
     }
 

@@ -5,6 +5,7 @@
 //! ∫g = κ aⁿ⁺¹/(n + 1),    ∫g² = κ² a²ⁿ⁺¹/(2n + 1)
 //! ```
 
+use crate::elementary::pow;
 use crate::gap::{panels::Span, panels::Variable};
 use std::f64::consts::PI;
 
@@ -39,7 +40,7 @@ impl Law {
     fn power(a: f64, m: f64) -> f64 {
         // Whole powers by multiplication: exact where the product is.
         #[expect(clippy::cast_possible_truncation, reason = "whole and at most some hundred")]
-        if m.fract() == 0.0 { a.powi(m as i32) } else { a.powf(m) }
+        if m.fract() == 0.0 { a.powi(m as i32) } else { pow(a, m) }
     }
 
     /// g.
@@ -78,7 +79,7 @@ impl Law {
 
     /// Panels from the axis to `to`; the first ends at `smallest` or below.
     pub fn spans(exponent: f64, to: f64, smallest: f64) -> Vec<Span> {
-        let ratio = VARIATION.powf(exponent.recip()).min(RATIO);
+        let ratio = pow(VARIATION, exponent.recip()).min(RATIO);
         let mut borders = vec![to];
         while let Some(hi) = borders.last().copied().filter(|hi| *hi > smallest && hi.is_normal()) {
             borders.push(hi / ratio);

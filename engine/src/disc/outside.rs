@@ -16,6 +16,7 @@
 use super::chebyshev::{self, Rule};
 use super::panels::{Panel, Panels};
 use super::span::Place;
+use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
 use crate::gap::panels::Variable;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -107,7 +108,7 @@ fn stretch_by(
     match panel.span.variable {
         Variable::Fifth if r - hi >= hi => {
             let end = panel.span.hi;
-            let at = |a: f64| (a / end).powf(0.2);
+            let at = |a: f64| pow(a / end, 0.2);
             over(at(lo), at(hi), &|u| {
                 let a = end * u.powi(5);
                 value(u) * 5.0 * end * u.powi(4) / ((r - a) * (r + a)).sqrt()
@@ -115,14 +116,14 @@ fn stretch_by(
         }
         Variable::Fifth => {
             let end = panel.span.hi;
-            over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| value((r * psi.sin() / end).powf(0.2)))
+            over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(pow(r * sin(psi) / end, 0.2)))
         }
-        Variable::Radius => over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| value(r * psi.sin())),
+        Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(r * sin(psi))),
         Variable::Root { base } => {
             let height = (r - base).sqrt();
-            let angle = |a: f64| ((a - base).max(0.0).sqrt() / height).min(1.0).asin();
+            let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
             over(angle(lo), angle(hi), &|psi| {
-                let y = height * psi.sin();
+                let y = height * sin(psi);
                 value(y) * 2.0 * y / (r + base + y * y).sqrt()
             })
         }
@@ -172,15 +173,15 @@ fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f
     };
     let place = |a: f64| Place { panel: index, x: span.place(a) };
     match span.variable {
-        Variable::Fifth | Variable::Radius => over((lo / r).asin(), (hi / r).min(1.0).asin(), &|psi| {
-            panels.values(place(r * psi.sin())).slope * psi.sin()
+        Variable::Fifth | Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| {
+            panels.values(place(r * sin(psi))).slope * sin(psi)
         }),
         Variable::Root { base } => {
             let height = (r - base).sqrt();
             let [centre, half] = span.line();
-            let angle = |a: f64| ((a - base).max(0.0).sqrt() / height).min(1.0).asin();
+            let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
             over(angle(lo), angle(hi), &|psi| {
-                let y = height * psi.sin();
+                let y = height * sin(psi);
                 let a = base + y * y;
                 let x = ((y - centre) / half).clamp(-1.0, 1.0);
                 panels.slope_by_variable(Place { panel: index, x }) * (a / r) / (r + a).sqrt()
@@ -220,7 +221,7 @@ fn stretch_inside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> 
     let variable = |a: f64| match span.variable {
         Variable::Radius => a,
         Variable::Root { base } => (a - base).max(0.0).sqrt(),
-        Variable::Fifth => (a / span.hi).powf(0.2),
+        Variable::Fifth => pow(a / span.hi, 0.2),
     };
     let by_variable = |v: f64| panels.slope_by_variable(place(v));
     let radius = |v: f64| span.radius(place(v).x);
@@ -234,10 +235,10 @@ fn stretch_inside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> 
             let unit = (base - r).abs().sqrt();
             let angle = |a: f64| {
                 let ratio = variable(a) / unit;
-                if base > r { ratio.asinh() } else { ratio.max(1.0).acosh() }
+                if base > r { asinh(ratio) } else { acosh(ratio.max(1.0)) }
             };
             over(angle(lo), angle(hi), &|t| {
-                let y = unit * if base > r { t.sinh() } else { t.cosh() };
+                let y = unit * if base > r { sinh(t) } else { cosh(t) };
                 by_variable(y) / (base + y * y + r).sqrt()
             })
         }

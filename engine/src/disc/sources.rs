@@ -12,6 +12,7 @@
 
 use super::chebyshev::Rule;
 use super::span::panel_of;
+use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
 use gauss_quad::GaussLegendre;
@@ -148,7 +149,7 @@ impl Target {
 
     /// arccos(q/a).
     fn angle(&self, q: f64) -> f64 {
-        self.root(q).atan2(q)
+        atan2(self.root(q), q)
     }
 }
 
@@ -233,7 +234,7 @@ fn near(part: &Source, target: &Target) -> [f64; 2] {
     let mut places = [0.0; NODES];
     let mut shares = [0.0; NODES];
     for i in 0..NODES {
-        let share = (middle + half * GAUSS[i][0]).cos();
+        let share = cos(middle + half * GAUSS[i][0]);
         shares[i] = share;
         // Beside a break rounding would pick the wrong side.
         places[i] = ((target.a * share - lo) * scale - 1.0).clamp(-1.0, 1.0);
@@ -262,7 +263,7 @@ fn innermost(gap: &dyn Gap, target: &Target, hi: f64) -> [f64; 2] {
         let r = inner * u.powi(5);
         radii[0][i] = r;
         weights[0][i] = 2.5 * inner * u.powi(4) * weight / ((a - r) * (a + r)).sqrt();
-        radii[1][i] = (a * (0.5 * (from + to) + 0.5 * (to - from) * x).cos()).clamp(inner, end);
+        radii[1][i] = (a * cos(0.5 * (from + to) + 0.5 * (to - from) * x)).clamp(inner, end);
         weights[1][i] = 0.5 * (to - from) * weight;
     }
     let mut total = [0.0; 2];

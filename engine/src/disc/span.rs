@@ -6,6 +6,7 @@
 //! right of b        a = b + y²,      y = y_c + y_d x
 //! ```
 
+use crate::elementary::pow;
 use crate::gap::{panels::Span, panels::Variable};
 
 /// A place on a panel.
@@ -62,7 +63,7 @@ impl Span {
     pub fn place(&self, a: f64) -> f64 {
         let [centre, half] = self.line();
         let v = match self.variable {
-            Variable::Fifth => (a / self.hi).powf(0.2),
+            Variable::Fifth => pow(a / self.hi, 0.2),
             Variable::Radius => a,
             Variable::Root { base } => (a - base).max(0.0).sqrt(),
         };

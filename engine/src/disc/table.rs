@@ -16,6 +16,7 @@ use super::law::Law;
 use super::panels::{Panel, Panels};
 use super::sources::{self, Sources};
 use super::{cubic, outside, waves};
+use crate::elementary::{exp2, ln, log2, log10, pow};
 use crate::gap::{Form, Gap, Piece, Wave};
 use crate::gap::{panels::Refused, panels::Span, panels::Variable, panels::divide};
 use std::collections::BTreeMap;
@@ -184,14 +185,14 @@ impl Table {
         let whole = reach >= end || matches!(self.form, Form::Cubic(_));
         // A positive number has a binary logarithm of some hundred at most.
         #[expect(clippy::cast_possible_truncation)]
-        let steps = (4.0 * reach.max(f64::MIN_POSITIVE).log2() - 1e-9).ceil() as i32;
+        let steps = (4.0 * log2(reach.max(f64::MIN_POSITIVE)) - 1e-9).ceil() as i32;
         let stage = Stage { reach: if whole { i32::MAX } else { steps }, fineness };
         let lock = || self.stages.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&stage) {
             return Ok(Arc::clone(known));
         }
         // Not under the lock: another radius must not wait for this one.
-        let reach = if whole { end } else { (0.25 * f64::from(steps)).exp2().max(reach).min(end) };
+        let reach = if whole { end } else { exp2(0.25 * f64::from(steps)).max(reach).min(end) };
         let law = match self.form {
             Form::Power { factor, exponent } => Some(Law::new(factor, exponent)),
             _ => None,
@@ -292,7 +293,7 @@ impl Table {
                     }
                 })
                 .fold(0.0, |worst: f64, error| if error.is_nan() { f64::INFINITY } else { worst.max(error) });
-            -error.clamp(ROUNDING, 1.0).log10()
+            -log10(error.clamp(ROUNDING, 1.0))
         })
     }
 }
@@ -346,8 +347,8 @@ fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
         let [inner, outer] = [span.lo, span.hi].map(|r| gap.jet(r).first.abs());
         let growth = if span.variable == Variable::Radius && span.lo > 0.0 { outer / inner } else { 1.0 };
         // Where the slope vanishes at the inner end there is no number of parts that would do.
-        let parts = if growth > GRADED { (growth.ln() / GRADED.ln()).ceil().min(MOST_PARTS) } else { 1.0 };
-        let border = |k: f64| if k < parts { span.lo * (span.hi / span.lo).powf(k / parts) } else { span.hi };
+        let parts = if growth > GRADED { (ln(growth) / ln(GRADED)).ceil().min(MOST_PARTS) } else { 1.0 };
+        let border = |k: f64| if k < parts { span.lo * pow(span.hi / span.lo, k / parts) } else { span.hi };
         let parts = std::iter::successors(Some(0.0), |k| Some(k + 1.0)).take_while(move |k| *k < parts);
         parts
             .map(move |k| Span { lo: if k < 0.5 { span.lo } else { border(k) }, hi: border(k + 1.0), ..span })

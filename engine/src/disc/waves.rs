@@ -10,6 +10,7 @@
 //! and x.
 
 use super::chebyshev::Rule;
+use crate::elementary::{sin, sin_cos};
 use crate::gap::Wave;
 use crate::gap::panels::Span;
 use gauss_quad::GaussLegendre;
@@ -75,7 +76,7 @@ pub fn at(curvature: f64, waves: &[Wave], a: f64) -> ([f64; 2], [f64; 3]) {
         let [sine_phase, cosine_phase] = wave.phase;
         let [mut s0, mut s2, mut c1, mut c3] = [0.0; 4];
         for (t, weight) in theta.sines.iter().zip(&theta.weights) {
-            let (sine, cosine) = (q * a * t).sin_cos();
+            let (sine, cosine) = sin_cos(q * a * t);
             let (su, cu) =
                 (sine * cosine_phase + cosine * sine_phase, cosine * cosine_phase - sine * sine_phase);
             s0 += weight * su;
@@ -116,7 +117,7 @@ impl Angles {
         let rule = GaussLegendre::new(NonZeroUsize::new(2 * nodes).unwrap_or(NonZeroUsize::MIN));
         let half = || rule.iter().take(nodes);
         Self {
-            sines: half().map(|(x, _)| (FRAC_PI_2 * (1.0 + x)).sin()).collect(),
+            sines: half().map(|(x, _)| sin(FRAC_PI_2 * (1.0 + x))).collect(),
             weights: half().map(|(_, weight)| FRAC_PI_2 * weight).collect(),
         }
     }

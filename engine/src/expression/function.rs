@@ -1,5 +1,6 @@
 //! The operations of an expression and what they give for plain numbers.
 
+use crate::elementary::{acos, asin, atan, cos, cosh, exp, hypot, ln, log10, pow, sin, sinh, tan, tanh};
 use std::f64::consts::{E, PI};
 
 /// The variable of a gap formula.
@@ -127,18 +128,18 @@ impl Unary {
     pub fn value(self, x: f64) -> f64 {
         match self {
             Self::Negate => -x,
-            Self::Sin => x.sin(),
-            Self::Cos => x.cos(),
-            Self::Tan => x.tan(),
-            Self::Asin => x.asin(),
-            Self::Acos => x.acos(),
-            Self::Atan => x.atan(),
-            Self::Sinh => x.sinh(),
-            Self::Cosh => x.cosh(),
-            Self::Tanh => x.tanh(),
-            Self::Exp => x.exp(),
-            Self::Log => x.ln(),
-            Self::Log10 => x.log10(),
+            Self::Sin => sin(x),
+            Self::Cos => cos(x),
+            Self::Tan => tan(x),
+            Self::Asin => asin(x),
+            Self::Acos => acos(x),
+            Self::Atan => atan(x),
+            Self::Sinh => sinh(x),
+            Self::Cosh => cosh(x),
+            Self::Tanh => tanh(x),
+            Self::Exp => exp(x),
+            Self::Log => ln(x),
+            Self::Log10 => log10(x),
             Self::Sqrt => x.sqrt(),
             Self::Abs => x.abs(),
             // `signum` would call the sign of zero 1.
@@ -158,12 +159,12 @@ impl Binary {
             Self::Subtract => a - b,
             Self::Multiply => a * b,
             Self::Divide => a / b,
-            Self::Power => a.powf(b),
+            Self::Power => pow(a, b),
             // `f64::min` would hide what is not a number.
             Self::Min | Self::Max if a.is_nan() || b.is_nan() => f64::NAN,
             Self::Min => a.min(b),
             Self::Max => a.max(b),
-            Self::Hypot => a.hypot(b),
+            Self::Hypot => hypot(a, b),
         }
     }
 }

@@ -11,6 +11,7 @@ use super::least_squares::Evaluated;
 use super::options::letter;
 use super::problem::{Parameter, Problem};
 use super::solve::HUBER;
+use crate::elementary::ln;
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
 use nalgebra::{DMatrix, DVector};
@@ -94,7 +95,7 @@ fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> Str
     let lead =
         logs.max_by(|a, b| leads(a).total_cmp(&leads(b))).filter(|j| direction[*j].abs() > 1e-3 * largest);
     let unit = match lead {
-        Some(lead) => 1.1_f64.ln() / direction[lead],
+        Some(lead) => ln(1.1_f64) / direction[lead],
         None => 1.0 / largest,
     };
     let moves: Vec<f64> = direction.iter().map(|d| d * unit).collect();

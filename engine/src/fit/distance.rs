@@ -8,6 +8,7 @@
 //! foot changes r by ε² times the curvature. At the ends of a piece the distance is that from the end, signed as beside it.
 
 use super::path::{Foot, Path, Piece, Place, Vertex};
+use crate::elementary::hypot;
 
 /// The foot of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -203,7 +204,7 @@ impl<'a> Scaled<'a> {
             return None;
         }
         let t = along.map(|x| x / length);
-        let flat = t[0].hypot(t[1]);
+        let flat = hypot(t[0], t[1]);
         let first = [-t[1] / flat, t[0] / flat, 0.0];
         let space = self.weights[2] > 0.0;
         // t × first: with it the three are a frame.
@@ -217,7 +218,7 @@ impl<'a> Scaled<'a> {
         if is_inside || beyond == 0.0 {
             return Some(Nearest { piece, foot, residuals: [r, beside], normals: [first, second] });
         }
-        let whole = r.hypot(beyond).copysign(r);
+        let whole = hypot(r, beyond).copysign(r);
         let normal = sum(r / whole, first, beyond / whole, t);
         Some(Nearest { piece, foot, residuals: [whole, beside], normals: [normal, second] })
     }

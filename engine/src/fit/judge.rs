@@ -4,6 +4,7 @@ use super::fitted::Fitted;
 use super::path::Foot;
 use super::problem::{ADHESION, Problem, Target};
 use super::solve::{Solved, solve};
+use crate::elementary::{exp_m1, hypot};
 use crate::measured::Segment;
 use crate::preset::{Preset, Value};
 use crate::problem::groups::LARGE_TABOR;
@@ -77,7 +78,7 @@ pub fn doubts(
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
         && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
-        && (approach.value - retraction.value).abs() > 2.0 * a.hypot(b)
+        && (approach.value - retraction.value).abs() > 2.0 * hypot(a, b)
     {
         doubts.push(
             "the works of adhesion of approach and retraction differ by more than their errors: not a quasi-static loop, but \
@@ -155,7 +156,7 @@ pub fn of_spring(
                     .map(|(j, parameter)| {
                         let change = found.minimum.parameters[j] - solved.minimum.parameters[j];
                         let name = super::options::letter(&problem.preset, &parameter.key());
-                        format!("{name} {:+.1} %", 100.0 * change.exp_m1()).replace('-', "−")
+                        format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
                     })
                     .collect();
                 format!("{words}: {}", changes.join(", "))

@@ -6,6 +6,7 @@
 
 use crate::case;
 use crate::disc::{Basis, Exact, Solution};
+use crate::elementary::hypot;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced, Units};
@@ -213,7 +214,7 @@ impl Path {
             let place = self.solution.place((s / self.units.length).min(self.solution.reach()))?;
             let local = self.solution.at(place);
             let [x, p] = [local.slopes[0] / ranges[0], local.slopes[1] / ranges[1]];
-            let length = x.hypot(p);
+            let length = hypot(x, p);
             (length > 0.0).then_some([x / length, p / length])
         };
         if depth == 0 {

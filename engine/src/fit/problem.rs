@@ -3,6 +3,7 @@
 use super::distance::{Nearest, Scaled};
 use super::least_squares::{Evaluated, LeastSquares};
 use super::path::{Path, Place, Reach};
+use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
@@ -42,13 +43,13 @@ impl Parameter {
     /// u of a value.
     #[must_use]
     pub fn inner(&self, value: f64) -> f64 {
-        self.scale.map_or_else(|| value.ln(), |scale| value / scale)
+        self.scale.map_or_else(|| ln(value), |scale| value / scale)
     }
 
     /// The value of u.
     #[must_use]
     pub fn value(&self, u: f64) -> f64 {
-        self.scale.map_or_else(|| u.exp(), |scale| u * scale)
+        self.scale.map_or_else(|| exp(u), |scale| u * scale)
     }
 
     /// dv/du at a value.

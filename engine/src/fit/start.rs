@@ -6,6 +6,7 @@
 use super::least_squares::LeastSquares;
 use super::problem::{ADHESION, Datum, Problem, Target};
 use super::solve::{Solved, solve};
+use crate::elementary::ln;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 
@@ -68,7 +69,7 @@ impl Problem {
             }
             // A cone's grows with the square of γ.
             for &j in &adhesions {
-                u[j] += 0.7 * ratio.ln();
+                u[j] += 0.7 * ln(ratio);
             }
         }
         if let (&[j], false) = (offsets.as_slice(), self.abscissa == Abscissa::Radius) {
@@ -108,7 +109,7 @@ impl Problem {
                 .flat_map(|u| {
                     FACTORS.map(|factor| {
                         let mut u = u.clone();
-                        u[j] += factor.ln();
+                        u[j] += ln(factor);
                         u
                     })
                 })

@@ -12,6 +12,7 @@
 //! nodes. Where h runs like a broken power of r towards the axis, the first piece is taken in u, θ ∝ u⁵, which makes the
 //! integrand smooth enough, and the following ones are each as wide as the way to the axis.
 
+use crate::elementary::{asin, cbrt, pow, sin, sin_cos};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
@@ -102,7 +103,7 @@ fn rule(nodes: usize) -> Vec<(f64, f64)> {
 fn nodes(z: f64) -> usize {
     // Positive and some thousand at most.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let nodes = (0.5 * z + 5.0 * z.cbrt() + 2.0).ceil() as usize;
+    let nodes = (0.5 * z + 5.0 * cbrt(z) + 2.0).ceil() as usize;
     nodes
 }
 
@@ -123,11 +124,11 @@ impl Angles {
         let mut angles = Self::default();
         let mut from = 0.0;
         if breaks.axis == Axis::Broken && !breaks.cubic {
-            let first = breaks.knots.first().map_or(1.0, |knot| knot / s).min(1.0).asin();
+            let first = asin(breaks.knots.first().map_or(1.0, |knot| knot / s).min(1.0));
             from = angles.graded(first, frequency);
         }
-        for knot in breaks.between(s * f64::sin(from), s) {
-            let to = (knot / s).asin();
+        for knot in breaks.between(s * sin(from), s) {
+            let to = asin(knot / s);
             angles.piece(from, to, frequency, 0);
             from = to;
         }
@@ -148,7 +149,7 @@ impl Angles {
         let inner = to.min(GRADED_PHASE / frequency);
         self.add(GRADED_NODES, |x| {
             let u = 0.5 * (1.0 + x);
-            (inner * u.powf(GRADING), 0.5 * inner * GRADING * u.powf(GRADING - 1.0))
+            (inner * pow(u, GRADING), 0.5 * inner * GRADING * pow(u, GRADING - 1.0))
         });
         let mut from = inner;
         while from < to {
@@ -170,7 +171,7 @@ impl Angles {
         };
         for &(x, weight) in rule {
             let (theta, stretch) = at(x);
-            let (sin, cos) = theta.sin_cos();
+            let (sin, cos) = sin_cos(theta);
             self.sines.push(sin);
             self.cosines.push(cos);
             self.weights.push(weight * stretch);

@@ -1,6 +1,7 @@
 //! What the numerics ask of a gap.
 
 use super::breaks::Breaks;
+use crate::elementary::pow;
 use std::fmt::Debug;
 
 /// The gap and its exact derivatives at one radius.
@@ -215,7 +216,7 @@ impl<G: Gap> Gap for Scaled<G> {
         match self.gap.form() {
             Form::Any => Form::Any,
             Form::Power { factor, exponent } => {
-                Form::Power { factor: factor * l.powf(exponent - 1.0), exponent }
+                Form::Power { factor: factor * pow(l, exponent - 1.0), exponent }
             }
             Form::Waves { curvature, waves } => {
                 let scaled = |wave: Wave| Wave {

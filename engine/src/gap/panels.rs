@@ -17,6 +17,7 @@
 //! Left of a break nothing is needed. The innermost panel is taken in u, r = hi u⁵, which costs a broken power nothing.
 
 use super::function::{Disc, Gap};
+use crate::elementary::cos;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::PI;
@@ -230,7 +231,7 @@ impl Divider<'_> {
     fn has_no_tail(&self, Span { lo, hi, variable }: Span, steepest: f64) -> bool {
         let angle = |k: usize| PI * (k as f64 + 0.5) / NODES as f64;
         let radius = |k: usize| {
-            let share = 0.5 * (1.0 - angle(k).cos());
+            let share = 0.5 * (1.0 - cos(angle(k)));
             match variable {
                 Variable::Root { base } => {
                     let [from, to] = [lo, hi].map(|r| (r - base).sqrt());
@@ -243,7 +244,7 @@ impl Divider<'_> {
         let radii: Vec<f64> = (0..NODES).map(radius).collect();
         let slopes = self.slopes(&radii);
         (NODES - LAST..NODES).all(|n| {
-            let sum: f64 = slopes.iter().enumerate().map(|(k, h1)| h1 * (n as f64 * angle(k)).cos()).sum();
+            let sum: f64 = slopes.iter().enumerate().map(|(k, h1)| h1 * cos(n as f64 * angle(k))).sum();
             2.0 / NODES as f64 * sum.abs() <= TAIL * steepest
         })
     }

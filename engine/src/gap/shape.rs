@@ -8,6 +8,7 @@ use super::shapes::harmonics::sine_change;
 use super::shapes::power_law::NEARLY_A_CONE;
 use super::shapes::random_waves::RandomWavesError;
 use super::shapes::{ExactSphere, Harmonics, Measured, PowerLaw, RandomWaves};
+use crate::elementary::{self, sin_cos};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::{PI, TAU};
@@ -178,9 +179,9 @@ impl Gap for Shape {
             Jet { value: r * r / (2.0 * radius), first: r / radius, second: 1.0 / radius, third: 0.0 };
         if let Some((amplitude, wavelength)) = self.wave() {
             let q = TAU / wavelength;
-            let (sin, cos) = (q * r).sin_cos();
+            let (sin, cos) = sin_cos(q * r);
             // 1 − cos x = 2 sin²(x/2): keeps its digits near the axis, where h matters as a difference.
-            let half = (0.5 * q * r).sin();
+            let half = elementary::sin(0.5 * q * r);
             jet.value += 2.0 * amplitude * half * half;
             jet.first += amplitude * q * sin;
             jet.second += amplitude * q * q * cos;
@@ -271,7 +272,7 @@ impl Gap for Shape {
         let Disc { centre, radius, .. } = disc;
         let wave = self.wave().map_or(0.0, |(amplitude, wavelength)| {
             let q = TAU / wavelength;
-            let (sin, cos) = (q * centre).sin_cos();
+            let (sin, cos) = sin_cos(q * centre);
             (amplitude * q).abs() * sine_change(sin, cos, q * radius)
         });
         Some(self.jet(centre).first.abs() + radius / self.paraboloid() + wave)

@@ -12,6 +12,7 @@ use super::schema::{
 };
 use super::value::Value;
 use super::values::{Values, of_coefficient};
+use crate::elementary::pow;
 use crate::gap::{Gap, Shape};
 use crate::gap::{formula::Formula, formula::FormulaParameter, formula::TypedError, formula::TypedGap};
 use crate::gap::{formula::typed::MOST_PARAMETERS, formula::typed::RADIUS};
@@ -248,7 +249,7 @@ pub(super) fn falls_throughout(preset: &Preset) -> Option<Invalid> {
     let end = known.unwrap_or(FAR * gap.length().map_or(near, |length| length.max(near)));
     let even = (1..=FALL_STEPS).map(|i| f64::from(i) / f64::from(FALL_STEPS) * near.min(end));
     let decades = (-FALL_DECADES * FALLS_A_DECADE..)
-        .map(|i| near * 10f64.powf(f64::from(i) / f64::from(FALLS_A_DECADE)))
+        .map(|i| near * pow(10f64, f64::from(i) / f64::from(FALLS_A_DECADE)))
         .take_while(|r| *r < end);
     // A formula may stop being finite far out without its end being known.
     let throughout = even

@@ -1,6 +1,7 @@
 //! The dimensionless groups people quote.
 
 use super::reduced::Problem;
+use crate::elementary::cbrt;
 use std::f64::consts::PI;
 
 /// Dimensionless groups of a problem; those of the wave, of R and of z₀ are `None` where there is none.
@@ -41,7 +42,7 @@ impl Groups {
             tabor: radius
                 .zip(range_of_action)
                 .filter(|_| gamma > 0.0)
-                .map(|(radius, z0)| (radius / z0).cbrt() * (gamma / (e * z0)).powi(2).cbrt()),
+                .map(|(radius, z0)| cbrt(radius / z0) * cbrt((gamma / (e * z0)).powi(2))),
         }
     }
 }

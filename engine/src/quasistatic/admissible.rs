@@ -22,6 +22,7 @@
 //! weak allows are refused without any.
 
 use crate::disc::{Table, outside};
+use crate::elementary::{pow, sin};
 use crate::gap::wave_index;
 use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
@@ -166,7 +167,7 @@ impl Judge {
                 let rest: f64 = waves.iter().map(|w| w.amplitude.abs()).sum();
                 let lowest = |a: f64| curvature * a * a - root * a.sqrt() - rest - delta;
                 // Beyond its minimum the bound only grows.
-                let minimum = (root / (4.0 * curvature)).powf(2.0 / 3.0);
+                let minimum = pow(root / (4.0 * curvature), 2.0 / 3.0);
                 let mut far = minimum.max(s);
                 while lowest(far) <= 0.0 && far.is_finite() {
                     far *= 1.1;
@@ -198,7 +199,7 @@ impl Judge {
         let angles = std::iter::successors(Some(0.0), |j| Some(j + 1.0)).take_while(|j| *j < points);
         let mut least: Option<(f64, f64)> = None;
         let mut most = 0.0_f64;
-        for r in angles.map(|j| s * (FRAC_PI_2 * j / points).sin()) {
+        for r in angles.map(|j| s * sin(FRAC_PI_2 * j / points)) {
             let p = outside::pressure(&panels, s, delta, r);
             most = most.max(p.abs());
             if least.is_none_or(|(_, least)| p < least) {

@@ -22,6 +22,7 @@
 use super::admissible::{Admissibility, Judge};
 use crate::continuation::{self, Column, Linearization, MatrixMut, System, Vector};
 use crate::disc::{Basis, Evaluation, Table};
+use crate::elementary::{exp2, log2};
 use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
 use std::f64::consts::PI;
@@ -53,7 +54,7 @@ impl Scales {
         let scale = |[lo, hi, size]: [f64; 3]| {
             let range = hi - lo;
             let found = [range, size].into_iter().find(|x| x.is_finite() && *x > 0.0).unwrap_or(1.0);
-            found.log2().round().exp2()
+            exp2(log2(found).round())
         };
         let [approach, force, contact_radius] = ranges.map(scale);
         Self { approach, force, contact_radius }

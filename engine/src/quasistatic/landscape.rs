@@ -23,6 +23,7 @@ use super::equilibrium::{Equilibrium, State};
 use super::jump::Run;
 use super::monotone::Monotone;
 use crate::disc::{Evaluation, Order, Solution};
+use crate::elementary::ln;
 use crate::problem::Control;
 
 /// Samples of a landscape at least: a short range is drawn with as many steps as this.
@@ -43,7 +44,7 @@ fn grid(solution: &dyn Solution, lo: f64, hi: f64) -> Vec<f64> {
         }
         let steps = (SAMPLES_PER_PANEL * (to - from) / (span.hi - span.lo))
             .max(SAMPLES * (to - from) / (hi - lo))
-            .max((to / from.max(f64::MIN_POSITIVE)).ln().min(10.0) / RATIO)
+            .max(ln(to / from.max(f64::MIN_POSITIVE)).min(10.0) / RATIO)
             .ceil();
         let inner = std::iter::successors(Some(1.0), |j| Some(j + 1.0)).take_while(|j| *j < steps);
         grid.extend(inner.map(|j| from + (to - from) * (j / steps)));

@@ -12,6 +12,7 @@ use super::admissible::{Crest, Judge};
 use crate::annuli::around::BESIDE;
 use crate::annuli::{Around, Contacts, Ground, Wanted};
 use crate::disc::{Basis, Table};
+use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
 use crate::problem::Reduced;
 use std::f64::consts::FRAC_PI_2;
@@ -101,7 +102,7 @@ impl Profile {
         let shares = |count: f64| {
             std::iter::successors(Some(0.5), |j| Some(j + 1.0))
                 .take_while(move |j| *j < count)
-                .map(move |j| (FRAC_PI_2 * j / count).sin().powi(2))
+                .map(move |j| sin(FRAC_PI_2 * j / count).powi(2))
         };
         let mut inside = Vec::new();
         for [lo, hi] in contacts.intervals() {

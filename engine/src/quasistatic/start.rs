@@ -2,6 +2,7 @@
 
 use super::monotone::Monotone;
 use crate::disc::Basis;
+use crate::elementary::cbrt;
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Start, Units};
 use crate::units::number::said;
@@ -132,8 +133,8 @@ pub fn contact_radius(
         Start::Force(value) => (Control::Force, value, "force"),
     };
     // The radii at which a paraboloid of R = 1 takes the value, with and without adhesion.
-    let elastic = if control == Control::Force { value.abs().cbrt() } else { value.abs().sqrt() };
-    let adhesive = problem.work_of_adhesion.cbrt();
+    let elastic = if control == Control::Force { cbrt(value.abs()) } else { value.abs().sqrt() };
+    let adhesive = cbrt(problem.work_of_adhesion);
     let unit = elastic.max(adhesive).max(f64::MIN_POSITIVE);
     let largest = FARTHEST * unit;
     let most = problem.largest_contact();

@@ -38,6 +38,12 @@ pub fn disc_interaction(a: f64, b: f64) -> f64 {
     let k = a / b;
     let k2 = k * k;
     let complement = (b - a) * (b + a) / (b * b);
+    let (first_kind, sum) = mean(complement);
+    8.0 / 3.0 * b * b * b * first_kind * (0.5 * k2 * (2.0 + complement) - (1.0 + k2) * sum)
+}
+
+/// K and S of a squared complementary modulus 0 < k'² ≤ 1.
+pub(super) fn mean(complement: f64) -> (f64, f64) {
     let (mut arithmetic, mut geometric) = (1.0, complement.sqrt());
     let (mut sum, mut weight) = (0.0, 1.0);
     for _ in 0..MOST_ROUNDS {
@@ -50,8 +56,7 @@ pub fn disc_interaction(a: f64, b: f64) -> f64 {
             break;
         }
     }
-    let first_kind = FRAC_PI_2 / arithmetic;
-    8.0 / 3.0 * b * b * b * first_kind * (0.5 * k2 * (2.0 + complement) - (1.0 + k2) * sum)
+    (FRAC_PI_2 / arithmetic, sum)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! With adhesion the pressure has the singularity 1/√(1 − r̃²) at the edge, which uniform rings resolve to first
 //! order in 1/N; the graded ones are even in the angle asin r̃, in which it is smooth, and reach second order.
 
+use crate::elementary::sin;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
@@ -49,7 +50,7 @@ impl Grading {
         let n = rings as f64;
         match self {
             Self::Uniform => ((0..=rings).map(|j| j as f64).collect(), n),
-            Self::Edge => ((0..=rings).map(|j| (FRAC_PI_2 * (j as f64 / n)).sin()).collect(), 1.0),
+            Self::Edge => ((0..=rings).map(|j| sin(FRAC_PI_2 * (j as f64 / n))).collect(), 1.0),
         }
     }
 
@@ -58,7 +59,7 @@ impl Grading {
         let n = rings as f64;
         match self {
             Self::Uniform => 1.0 / n,
-            Self::Edge => (FRAC_PI_2 / n).sin(),
+            Self::Edge => sin(FRAC_PI_2 / n),
         }
     }
 }

@@ -26,6 +26,7 @@ use super::outside;
 use super::parallel::{self, Progress};
 use crate::disc::sampled::Sampled;
 use crate::disc::{Basis, Evaluation, Order, Solution};
+use crate::elementary::{exp2, log2, log10};
 use crate::gap::Gap;
 use crate::problem::Reduced;
 use nalgebra::{DMatrix, DMatrixView, DVector};
@@ -337,7 +338,7 @@ impl Basis for Rings {
     ) -> Option<Arc<dyn Solution>> {
         // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
         // It reaches to a power of 2^(1/4), so that a radius has the same series however far the curve was asked for.
-        let stage = (0.25 * (4.0 * to.log2() - 1e-9).ceil()).exp2().max(to);
+        let stage = exp2(0.25 * (4.0 * log2(to) - 1e-9).ceil()).max(to);
         let range = [INWARD_REACH * from, stage.min(problem.largest_contact().max(from))];
         Some(Arc::new(Sampled::new(self, problem, range, go_on)?))
     }
@@ -372,7 +373,7 @@ impl Basis for Rings {
             (Grading::Edge, true) => 9.4 / (n * n),
             (Grading::Edge, false) => 0.37 / n,
         };
-        -error.log10()
+        -log10(error)
     }
 
     fn cautions(&self, problem: &Reduced, s: f64) -> Vec<String> {

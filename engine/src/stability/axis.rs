@@ -1,5 +1,6 @@
 //! A key of a preset over a range: an axis of a map.
 
+use crate::elementary::{ln, pow};
 use std::fmt;
 
 /// How the values of an axis are spread over it.
@@ -67,7 +68,7 @@ impl Axis {
         let [lo, hi] = self.range;
         match self.spacing {
             Spacing::Linear => lo + (hi - lo) * share,
-            Spacing::Logarithmic => lo * (hi / lo).powf(share),
+            Spacing::Logarithmic => lo * pow(hi / lo, share),
             Spacing::Share(unit) => {
                 let from = lo / (lo + unit);
                 let part = from + (1.0 - from) * share;
@@ -81,7 +82,7 @@ impl Axis {
         let [lo, hi] = self.range;
         match self.spacing {
             Spacing::Linear => (value - lo) / (hi - lo),
-            Spacing::Logarithmic => (value / lo).ln() / (hi / lo).ln(),
+            Spacing::Logarithmic => ln(value / lo) / ln(hi / lo),
             Spacing::Share(unit) => {
                 let part = |c: f64| if c.is_finite() { c / (c + unit) } else { 1.0 };
                 (part(value) - part(lo)) / (1.0 - part(lo))

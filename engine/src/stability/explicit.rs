@@ -10,6 +10,7 @@
 
 use super::family::{Family, FamilyError, Local};
 use super::law::{Edge, adhesion_of};
+use crate::elementary::hypot;
 use crate::problem::Control;
 
 /// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
@@ -254,7 +255,7 @@ fn last<T>(good: &dyn Fn(f64) -> Option<T>, mut outside: f64, mut inside: f64) -
 /// Adds the line from `a` to `b` to the last one, its points closer to each other than [`CLOSE`], with the swallowtails between
 /// them. Where it leaves the map on the way, or jumps, another line begins.
 fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, lines: &mut Vec<Line>) {
-    let apart = (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1]);
+    let apart = hypot(a.at[0] - b.at[0], a.at[1] - b.at[1]);
     if apart > CLOSE {
         let [from, to] = [a.contact_radius, b.contact_radius];
         let middle = 0.5 * (from + to);

@@ -5,6 +5,7 @@ use super::equations::{Equations, Sort};
 use super::family::{At, Family, FamilyError};
 use super::law::adhesion_of;
 use super::lines::Traced;
+use crate::elementary::hypot;
 use crate::gap::Gap;
 use crate::quasistatic::monotone::weighted;
 
@@ -281,7 +282,7 @@ impl Family {
             let changes = (0..points.len()).map(|k| {
                 let (a, b) = (points[k.saturating_sub(1)].at, points[(k + 1).min(points.len() - 1)].at);
                 let along = [b[0] - a[0], b[1] - a[1]];
-                let length = along[0].hypot(along[1]).max(f64::MIN_POSITIVE);
+                let length = hypot(along[0], along[1]).max(f64::MIN_POSITIVE);
                 let aside = |by: f64| {
                     let at = points[k].at;
                     [at[0] - by * along[1] / length, at[1] + by * along[0] / length]

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::count::{Cause, EXACTLY};
 use super::family::{Family, FamilyError};
+use crate::elementary::pow;
 use crate::preset::Preset;
 
 /// The group that is turned, and how far.
@@ -37,7 +38,7 @@ impl Onset {
         let Ok(axis) = Axis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };
         let family = Family::new(preset, vec![axis])?;
         let mut samples: Vec<f64> = (0..=SAMPLES)
-            .map(|k| 10f64.powf(-DECADES * (1.0 - f64::from(k) / f64::from(SAMPLES))))
+            .map(|k| pow(10f64, -DECADES * (1.0 - f64::from(k) / f64::from(SAMPLES))))
             .chain([0.0])
             .collect();
         for [_, share] in family.births()? {

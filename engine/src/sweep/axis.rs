@@ -2,6 +2,7 @@
 
 use super::MOST_ROWS;
 use super::document::{Entry, Section, SpecError};
+use crate::elementary::{cos, ln, pow};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::rows::parameter;
 use crate::preset::schema::rivals;
@@ -150,9 +151,7 @@ impl SweepAxis {
             }
             Points::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
             // In software: the same on every machine.
-            Points::Logarithmic { from, to, count } => {
-                Some((from * libm::pow(to / from, share(*count))).into())
-            }
+            Points::Logarithmic { from, to, count } => Some((from * pow(to / from, share(*count))).into()),
             Points::Whole { from, step, .. } => {
                 let steps = i64::try_from(index).ok()?;
                 Some(steps.checked_mul(*step).and_then(|way| from.checked_add(way))?.into())
@@ -200,11 +199,11 @@ impl Distribution {
         let [u, v] = other;
         match *self {
             Self::Uniform([a, b]) => (a + (b - a) * u).into(),
-            Self::LogUniform([a, b]) => (a * libm::pow(b / a, u)).into(),
+            Self::LogUniform([a, b]) => (a * pow(b / a, u)).into(),
             // Box and Muller's; 1 − u is never 0.
             Self::Normal { mean, deviation } => {
-                let radius = (-2.0 * libm::log(1.0 - u)).sqrt();
-                (mean + deviation * radius * libm::cos(TAU * v)).into()
+                let radius = (-2.0 * ln(1.0 - u)).sqrt();
+                (mean + deviation * radius * cos(TAU * v)).into()
             }
             Self::Integers([a, b]) => {
                 let span = (i128::from(b) - i128::from(a) + 1).unsigned_abs();

@@ -17,6 +17,7 @@
 //! hold for one connected disc; whether the gap outside stays open is not asked here.
 
 use super::quadrature::{Integral, integrate, integrate_broken};
+use crate::elementary::hypot;
 use crate::gap::Breaks;
 use std::f64::consts::{PI, TAU};
 
@@ -171,7 +172,7 @@ pub(super) fn pressed(disc: &(impl Disc + ?Sized), s: f64, r: f64) -> f64 {
     let depth = ((s - r) * (s + r)).sqrt();
     // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
     let pressed = integrate(0.0, depth, disc.wave(), |t| {
-        let a = r.hypot(t);
+        let a = hypot(r, t);
         [disc.transform(a).slope / a]
     });
     pressed.values[0]

@@ -20,6 +20,7 @@
 
 use super::disc::{Disc, Transform};
 use super::struve::struve;
+use crate::elementary::sin_cos;
 use crate::gap::Gap;
 use crate::gap::shapes::Harmonics as Waves;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
@@ -63,7 +64,7 @@ impl Disc for Harmonics {
         for wave in self.gap.waves().iter().filter(|wave| wave.amplitude != 0.0) {
             let q = TAU / wave.wavelength;
             let x = q * a;
-            let (sin, cos) = wave.phase.sin_cos();
+            let (sin, cos) = sin_cos(wave.phase);
             let (h0, h1) = struve(x);
             let (mut f, mut g) = (h0 * cos, h1 * cos);
             // A wave of phase 0 needs no Bessel functions.

@@ -11,6 +11,7 @@
 
 use super::disc::{Disc, Transform};
 use super::quadrature::Integral;
+use crate::elementary::cbrt;
 use std::f64::consts::PI;
 
 /// A smooth adhesive sphere.
@@ -45,13 +46,15 @@ impl Jkr {
 
     /// The contact radius `s_c` at pull-off under a dead load.
     pub fn pull_off_radius(&self) -> f64 {
-        (9.0 * PI * self.work_of_adhesion * self.radius_of_curvature.powi(2) / (8.0 * self.effective_modulus))
-            .cbrt()
+        cbrt(
+            9.0 * PI * self.work_of_adhesion * self.radius_of_curvature.powi(2)
+                / (8.0 * self.effective_modulus),
+        )
     }
 
     /// The contact radius `s_c/3^{2/3`} at pull-off under fixed grips, where `P = −5P_c/9`.
     pub fn fixed_grips_radius(&self) -> f64 {
-        self.pull_off_radius() / 9f64.cbrt()
+        self.pull_off_radius() / cbrt(9f64)
     }
 }
 

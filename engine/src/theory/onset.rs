@@ -10,12 +10,13 @@
 //! to leading order in λ/s: 0.3 % in A* and 1 % in γ' at s = 3.4 λ, 15 % and 40 % at the innermost crest. It is an envelope: at a
 //! given adhesion a preset snaps from 1.5 to 4 times larger amplitudes on.
 
+use crate::elementary::pow;
 use std::f64::consts::PI;
 
 /// A*/λ of the crest at the contact radius `s`, a length, for waves of length `wavelength` on a sphere of radius
 /// `radius_of_curvature`.
 pub fn amplitude_over_wavelength(wavelength: f64, radius_of_curvature: f64, s: f64) -> f64 {
-    3.0 / (4.0 * PI.powi(3)) * (wavelength / radius_of_curvature).powf(1.5) * (radius_of_curvature / s).sqrt()
+    3.0 / (4.0 * PI.powi(3)) * pow(wavelength / radius_of_curvature, 1.5) * (radius_of_curvature / s).sqrt()
 }
 
 /// γ' at which that pair is born under displacement.

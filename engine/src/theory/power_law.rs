@@ -10,6 +10,7 @@
 
 use super::disc::{Disc, Transform};
 use super::quadrature::Integral;
+use crate::elementary::pow;
 use crate::gap::shapes::PowerLaw as Gap;
 use std::f64::consts::PI;
 
@@ -50,7 +51,7 @@ impl Disc for PowerLaw {
     fn transform(&self, a: f64) -> Transform {
         let n = self.exponent;
         // aⁿ⁻¹, so that the cone keeps its slope on the axis.
-        let lowered = self.transformed * a.powf(n - 1.0);
+        let lowered = self.transformed * pow(a, n - 1.0);
         let value = a * lowered;
         Transform { value, slope: n * lowered, moment: n / (n + 1.0) * a * value, resolved: true }
     }

@@ -12,6 +12,7 @@
 
 use super::disc::{self, Disc, Transform};
 use super::quadrature::{Integral, STRETCH, integrate};
+use crate::elementary::{asin, sin};
 use crate::gap::Gap;
 use crate::gap::{breaks::Angles, breaks::Breaks, breaks::CUBIC_FREQUENCY, breaks::Stretch};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -77,10 +78,10 @@ impl Sneddon {
         let wave = self.wave().map(|wave| wave / a);
         let mut sums = Integral { values: [0.0; 3], resolved: true };
         let mut from = 0.0;
-        let knots = self.breaks().between(0.0, a).iter().map(|knot| (knot / a).asin());
+        let knots = self.breaks().between(0.0, a).iter().map(|knot| asin(knot / a));
         for to in knots.chain([FRAC_PI_2]) {
             sums += integrate(from, to, wave, |theta| {
-                let sin = theta.sin();
+                let sin = sin(theta);
                 let r = a * sin;
                 let h = self.gap.jet(r);
                 [h.first, h.first + r * h.second, h.first * sin * sin]

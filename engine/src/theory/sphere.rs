@@ -12,6 +12,7 @@
 //! doi:10.1016/0020-7225(65)90019-4; with adhesion D. Maugis, Langmuir 11, 679 (1995).
 
 use super::disc::{Disc, Transform};
+use crate::elementary::atanh;
 
 /// Where the sum gives way to the closed form: 26 terms below, one digit lost above.
 const SUM_BELOW: f64 = 0.4;
@@ -50,7 +51,7 @@ impl Disc for Sphere {
         if x >= 1.0 {
             return Transform { value: f64::NAN, slope: f64::NAN, moment: f64::NAN, resolved: true };
         }
-        let artanh = x.atanh();
+        let artanh = atanh(x);
         let moment = if x < SUM_BELOW {
             let square = x * x;
             // Horner, from the smallest term.

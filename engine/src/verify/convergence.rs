@@ -14,6 +14,7 @@ use super::cases::{smooth, sphere};
 use super::row::{Group, Row};
 use super::settings::{Settings, VerifyError};
 use crate::disc::Basis;
+use crate::elementary::{ln, pow};
 use crate::problem::Control;
 use crate::ritz::{Grading, NewtonSettings, Rings, solve};
 use crate::theory::jkr::Jkr;
@@ -105,13 +106,13 @@ fn group(study: &Study, finest: usize) -> Result<Group, VerifyError> {
         [("contact radius", radius, study.radius), ("force", force, study.force)].into_iter().enumerate()
     {
         for (rings, state) in &states {
-            let bound = law.constant * rings.powf(-law.order);
+            let bound = law.constant * pow(*rings, -law.order);
             rows.push(Row::relative(format!("{quantity}, N = {rings}"), state[k], exact, bound));
         }
         for pair in states.windows(2) {
             let [(coarse, before), (fine, after)] = pair else { continue };
             let ratio = ((before[k] - exact) / (after[k] - exact)).abs();
-            let observed = ratio.ln() / (fine / coarse).ln();
+            let observed = ln(ratio) / ln(fine / coarse);
             let what = format!("{quantity}, order N = {coarse} to {fine}");
             rows.push(Row::new(what, observed, law.order, 1.0, law.spread));
         }

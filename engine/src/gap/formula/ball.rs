@@ -15,6 +15,9 @@
 //! of its own value at the centre. Where a function is not defined on all of the disc the radius is infinite, and so it is
 //! where the numbers overflow to what is not a number. Radii are not rounded outward: they are used with a factor to spare.
 
+use crate::elementary::{
+    asin, atan, cos, cosh, exp, exp_m1, hypot, ln, ln_1p, pow, sin, sin_cos, sinh, tan, tanh,
+};
 use crate::gap::shapes::harmonics::sine_change;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -99,12 +102,12 @@ impl Ball {
         let change = if radius <= 0.0 {
             0.0
         } else if radius > size {
-            (size + radius).powf(n) - size.powf(n)
+            pow(size + radius, n) - pow(size, n)
         } else {
             // Keeps the digits of a small change.
-            size.powf(n) * (n * (radius / size).ln_1p()).exp_m1()
+            pow(size, n) * exp_m1(n * ln_1p(radius / size))
         };
-        Self::new(middle.powf(n), change)
+        Self::new(pow(middle, n), change)
     }
 
     /// xᵖ.
@@ -113,7 +116,7 @@ impl Ball {
             return if p < 0.0 { self.recip().whole_power(-p) } else { self.whole_power(p) };
         }
         let Self { middle, radius } = self;
-        let value = middle.powf(p);
+        let value = pow(middle, p);
         if radius <= 0.0 {
             return Self::number(value);
         }
@@ -122,43 +125,40 @@ impl Ball {
         if !(middle > 0.0 && (x < 1.0 || x <= 1.0 && p > 0.0)) {
             return Self::OPEN;
         }
-        let change = (p * if p > 1.0 { x.ln_1p() } else { (-x).ln_1p() }).exp_m1();
+        let change = exp_m1(p * if p > 1.0 { ln_1p(x) } else { ln_1p(-x) });
         Self::new(value, value * change.abs())
     }
 
     pub fn exp(self) -> Self {
         let Self { middle, radius } = self;
-        Self::new(middle.exp(), -(middle + radius).exp() * (-radius).exp_m1())
+        Self::new(exp(middle), -exp(middle + radius) * exp_m1(-radius))
     }
 
     pub fn sin(self) -> Self {
-        let (sin, cos) = self.middle.sin_cos();
+        let (sin, cos) = sin_cos(self.middle);
         swing(sin, cos, self.radius)
     }
 
     pub fn cos(self) -> Self {
-        let (sin, cos) = self.middle.sin_cos();
+        let (sin, cos) = sin_cos(self.middle);
         swing(cos, sin, self.radius)
     }
 
     pub fn sinh(self) -> Self {
-        swing(self.middle.sinh(), self.middle.cosh(), self.radius)
+        swing(sinh(self.middle), cosh(self.middle), self.radius)
     }
 
     pub fn cosh(self) -> Self {
-        swing(self.middle.cosh(), self.middle.sinh(), self.radius)
+        swing(cosh(self.middle), sinh(self.middle), self.radius)
     }
 
     /// tan x with 1 + tan²x.
     pub fn tan(self) -> Pair {
         let Self { middle, radius } = self;
-        let cos = middle.cos().abs();
-        let clear = cos.asin() - radius;
-        let tan = if clear > 0.0 {
-            Self::new(middle.tan(), radius.sinh() / (cos * clear.sin()))
-        } else {
-            Self::OPEN
-        };
+        let cos = cos(middle).abs();
+        let clear = asin(cos) - radius;
+        let tan =
+            if clear > 0.0 { Self::new(tan(middle), sinh(radius) / (cos * sin(clear))) } else { Self::OPEN };
         (tan, (tan * tan).shift(1.0))
     }
 
@@ -167,37 +167,36 @@ impl Ball {
         let Self { middle, radius } = self;
         let clear = middle.abs() - radius;
         let near = if radius < FRAC_PI_2 {
-            let sinh = clear.max(0.0).sinh();
-            radius.sinh() / middle.cosh() / sinh.hypot(radius.cos())
+            let inside = sinh(clear.max(0.0));
+            sinh(radius) / cosh(middle) / hypot(inside, cos(radius))
         } else {
             f64::INFINITY
         };
-        let far = if clear > 0.0 { 4.0 / (2.0 * clear).exp_m1() } else { f64::INFINITY };
+        let far = if clear > 0.0 { 4.0 / exp_m1(2.0 * clear) } else { f64::INFINITY };
         // The smaller; what is not a number is an overflow of the first.
         let change = near.min(far);
-        let tanh = middle.tanh();
-        let slope = middle.cosh().powi(-2);
+        let tanh = tanh(middle);
+        let slope = cosh(middle).powi(-2);
         (Self::new(tanh, change), Self::new(slope, change * (2.0 * tanh.abs() + change)))
     }
 
     /// ln x with 1/x.
     pub fn ln(self) -> Pair {
         let Self { middle, radius } = self;
-        let ln =
-            if middle > radius { Self::new(middle.ln(), -(-radius / middle).ln_1p()) } else { Self::OPEN };
+        let ln = if middle > radius { Self::new(ln(middle), -ln_1p(-radius / middle)) } else { Self::OPEN };
         (ln, if middle > 0.0 { self.recip() } else { Self::OPEN })
     }
 
     /// arctan x with 1/((x − i)(x + i)).
     pub fn atan(self) -> Pair {
-        let distance = self.middle.hypot(1.0);
+        let distance = hypot(self.middle, 1.0);
         if distance <= self.radius {
             return (Self::OPEN, Self::OPEN);
         }
         // 1/(x − i) and 1/(x + i) change as 1/x does at this distance from its pole.
         let change = self.radius / distance / (distance - self.radius);
         let slope = Self::new(distance.powi(-2), change * (2.0 / distance + change));
-        (self.along(self.middle.atan(), slope), slope)
+        (self.along(atan(self.middle), slope), slope)
     }
 
     /// arcsin x (`sign` 1) or arccos x (`sign` −1) from its value at the middle, with ±1/√((1 − x)(1 + x)).

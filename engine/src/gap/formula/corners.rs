@@ -19,6 +19,7 @@
 use super::bisect::{NARROW, bisect};
 use super::bound::Bound;
 use super::fold::{Switch, Zero};
+use crate::elementary::log2;
 use crate::gap::Axis;
 use crate::gap::function::MOST_BREAKS;
 
@@ -175,7 +176,7 @@ impl Bound {
         if near == 0.0 || far == 0.0 {
             return Axis::Even;
         }
-        let power = (far / near).abs().log2();
+        let power = log2((far / near).abs());
         let whole = power.round();
         if (power - whole).abs() > NEAR_WHOLE {
             return Axis::Broken;

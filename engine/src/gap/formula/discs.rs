@@ -7,6 +7,7 @@
 use super::ball::{Ball, Pair};
 use super::bound::Bound;
 use super::fold::{Step, Switch, Zero};
+use crate::elementary::{acos, asin, ln, pow};
 use crate::expression::function::{Binary, Unary};
 use crate::gap::Disc;
 use std::f64::consts::LN_10;
@@ -67,8 +68,8 @@ impl Image {
             Unary::Sin => (x.sin(), x.cos()),
             Unary::Cos => (x.cos(), -x.sin()),
             Unary::Tan => x.tan(),
-            Unary::Asin => x.arc_sine(x.middle.asin(), 1.0),
-            Unary::Acos => x.arc_sine(x.middle.acos(), -1.0),
+            Unary::Asin => x.arc_sine(asin(x.middle), 1.0),
+            Unary::Acos => x.arc_sine(acos(x.middle), -1.0),
             Unary::Atan => x.atan(),
             Unary::Sinh => (x.sinh(), x.cosh()),
             Unary::Cosh => (x.cosh(), x.sinh()),
@@ -238,8 +239,8 @@ fn run(steps: &[Step], radii: Ball, branch: Option<f64>) -> Image {
             Step::RealPower(p) => pop(&mut stack).real_power(p),
             Step::Exponential(c) => {
                 let x = pop(&mut stack);
-                let value = x.value.scale(c.ln()).exp();
-                x.chain((value, value.scale(c.ln())), c.powf(x.at))
+                let value = x.value.scale(ln(c)).exp();
+                x.chain((value, value.scale(ln(c))), pow(c, x.at))
             }
         };
         stack.push(made);
@@ -249,7 +250,7 @@ fn run(steps: &[Step], radii: Ball, branch: Option<f64>) -> Image {
 
 impl Image {
     fn real_power(self, p: f64) -> Self {
-        self.chain((self.value.power(p), self.value.power(p - 1.0).scale(p)), self.at.powf(p))
+        self.chain((self.value.power(p), self.value.power(p - 1.0).scale(p)), pow(self.at, p))
     }
 }
 

@@ -9,6 +9,7 @@
 //!
 //! Sine, cosine, exponential and root are computed on the whole block; the rest number by number.
 
+use crate::elementary::{self, acos, asin, atan, cosh, hypot, ln, log10, pow, sinh, tan, tanh};
 use crate::expression::function::{Binary, Unary};
 use std::array::from_fn;
 use std::f64::consts::LN_10;
@@ -47,7 +48,7 @@ fn sin_cos(x: Block) -> (Block, Block) {
     if small.all() {
         return (sin, cos);
     }
-    (small.select(sin, map(x, f64::sin)), small.select(cos, map(x, f64::cos)))
+    (small.select(sin, map(x, elementary::sin)), small.select(cos, map(x, elementary::cos)))
 }
 
 impl<const N: usize> Jets<N> {
@@ -115,7 +116,7 @@ impl<const N: usize> Jets<N> {
     /// xᵖ for any p.
     pub fn real_power(self, p: f64) -> Self {
         let x = self.0[0];
-        let power = |p: f64| map(x, |x| x.powf(p));
+        let power = |p: f64| map(x, |x| pow(x, p));
         let value = power(p);
         let away = self.power_above(value, power(p - 3.0), p);
         let zero = x.simd_eq(all(0.0));
@@ -138,8 +139,8 @@ impl<const N: usize> Jets<N> {
 
     /// cˣ.
     pub fn exponential(self, c: f64) -> Self {
-        let value = map(self.0[0], |x| c.powf(x));
-        self.scale(c.ln()).chain([value; 4])
+        let value = map(self.0[0], |x| pow(c, x));
+        self.scale(ln(c)).chain([value; 4])
     }
 
     /// f(x) from f and its derivatives at x.
@@ -178,33 +179,33 @@ impl<const N: usize> Jets<N> {
                 self.chain([cos, -sin, -cos, sin])
             }
             Unary::Tan => {
-                let t = map(x, f64::tan);
+                let t = map(x, tan);
                 let u = one + t * t;
                 self.chain([t, u, all(2.0) * t * u, u * (all(2.0) + all(6.0) * t * t)])
             }
-            Unary::Asin => self.arc_sine(map(x, f64::asin), 1.0),
-            Unary::Acos => self.arc_sine(map(x, f64::acos), -1.0),
+            Unary::Asin => self.arc_sine(map(x, asin), 1.0),
+            Unary::Acos => self.arc_sine(map(x, acos), -1.0),
             Unary::Atan => {
                 let u = one / (one + x * x);
                 let f2 = all(-2.0) * x * u * u;
-                self.chain([map(x, f64::atan), u, f2, all(2.0) * u * u * (all(4.0) * x * x * u - one)])
+                self.chain([map(x, atan), u, f2, all(2.0) * u * u * (all(4.0) * x * x * u - one)])
             }
             Unary::Sinh => {
-                let (sinh, cosh) = (map(x, f64::sinh), map(x, f64::cosh));
+                let (sinh, cosh) = (map(x, sinh), map(x, cosh));
                 self.chain([sinh, cosh, sinh, cosh])
             }
             Unary::Cosh => {
-                let (sinh, cosh) = (map(x, f64::sinh), map(x, f64::cosh));
+                let (sinh, cosh) = (map(x, sinh), map(x, cosh));
                 self.chain([cosh, sinh, cosh, sinh])
             }
             Unary::Tanh => {
                 // 1/cosh² and not 1 - tanh²: it keeps its digits.
-                let (t, u) = (map(x, f64::tanh), map(x, |x| x.cosh().powi(-2)));
+                let (t, u) = (map(x, tanh), map(x, |x| cosh(x).powi(-2)));
                 self.chain([t, u, all(-2.0) * t * u, u * (all(4.0) * t * t - all(2.0) * u)])
             }
             Unary::Exp => self.chain([x.exp(); 4]),
-            Unary::Log => self.logarithm(map(x, f64::ln), 1.0),
-            Unary::Log10 => self.logarithm(map(x, f64::log10), LN_10),
+            Unary::Log => self.logarithm(map(x, ln), 1.0),
+            Unary::Log10 => self.logarithm(map(x, log10), LN_10),
             Unary::Sqrt => {
                 let root = x.sqrt();
                 let f1 = all(0.5) / root;
@@ -241,7 +242,7 @@ impl<const N: usize> Jets<N> {
             Binary::Multiply => self * other,
             Binary::Divide => self.quotient(other),
             Binary::Power => {
-                let power = map_two(a, b, f64::powf);
+                let power = map_two(a, b, pow);
                 (self.unary(Unary::Log) * other).chain([power; 4])
             }
             // What is not a number stays so.
@@ -249,7 +250,7 @@ impl<const N: usize> Jets<N> {
             Binary::Max => self.or(other, a.simd_gt(b) | a.is_nan()),
             Binary::Hypot => {
                 let mut root = (self * self + other * other).unary(Unary::Sqrt);
-                root.0[0] = map_two(a, b, f64::hypot);
+                root.0[0] = map_two(a, b, hypot);
                 root
             }
         }

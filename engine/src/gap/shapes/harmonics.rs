@@ -16,6 +16,7 @@
 //! The feature length is the shortest wavelength with an amplitude. The exact solution is
 //! [`theory::harmonics`](crate::theory::harmonics).
 
+use crate::elementary::{sin_cos, sinh};
 use crate::gap::lanes::map_lanes;
 use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
 use crate::gap::{function::Form, function::Wave};
@@ -80,7 +81,7 @@ impl Harmonics {
             return Err(TooManyWaves(waves.len()));
         }
         let term = |wave: &Harmonic| {
-            let (phase_sin, phase_cos) = wave.phase.sin_cos();
+            let (phase_sin, phase_cos) = sin_cos(wave.phase);
             Term { amplitude: wave.amplitude, wavenumber: TAU / wave.wavelength, phase_sin, phase_cos }
         };
         // A wave without amplitude costs nothing.
@@ -105,7 +106,7 @@ impl Gap for Harmonics {
         let mut jet =
             Jet { value: r * r / (2.0 * radius), first: r / radius, second: 1.0 / radius, third: 0.0 };
         for &Term { amplitude, wavenumber: q, phase_sin, phase_cos } in &self.terms {
-            let (sin, cos) = (0.5 * q * r).sin_cos();
+            let (sin, cos) = sin_cos(0.5 * q * r);
             let (shifted_sin, shifted_cos) =
                 (sin * phase_cos + cos * phase_sin, cos * phase_cos - sin * phase_sin);
             let slope = amplitude * q * (sin * shifted_cos + cos * shifted_sin);
@@ -173,7 +174,7 @@ impl Gap for Harmonics {
 
     fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
         let wave = |&Term { amplitude, wavenumber: q, phase_sin, phase_cos }: &Term| {
-            let (sin, cos) = (q * centre).sin_cos();
+            let (sin, cos) = sin_cos(q * centre);
             let (shifted_sin, shifted_cos) =
                 (sin * phase_cos + cos * phase_sin, cos * phase_cos - sin * phase_sin);
             (amplitude * q).abs() * sine_change(shifted_sin, shifted_cos, q * radius)
@@ -190,8 +191,8 @@ impl Gap for Harmonics {
 /// How far the sine can be from its value on a complex disc of this radius w, by its sine and cosine at the centre x:
 /// sin (x + w) − sin x = sin x (cos w − 1) + cos x sin w.
 pub fn sine_change(sin: f64, cos: f64, radius: f64) -> f64 {
-    let half = (0.5 * radius).sinh();
-    let change = 2.0 * sin.abs() * half * half + cos.abs() * radius.sinh();
+    let half = sinh(0.5 * radius);
+    let change = 2.0 * sin.abs() * half * half + cos.abs() * sinh(radius);
     // Zero times an overflow.
     if change.is_nan() { f64::INFINITY } else { change }
 }

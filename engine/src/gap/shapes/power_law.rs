@@ -16,6 +16,7 @@
 //! The exact solution is [`theory::power_law`](crate::theory::power_law). L. A. Galin, *Contact Problems in the Theory
 //! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
 
+use crate::elementary::pow;
 use crate::gap::{Axis, Breaks, Disc, Form, Gap, Jet};
 use std::ops::RangeInclusive;
 
@@ -57,7 +58,7 @@ impl PowerLaw {
         }
         // Whole powers by multiplication: exact where the product is.
         #[expect(clippy::cast_possible_truncation, reason = "whole and at most 100")]
-        if m.fract() == 0.0 { r.powi(m as i32) } else { r.powf(m) }
+        if m.fract() == 0.0 { r.powi(m as i32) } else { pow(r, m) }
     }
 }
 
@@ -95,7 +96,7 @@ impl Gap for PowerLaw {
         if n.fract() != 0.0 && centre <= radius {
             return Some(f64::INFINITY);
         }
-        Some((n * self.factor).abs() * (centre.abs() + radius).powf(n - 1.0))
+        Some((n * self.factor).abs() * pow(centre.abs() + radius, n - 1.0))
     }
 
     fn form(&self) -> Form {
@@ -103,11 +104,7 @@ impl Gap for PowerLaw {
     }
 
     fn reference_length(&self) -> f64 {
-        if self.exponent < NEARLY_A_CONE {
-            1.0
-        } else {
-            (2.0 * self.factor).powf(-1.0 / (self.exponent - 1.0))
-        }
+        if self.exponent < NEARLY_A_CONE { 1.0 } else { pow(2.0 * self.factor, -1.0 / (self.exponent - 1.0)) }
     }
 }
 

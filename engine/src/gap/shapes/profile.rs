@@ -32,6 +32,7 @@
 //! 249, 321 (1957), doi:10.1098/rsta.1957.0002.
 
 use super::spline::{Fit, Rows, widths};
+use crate::elementary::{exp2, log2, log10, pow};
 use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
 use crate::gap::{function::Form, function::Piece};
 use crate::units::number::said;
@@ -638,7 +639,7 @@ fn largest(numbers: &[f64]) -> f64 {
 
 /// A power of two of the size of `x ≥ 0`; 1 for 0.
 fn power_of_two(x: f64) -> f64 {
-    if x > 0.0 { x.log2().round().exp2() } else { 1.0 }
+    if x > 0.0 { exp2(log2(x).round()) } else { 1.0 }
 }
 
 fn rms(values: impl Iterator<Item = f64>, weights: &[f64]) -> f64 {
@@ -706,7 +707,7 @@ fn pieces(rows: &Rows, fit: &Fit, x: &[f64], last: f64, curvature: f64) -> (Vec<
 
 /// x rounded up to two digits.
 fn two_digits_up(x: f64) -> f64 {
-    let unit = 10.0_f64.powf(x.log10().floor() - 1.0);
+    let unit = pow(10.0_f64, log10(x).floor() - 1.0);
     (x / unit).ceil() * unit
 }
 

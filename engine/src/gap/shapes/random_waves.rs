@@ -19,13 +19,14 @@
 //! so rms is the root mean square of the sum of waves over a radius long compared to `λ_long`. The numbers are drawn in
 //! the order wavenumber, phase, from the longest band to the shortest, from [`SplitMix64`] with the seed: bit for bit the
 //! same everywhere. Lengths and exponent only stretch the result, so a knob turned keeps the surface and its
-//! character. exp, ln and pow are those of the crate `libm`, in software, not of the machine's library.
+//! character.
 //!
 //! M. V. Berry and Z. V. Lewis, Proc. R. Soc. A 370, 459 (1980), doi:10.1098/rspa.1980.0044, for the sum of cosines; B.
 //! N. J. Persson et al., J. Phys.: Condens. Matter 17, R1 (2005), doi:10.1088/0953-8984/17/1/R01, for the power law.
 
 use super::harmonics::{Harmonic, Harmonics, MOST_WAVES};
 use super::split_mix::SplitMix64;
+use crate::elementary::{exp, ln};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::f64::consts::TAU;
@@ -135,16 +136,16 @@ impl RandomWaves {
 
     fn waves(&self) -> Result<Vec<Harmonic>, RandomWavesError> {
         self.check()?;
-        let band = libm::log(self.longest / self.shortest) / self.count as f64;
+        let band = ln(self.longest / self.shortest) / self.count as f64;
         // The variance falls by this factor from band to band; the first carries the unit.
         let fall = -2.0 * self.hurst * band;
-        let variance = |i: usize| libm::exp(fall * i as f64);
+        let variance = |i: usize| exp(fall * i as f64);
         let total: f64 = (0..self.count).map(variance).sum();
         let mut random = SplitMix64::new(self.seed);
         let draw = |i: usize| {
             let place = i as f64 + random.unit();
             let phase = TAU * random.unit();
-            let wavelength = self.longest * libm::exp(-band * place);
+            let wavelength = self.longest * exp(-band * place);
             let amplitude = self.rms * (2.0 * variance(i) / total).sqrt();
             Harmonic { amplitude, wavelength, phase }
         };

@@ -29,6 +29,7 @@
 //! No crate is used: those found have no condition of symmetry and no third derivative, and the ones that smooth bring
 //! general sparse matrices.
 
+use crate::elementary::pow;
 use crate::gap::Jet;
 use std::f64::consts::TAU;
 
@@ -133,7 +134,7 @@ impl<'a> Rows<'a> {
     /// The cutoff between `least` and `most` of the smallest score.
     pub fn cutoff(&self, least: f64, most: f64) -> f64 {
         let score = |place: f64| {
-            let score = self.fit(least * (most / least).powf(place)).map_or(f64::INFINITY, |fit| fit.score);
+            let score = self.fit(least * pow(most / least, place)).map_or(f64::INFINITY, |fit| fit.score);
             if score.is_nan() { f64::INFINITY } else { score }
         };
         let step = 1.0 / f64::from(TRIED);
@@ -160,7 +161,7 @@ impl<'a> Rows<'a> {
                 at_b = score(b);
             }
         }
-        least * (most / least).powf(0.5 * (from + to))
+        least * pow(most / least, 0.5 * (from + to))
     }
 
     /// The cubic from every radius to the next, as its jet at the radius.

@@ -16,6 +16,7 @@ use super::balance::Balance;
 use super::event::CycleState;
 use crate::annuli::Contacts;
 use crate::annuli::ground::gauss;
+use crate::elementary::{exp, ln, sin};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Nodes of one way, and more for each wave that an edge passes.
@@ -112,8 +113,8 @@ impl Balance<'_> {
             let (from, width) = (pair[0], pair[1] - pair[0]);
             for [x, weight] in gauss(NODES + more) {
                 let u = 0.5 * (1.0 + x);
-                let t = from + width * (FRAC_PI_2 * u).sin().powi(2);
-                let speed = 0.5 * PI * width * (PI * u).sin();
+                let t = from + width * sin(FRAC_PI_2 * u).powi(2);
+                let speed = 0.5 * PI * width * sin(PI * u);
                 let mut edges: Moving = ways.iter().map(|way| way.at(t)).collect();
                 edges.extend(vanishing.iter().map(|ring| ring.map(|edge| [edge, 0.0])));
                 if ways.is_empty() {
@@ -176,12 +177,12 @@ impl Balance<'_> {
             edges.push([[middle - 0.5 * w, -0.5], [middle + 0.5 * w, 0.5]]);
             self.rate(edges, value)
         };
-        let log = |w: f64| (32.0 * middle / w).ln();
+        let log = |w: f64| ln(32.0 * middle / w);
         let (from, to) = (log(REST * width).recip(), log(width).recip());
         let mut sum = 0.0;
         for [x, weight] in gauss(NODES) {
             let u = 0.5 * (from + to) + 0.5 * (to - from) * x;
-            let w = 32.0 * middle * (-u.recip()).exp();
+            let w = 32.0 * middle * exp(-u.recip());
             sum += 0.5 * (to - from) * weight * of(w)? * w / (u * u);
         }
         // U = K/(L + C), L = ln(32c/w): the root of −dU/dL = w dU/dw is √K/(L + C).
@@ -190,7 +191,7 @@ impl Balance<'_> {
         let adhesion = 2.0 * PI * middle * self.work_of_adhesion;
         let [near, wider] = [w, WIDER * w].map(|w| of(w).map(|rate| ((rate + adhesion) * w).max(0.0).sqrt()));
         let (near, wider) = (near?, wider?);
-        let root = WIDER.ln() / (near.recip() - wider.recip());
+        let root = ln(WIDER) / (near.recip() - wider.recip());
         Some(sum + root * near - adhesion * w)
     }
 }

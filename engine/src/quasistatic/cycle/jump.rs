@@ -12,6 +12,7 @@ use super::balance::{Balance, CONVERGED, Held, keeps_widths, moved};
 use super::error::CycleError;
 use super::event::{Passed, PassedKind};
 use crate::annuli::{Contacts, points};
+use crate::elementary::cbrt;
 use nalgebra::DVector;
 
 /// Steps of one run at most.
@@ -41,7 +42,7 @@ pub const EVEN: Mobility<'static> = &|_| 1.0;
 impl Balance<'_> {
     /// The width below which a gap closes and a contact vanishes on the way.
     pub fn narrow(&self) -> f64 {
-        let by_adhesion = (self.work_of_adhesion * self.ground.crest * self.ground.crest).cbrt();
+        let by_adhesion = cbrt(self.work_of_adhesion * self.ground.crest * self.ground.crest);
         let most = NARROW * self.ground.wave;
         if by_adhesion > 0.0 { most.min(NARROW_BY_ADHESION * by_adhesion) } else { most }
     }

@@ -11,6 +11,7 @@
 use crate::annuli::{Around, Contacts, Ground, Resolution, Wanted, points};
 use crate::continuation::{Linearization, System, Vector};
 use crate::disc::Table;
+use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
 use crate::problem::Control;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
@@ -245,8 +246,7 @@ fn least_pressure(ground: &Ground, around: &Around<'_>, held: &Held) -> Option<(
         let count = (PER_WAVE * (b - a) / ground.wave).max(FEWEST).ceil();
         for at in std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count) {
             // Dense towards the edges; a disc has one.
-            let share =
-                if a > 0.0 { (0.5 * PI * at / count).sin().powi(2) } else { (0.5 * PI * at / count).sin() };
+            let share = if a > 0.0 { sin(0.5 * PI * at / count).powi(2) } else { sin(0.5 * PI * at / count) };
             let radius = a + (b - a) * share;
             let p = around.pressure(radius);
             most = most.max(p.abs());
