@@ -5,7 +5,7 @@
 
 use crate::continuation::Branch;
 use crate::disc::table::Kept;
-use crate::disc::{Basis, Exact, Table, TableError};
+use crate::disc::{Basis, Exact, Panels, Table, TableError};
 use crate::elementary::cbrt;
 use crate::gap::function::Scaled;
 use crate::gap::panels::Refused;
@@ -163,6 +163,15 @@ impl Case {
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
         let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
         Ok(Self { problem, reduced, basis, table, control, start, end, turn, tabor, shown })
+    }
+
+    /// The table of g from the axis to the start.
+    ///
+    /// # Errors
+    /// [`CaseError::Table`], and [`CaseError::Cancelled`] when `go_on` said no.
+    pub fn panels(&self, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Panels>, CaseError> {
+        let made = self.table.up_to_while(self.start, 0, go_on);
+        made.map_err(|error| refusal(error, self.units().length, &self.shown))
     }
 
     /// The factors to the user's units.
@@ -412,15 +421,19 @@ pub(crate) fn table(
     progress: Progress<'_>,
 ) -> Result<Arc<Table>, CaseError> {
     let key = (shape.clone(), reduced.units.length.to_bits());
-    Table::shared(&TABLES, &key, &reduced.gap, reach, &mut || progress(0.0)).map_err(|error| match error {
+    Table::shared(&TABLES, &key, &reduced.gap, reach, &mut || progress(0.0))
+        .map_err(|error| refusal(error, reduced.units.length, shown))
+}
+
+fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
+    match error {
         TableError::Cancelled => CaseError::Cancelled,
         TableError::TooFine(refused) => {
-            let length = reduced.units.length;
             let (radius, largest) = (refused.radius * length, refused.largest * length);
             let error = TableError::TooFine(Refused { radius, largest, ..refused });
             CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
-    })
+    }
 }
 
 fn words_of_cycle(error: &CycleError, control: Control, shown: &UnitSystem) -> String {

@@ -40,7 +40,7 @@ from .errors import (
     StartError,
     UnstableStart,
 )
-from .results import Cycle, Fit, Map, Sweep, Table, Trace, Unloading
+from .results import Cycle, Fit, Map, Stability, Sweep, Table, Trace, Unloading
 
 __version__ = _engine.__version__
 
@@ -65,6 +65,7 @@ __all__ = [
     "Problem",
     "Quantity",
     "SpecError",
+    "Stability",
     "StartError",
     "Sweep",
     "Table",

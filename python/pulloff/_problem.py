@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._progress import Progress, told
-from .errors import DataError, MapError, NotCertified, NotConverged, NotDetermined, PresetError
-from .results import Cycle, Fit, Map, Trace, Unloading
+from .errors import ComputationError, DataError, MapError, NotCertified, NotConverged, NotDetermined, PresetError
+from .results import Cycle, Fit, Map, Stability, Trace, Unloading
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+else:
+    from ._numpy import np
 
 Value = Union[float, int, str]
 Control = Union[str, float]
@@ -224,6 +227,24 @@ class Problem:
             problem = problem.replace(given)
         with told(progress, "cycle") as tell:
             return Cycle(problem.cycle(areas, tell))
+
+    def stability(
+        self, control: Optional[Control] = None, *, samples: int = 1501, progress: Progress = None
+    ) -> Stability:
+        """The law of stability: the work of adhesion at which each state is a limit point, over the contact radius.
+
+        Parameters
+        ----------
+        control : {"displacement", "force"} or float, optional
+            As of :meth:`unload`.
+        samples : int
+            Radii of equal distance from the end of the path to its start, 2 to 1000000; cusps and corners come between them.
+        """
+        if not 2 <= samples <= 1_000_000:
+            raise ComputationError(f"samples = {samples} is out of range: it must be from 2 to 1000000")
+        problem = self._under(control)
+        with told(progress, "stability") as tell:
+            return Stability(problem.stability(int(samples), tell))
 
     def map(
         self,

@@ -6,8 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
+from ._numpy import np
 from .errors import SpecError
 
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import html
 import json
-from typing import Any, Dict, List, Mapping, Optional, Tuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple
 
 from . import _engine
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Counts = NDArray[np.int64]
-Texts = NDArray[np.object_]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Flags = NDArray[np.bool_]
+    Counts = NDArray[np.int64]
+    Texts = NDArray[np.object_]
+else:
+    from ._numpy import np
 
 # So many rows of a table are shown in a notebook.
 _SHOWN = 12
@@ -302,6 +305,45 @@ class Cycle(Result):
                 label=None if way in colors else way,
             )
             colors[way] = line.get_color()
+        ax.legend()
+        return ax
+
+
+class Stability(Result):
+    """The law of stability of one disc over the contact radius; each column has the shape (radii,), from the end of the path
+    outward. A state is stable where the work of adhesion is less than the critical one."""
+
+    kind: Texts
+    """``sample``; ``minimum`` or ``maximum``, a cusp of the law under the device, where a pair of limit points is born;
+    ``corner``, where the second derivative of the gap jumps."""
+    contact_radius: Floats
+    """A length."""
+    critical_displacement: Floats
+    """The work of adhesion at which the state is a limit point under fixed grips, an energy per area; NaN where the law is not
+    known."""
+    critical_force: Floats
+    """The same under a dead load."""
+    critical_chosen: Floats
+    """The same under the device."""
+
+    @property
+    def work_of_adhesion(self) -> float:
+        """That of the problem, an energy per area."""
+        return float(self._said()["work_of_adhesion"])
+
+    def _title(self) -> str:
+        cusps = int(np.isin(self.kind, ("minimum", "maximum")).sum())
+        return f"{len(self)} radii, {cusps} cusps"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the law with its cusps, and the adhesion of the problem, and returns the axes of matplotlib."""
+        ax = self._axes(ax)
+        ax.plot(self.contact_radius, self.critical_chosen, label="limit points; stable below")
+        cusps = np.isin(self.kind, ("minimum", "maximum"))
+        ax.plot(self.contact_radius[cusps], self.critical_chosen[cusps], ".", label="cusps")
+        ax.axhline(self.work_of_adhesion, color="gray", linewidth=0.8, label="adhesion")
+        ax.set_xlabel(self._unit("length", "contact radius s"))
+        ax.set_ylabel(self._unit("energy_per_area", "work of adhesion γ"))
         ax.legend()
         return ax
 

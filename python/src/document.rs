@@ -2,7 +2,7 @@
 
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
-use pulloff_engine::report::{self, CycleReport, MapReport, TraceReport, UnloadReport};
+use pulloff_engine::report::{self, CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -36,7 +36,7 @@ macro_rules! reports {
     };
 }
 
-reports!(TraceReport: warnings, UnloadReport: warnings, CycleReport: warnings, MapReport: notes);
+reports!(TraceReport: warnings, UnloadReport: warnings, CycleReport: warnings, MapReport: notes, StabilityReport: warnings);
 
 /// A result, immutable.
 #[pyclass(frozen, module = "pulloff._engine")]

@@ -14,7 +14,7 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::report::map::Ordinate;
-use pulloff_engine::report::{CycleReport, MapReport, TraceReport, UnloadReport};
+use pulloff_engine::report::{CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
 use pulloff_engine::text::{closest, quote};
 use pulloff_engine::units::Unit;
@@ -197,6 +197,14 @@ impl Problem {
     fn cycle(&self, py: Python<'_>, areas: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
         let areas = if areas { Areas::Yes } else { Areas::No };
         let made = long(py, progress, |go_on| CycleReport::compute(&self.preset, areas, go_on))?;
+        made.map(Document::new).map_err(|error| errors::of_case(py, &error))
+    }
+
+    /// The law of stability over the contact radius.
+    fn stability(&self, py: Python<'_>, samples: usize, progress: Option<Py<PyAny>>) -> PyResult<Document> {
+        let made = long(py, progress, |go_on| {
+            StabilityReport::compute(&self.preset, samples, &mut |share| go_on(share))
+        })?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 

@@ -89,6 +89,50 @@ def test_map(fig_9):
             fig_9.map(x, y)
 
 
+def test_stability(fig_9):
+    law = fig_9.stability(control="force", samples=500)
+    assert (np.diff(law.contact_radius) >= 0.0).all() and len(law) == 500 + (law.kind != "sample").sum()
+    assert law.contact_radius[-1] == pytest.approx(fig_9["path.start_contact_radius"]) and law.critical_force.dtype == np.float64
+    assert law.critical_chosen.tolist() == law.critical_force.tolist()
+    assert law.work_of_adhesion == fig_9["material.work_of_adhesion"]
+    # Where the waves are low, minima and maxima alternate, each beyond its neighbours.
+    low = fig_9.replace({"gap.amplitude": 2e-4}).stability(control="force", samples=500)
+    cusps = np.flatnonzero(low.kind != "sample")
+    assert len(cusps) > 8 and (low.kind[cusps[1:]] != low.kind[cusps[:-1]]).all()
+    for at in cusps:
+        beside = low.critical_chosen[[at - 1, at + 1]] - low.critical_chosen[at]
+        assert (beside > 0.0).all() if low.kind[at] == "minimum" else (beside < 0.0).all()
+    # The line of the adhesion cuts the law at the limit points.
+    exact = fig_9.replace({"basis.kind": "exact"})
+    limits = [at for at in exact.trace().to_dict()["limit_points"] if at["control"] == "force"]
+    fine = exact.stability(control="force", samples=20001)
+    signs = np.sign(fine.critical_chosen - fine.work_of_adhesion)
+    crossings = fine.contact_radius[1:][signs[1:] * signs[:-1] < 0.0]
+    assert sorted(at["contact_radius"] for at in limits) == pytest.approx(crossings.tolist(), abs=1e-4)
+    assert any("exact equation" in warning for warning in law.warnings) and fine.to_dict()["schema"] == 1
+    for samples in (1, 10_000_001):
+        with pytest.raises(pulloff.ComputationError):
+            fig_9.stability(samples=samples)
+
+
+def test_the_stability_of_the_smooth_sphere_is_that_of_jkr():
+    modulus = 1.7
+    sphere = pulloff.Problem(
+        f"[material]\neffective_modulus={modulus}\nwork_of_adhesion=0.004\n[gap]\nshape='wavy-sphere'\n"
+        "radius_of_curvature=1\namplitude=0\nwavelength=0.05\n[path]\nstart_contact_radius=0.3\n"
+    )
+    law = sphere.stability(0.4, samples=50)
+    s = law.contact_radius
+    assert set(law.kind) == {"sample"} and len(law) == 50
+    known = ~np.isnan(law.critical_displacement)
+    assert known.sum() > 40
+    fixed = (8 * modulus / np.pi * s**3)[known]
+    x = 2 * modulus * s[known] / 0.4
+    assert law.critical_displacement[known] == pytest.approx(fixed, rel=1e-9)
+    assert law.critical_force[known] == pytest.approx(fixed / 9, rel=1e-9)
+    assert law.critical_chosen[known] == pytest.approx(fixed * ((1 + x) / (1 + 3 * x)) ** 2, rel=1e-9)
+
+
 def test_a_state_of_the_smooth_sphere_is_that_of_jkr():
     gamma, s = 0.004, 0.2
     sphere = pulloff.Problem(
@@ -122,7 +166,7 @@ def test_notebook_and_optional_packages(fig_9):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     sweep = pulloff.sweep({"preset": fig_9, "axis": [{"key": "gap.amplitude", "values": [1e-3, 2e-3]}]})
-    for result in (fig_9.trace(), fig_9.unload(), pulloff.Problem("fig-9-cycle").cycle(areas=False), sweep):
+    for result in (fig_9.trace(), fig_9.unload(), pulloff.Problem("fig-9-cycle").cycle(areas=False), fig_9.stability(), sweep):
         page = result._repr_html_()
         assert page.count("<tr>") == min(len(result), 12) + 1 and "<script" not in page
         axes = result.plot()
@@ -136,5 +180,5 @@ def test_notebook_and_optional_packages(fig_9):
 
 
 def test_import_is_light():
-    code = "import sys, pulloff; print([m for m in ('pandas', 'matplotlib', 'tqdm') if m in sys.modules])"
+    code = "import sys, pulloff; print([m for m in ('numpy', 'pandas', 'matplotlib', 'tqdm') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"

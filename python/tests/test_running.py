@@ -16,6 +16,8 @@ WORK = {
     "unload": "while True: problem.unload(progress=told)",
     "cycle": "while True: loop.cycle(progress=told)",
     "map": "while True: problem.map(('gap.amplitude', 1e-3, 4e-3), ('material.work_of_adhesion', 1e-3, 1e-2), progress=told)",
+    "stability": "while True: problem.stability(progress=told)",
+    "fit": "fit()",
     "sweep": f"pulloff.sweep({MANY}, progress=told)",
     # So far out that the table takes minutes.
     "gap": "told(0.0), problem.gap(0.3, 3000.0)",
@@ -28,6 +30,12 @@ def test_ctrl_c_ends_it(name):
         import pulloff, sys
         problem, loop = pulloff.Problem("fig-9"), pulloff.Problem("fig-9-cycle")
         begun = False
+        def fit():
+            curve = pulloff.Problem("fig-9").trace()
+            points = {{"approach": curve.approach, "force": curve.force}}
+            free = ["material.work_of_adhesion", "gap.amplitude", "gap.wavelength"]
+            while True:
+                problem.replace({{"gap.amplitude": 3e-3}}).fit(points, free, bootstrap=10000, progress=told)
         def told(share):
             global begun
             assert 0.0 <= share <= 1.0

@@ -135,7 +135,8 @@ pub struct MapReport {
 }
 
 /// What is said of a preset in rings.
-const EXACT: &str = "the lines are those of the exact equation of one disc, whatever the basis of the preset";
+pub(super) const EXACT: &str =
+    "the lines are those of the exact equation of one disc, whatever the basis of the preset";
 
 /// Why there is no map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

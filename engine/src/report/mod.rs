@@ -9,6 +9,7 @@
 //! | [`unload`] | the unloading as a document |
 //! | [`cycle`] | the loop of loading and unloading as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
+//! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
@@ -26,6 +27,7 @@ pub mod map;
 pub mod overlap;
 pub mod problem;
 pub mod rows;
+pub mod stability;
 pub mod table;
 pub mod trace;
 pub mod unload;
@@ -37,6 +39,7 @@ pub use fit::FitReport;
 pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use problem::ProblemReport;
+pub use stability::StabilityReport;
 pub use trace::TraceReport;
 pub use unload::UnloadReport;
 pub use verify::VerifyReport;

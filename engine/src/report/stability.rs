@@ -1,0 +1,124 @@
+//! The law of stability over the contact radius as a document.
+
+use super::SCHEMA;
+use super::map::EXACT;
+use super::problem::ProblemReport;
+use super::rows::{RowsError, Table};
+use crate::case::{Case, CaseError};
+use crate::preset::{BasisSpec, Preset};
+use crate::problem::Control;
+use crate::stability::Law;
+use serde::Serialize;
+
+/// The work of adhesion at which a state is a limit point, an energy per area; null where the law is not known: on the
+/// innermost part of the table, which holds no limit point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CriticalReport {
+    /// Under fixed grips.
+    pub displacement: Option<f64>,
+    /// Under a dead load.
+    pub force: Option<f64>,
+    /// Under the device of the preset.
+    pub chosen: Option<f64>,
+}
+
+/// A contact radius.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RowReport {
+    /// `sample`; `minimum` or `maximum` of the law under the device of the preset, a cusp, where a pair of limit points is born;
+    /// `corner`, where h'' jumps.
+    pub kind: &'static str,
+    /// s.
+    pub contact_radius: f64,
+    /// `γ_k(s)`: a state is stable where the work of adhesion is less.
+    pub critical: CriticalReport,
+}
+
+/// The columns of the rows as CSV; they never change, new ones come behind them.
+pub const COLUMNS: &[&str] =
+    &["kind", "contact_radius", "critical_displacement", "critical_force", "critical_chosen"];
+
+/// The law of stability of one disc between the end and the start of a preset.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StabilityReport {
+    /// The version of the document.
+    pub schema: u32,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// The preset.
+    pub problem: ProblemReport,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// What is controlled.
+    pub control: Control,
+    /// The work of adhesion of the preset, that the law is held against.
+    pub work_of_adhesion: f64,
+    /// Samples of equal distance, cusps and corners, from the end outward.
+    pub rows: Vec<RowReport>,
+}
+
+impl StabilityReport {
+    /// The law of `preset` at `samples` radii of equal distance, at least 2, and at its cusps and corners.
+    ///
+    /// # Errors
+    /// [`CaseError`] when the preset cannot be made ready, or `go_on` said no.
+    pub fn compute(
+        preset: &Preset,
+        samples: usize,
+        go_on: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, go_on)?;
+        let panels = case.panels(&mut || go_on(1.0))?;
+        let units = case.units();
+        let law = |control| Law { panels: panels.clone(), control };
+        let own = law(case.control);
+        let parts = samples.max(2) - 1;
+        let radius = |k: usize| {
+            let share = k as f64 / parts as f64;
+            case.end * (1.0 - share) + case.start * share
+        };
+        let mut places: Vec<(f64, &'static str)> = (0..=parts).map(|k| (radius(k), "sample")).collect();
+        let (cusps, corners) = own.cusps([case.end, case.start]);
+        places.extend(
+            cusps.iter().map(|c| (c.contact_radius, if c.is_minimum { "minimum" } else { "maximum" })),
+        );
+        places.extend(corners.iter().map(|s| (*s, "corner")));
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let radii: Vec<f64> = places.iter().map(|place| place.0).collect();
+        let over = |control| law(control).over(&radii);
+        let [displacement, force, chosen] =
+            [over(Control::Displacement), over(Control::Force), over(case.control)];
+        let shown = |adhesion: f64| Some(adhesion * units.work_of_adhesion).filter(|x| x.is_finite());
+        let row = |(k, (s, kind)): (usize, &(f64, &'static str))| RowReport {
+            kind,
+            contact_radius: s * units.length,
+            critical: CriticalReport {
+                displacement: shown(displacement[k]),
+                force: shown(force[k]),
+                chosen: shown(chosen[k]),
+            },
+        };
+        let rows = places.iter().enumerate().map(row).collect();
+        let mut warnings = case.warnings_of_problem();
+        if preset.basis != BasisSpec::Exact {
+            warnings.push(EXACT.to_owned());
+        }
+        Ok(Self {
+            schema: SCHEMA,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, &case),
+            warnings,
+            control: preset.path.control,
+            work_of_adhesion: preset.material.work_of_adhesion,
+            rows,
+        })
+    }
+
+    /// The rows under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        Table::of(COLUMNS, &self.rows)
+    }
+}
