@@ -131,7 +131,7 @@ pub fn of_whole(text: &str, part: Shard) -> String {
 const PARTS: [(&[&str], &str); 6] = [
     (&["program_version"], "another version of pulloff"),
     (&["preset"], "another preset"),
-    (&["data"], "another measured profile"),
+    (&["data"], "other measured data"),
     (&["combine", "random"], "other rows of the same axes"),
     (&["quantities"], "other quantities"),
     (&["axis"], "other axes or values"),

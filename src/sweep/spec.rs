@@ -5,12 +5,16 @@ use crate::store::file::{self, FileError};
 use crate::store::hash::{hex, sha256};
 use crate::store::{Store, atomic, stream};
 use pulloff_engine::gap::Shape;
+use pulloff_engine::preset::data::FILE;
 use pulloff_engine::preset::{Preset, write};
 use pulloff_engine::sweep::SpecError;
 use pulloff_engine::sweep::spec::{Design, Spec};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::path::Path;
+
+/// The keys that name files of data.
+const FILES: [&str; 2] = ["gap.file", FILE];
 
 /// Why a spec cannot be had.
 #[derive(Debug, thiserror::Error)]
@@ -84,24 +88,28 @@ pub fn identity(spec: &Spec) -> String {
     sha256(canonical(spec).as_bytes())
 }
 
-/// Hashes of the measured profiles it reads, that of the preset first: their names say nothing of their content.
+/// Hashes of the measured profiles and curves it reads, that of the preset first: their names say nothing of their content.
 fn data(spec: &Spec) -> Vec<String> {
-    let named = spec.axes.iter().filter(|axis| axis.key == "gap.file").flat_map(|axis| {
+    let named = spec.axes.iter().filter(|axis| FILES.contains(&&*axis.key)).flat_map(|axis| {
         let preset = |value| {
             let mut preset = spec.preset.clone();
             preset.set(&axis.key, value).ok().map(|()| preset)
         };
         (0..axis.count().unwrap_or(0)).filter_map(|at| axis.value(at)).filter_map(preset).collect::<Vec<_>>()
     });
-    std::iter::once(spec.preset.clone()).chain(named).filter_map(|preset| digest(&preset)).collect()
+    std::iter::once(spec.preset.clone()).chain(named).flat_map(|preset| digests(&preset)).collect()
 }
 
-/// A hash of the rows of a measured profile.
-fn digest(preset: &Preset) -> Option<String> {
-    let Shape::Profile(measured) = &preset.gap else { return None };
-    let mut hash = Sha256::new();
-    for x in measured.rows().radii.iter().chain(&measured.rows().gaps) {
-        hash.update(x.to_bits().to_le_bytes());
+/// Hashes of the rows of a measured profile and of the file of a measured curve.
+fn digests(preset: &Preset) -> Vec<String> {
+    let mut digests = Vec::new();
+    if let Shape::Profile(measured) = &preset.gap {
+        let mut hash = Sha256::new();
+        for x in measured.rows().radii.iter().chain(&measured.rows().gaps) {
+            hash.update(x.to_bits().to_le_bytes());
+        }
+        digests.push(hex(hash.finalize().as_slice()));
     }
-    Some(hex(hash.finalize().as_slice()))
+    digests.extend(preset.data.source.iter().map(|source| sha256(&source.bytes)));
+    digests
 }

@@ -1,6 +1,7 @@
 //! Why a row has no result, or not all of it.
 
 use crate::case::CaseError;
+use crate::fit::FitError;
 use crate::preset::Invalid;
 use crate::text::sanitize;
 use std::any::Any;
@@ -18,7 +19,7 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 9] = [
+pub const REASONS: [&str; 10] = [
     "refused value",
     "no basis",
     "no start",
@@ -28,6 +29,7 @@ pub const REASONS: [&str; 9] = [
     "panic",
     "no loop",
     "row limit",
+    "no fit",
 ];
 
 impl Fault {
@@ -52,6 +54,18 @@ impl Fault {
             CaseError::Cancelled => REASONS[4],
         };
         Self::new(reason, &error.to_string())
+    }
+
+    /// A measured curve that cannot be fitted.
+    #[must_use]
+    pub fn of_fit(error: &FitError) -> Self {
+        Self::new(REASONS[9], &error.to_string())
+    }
+
+    /// A fit whose values are none.
+    #[must_use]
+    pub fn bad_fit(why: &str) -> Self {
+        Self::new(REASONS[9], why)
     }
 
     /// A path that stopped early.

@@ -3,7 +3,7 @@
 
 use super::fault::Fault;
 use super::quantity::{Column, Quantity, Stage};
-use super::stage::{Cell, CurveMinima, Loop, PresetValues, StartState, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Fitting, Loop, PresetValues, StartState, UnloadingPath};
 use crate::case::Case;
 use crate::preset::Preset;
 use crate::problem::Control;
@@ -29,14 +29,15 @@ struct Work<'a> {
     line: Option<Result<CurveMinima, Fault>>,
     paths: Vec<(Control, Result<UnloadingPath, Fault>)>,
     loops: Vec<(Control, Result<Loop, Fault>)>,
+    fitting: Option<Result<Fitting, Fault>>,
     go_on: &'a dyn Fn() -> bool,
 }
 
 /// The `wanted` quantities of `preset`; `go_on` is asked now and then, `None` when it said no.
 pub fn measure(preset: &Preset, wanted: &[Column], go_on: &dyn Fn() -> bool) -> Option<Measured> {
     let ground = PresetValues::new(preset);
-    let mut work =
-        Work { preset, ground, start: None, line: None, paths: Vec::new(), loops: Vec::new(), go_on };
+    let (paths, loops) = (Vec::new(), Vec::new());
+    let mut work = Work { preset, ground, start: None, line: None, paths, loops, fitting: None, go_on };
     let mut measured = Measured { cells: Vec::with_capacity(wanted.len()), fault: None };
     for column in wanted {
         let cell = work.cell(column).unwrap_or_else(|fault| {
@@ -83,6 +84,7 @@ impl Work<'_> {
                 let control = self.reduced(column.under.control(own))?;
                 self.whole(control).map(of)
             }
+            Stage::Fit(of) => self.fitting().map(of),
         }
     }
 
@@ -144,6 +146,11 @@ impl Work<'_> {
         self.loops[at].1.as_ref().map_err(Clone::clone)
     }
 
+    fn fitting(&mut self) -> Result<&Fitting, Fault> {
+        let made = self.fitting.get_or_insert_with(|| Fitting::new(self.preset, self.go_on));
+        made.as_ref().map_err(Clone::clone)
+    }
+
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {
         let pieces = self.path(control)?.unloading.pieces.clone();
         let go_on = self.go_on;
@@ -155,10 +162,10 @@ impl Work<'_> {
         Ok((whole > 0.0).then(|| Cell::Number(lost / whole)))
     }
 
-    /// A cell in the user's units: what comes of the preset alone is in them already.
+    /// A cell in the user's units: what comes of the preset alone, or of a fit, is in them already.
     fn shown(&self, cell: Cell, quantity: &Quantity) -> Cell {
         let (Cell::Number(x), Some(Ok(start)), false) =
-            (cell, &self.start, matches!(quantity.of, Stage::Preset(_)))
+            (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Fit(_)))
         else {
             return cell;
         };

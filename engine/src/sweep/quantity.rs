@@ -1,7 +1,7 @@
 //! What a sweep can compute of a problem: the table of quantities, one row each.
 
 use super::fault::Fault;
-use super::stage::{Cell, CurveMinima, Loop, PresetValues, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Fitting, Loop, PresetValues, UnloadingPath};
 use crate::problem::Control;
 use crate::text::{closest, quote};
 use crate::units::Quantity as Unit;
@@ -18,8 +18,8 @@ pub struct Quantity {
     pub(super) of: Stage,
 }
 
-/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone, and the loop, which
-/// needs the start.
+/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone, the loop, which needs
+/// the start, and the fit, which needs nothing.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stage {
     Preset(fn(&PresetValues) -> Option<Cell>),
@@ -33,6 +33,8 @@ pub(super) enum Stage {
     Passed,
     /// The whole loop of loading and unloading, by energies alone.
     Loop(fn(&Loop) -> Option<Cell>),
+    /// The fit to the measured curve of the preset.
+    Fit(fn(&Fitting) -> Option<Cell>),
 }
 
 /// Makes [`QUANTITIES`] of the table: name, symbol, unit, meaning, and from what it is computed.
@@ -89,6 +91,45 @@ quantities! {
         Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number));
     "tabor" "μ" Number "Tabor's mu, where the range of action is known":
         Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number));
+    "fitted_modulus" "E*" Stress "effective modulus that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("material.effective_modulus"));
+    "fitted_modulus_error" "" Stress "its standard error":
+        Stage::Fit(|fit| fit.error("material.effective_modulus"));
+    "fitted_adhesion" "γ" EnergyPerArea "work of adhesion that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("material.work_of_adhesion"));
+    "fitted_adhesion_error" "" EnergyPerArea "its standard error":
+        Stage::Fit(|fit| fit.error("material.work_of_adhesion"));
+    "fitted_radius" "R" Length "radius of curvature that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("gap.radius_of_curvature"));
+    "fitted_radius_error" "" Length "its standard error":
+        Stage::Fit(|fit| fit.error("gap.radius_of_curvature"));
+    "fitted_amplitude" "A" Length "amplitude that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("gap.amplitude"));
+    "fitted_amplitude_error" "" Length "its standard error":
+        Stage::Fit(|fit| fit.error("gap.amplitude"));
+    "fitted_wavelength" "λ" Length "wavelength that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("gap.wavelength"));
+    "fitted_wavelength_error" "" Length "its standard error":
+        Stage::Fit(|fit| fit.error("gap.wavelength"));
+    "fitted_stiffness" "k" ForcePerLength "stiffness of the device that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("path.control.stiffness"));
+    "fitted_stiffness_error" "" ForcePerLength "its standard error":
+        Stage::Fit(|fit| fit.error("path.control.stiffness"));
+    "fitted_offset" "δ₀" Length "offset of x that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("data.offset"));
+    "fitted_offset_error" "" Length "its standard error":
+        Stage::Fit(|fit| fit.error("data.offset"));
+    "fitted_baseline" "P₀" Force "baseline of the force that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("data.baseline"));
+    "fitted_baseline_error" "" Force "its standard error":
+        Stage::Fit(|fit| fit.error("data.baseline"));
+    "fitted_tilt" "" ForcePerLength "tilt of the baseline that the measured curve gives; none where it is not free":
+        Stage::Fit(|fit| fit.value("data.tilt"));
+    "fitted_tilt_error" "" ForcePerLength "its standard error":
+        Stage::Fit(|fit| fit.error("data.tilt"));
+    "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
+    "fit_outliers" "" Number "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
+    "fit_warnings" "" Number "warnings of the fit; pulloff fit says which": Stage::Fit(|fit| Some(fit.warnings()));
 }
 
 /// The quantities of a spec that names none.

@@ -4,6 +4,8 @@
 use super::fault::Fault;
 use crate::case::{Case, CaseError};
 use crate::disc::{ExactSolution, Solution};
+use crate::fit::least_squares::Ending;
+use crate::fit::{Fit, Fitted, Options, fit_own};
 use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
@@ -75,6 +77,50 @@ pub(super) struct UnloadingPath {
 /// The loop under one control, reduced.
 pub(super) struct Loop {
     pub(super) cycle: Cycle,
+}
+
+/// The fit of `data.free` to the measured curve of the preset, in the user's units.
+pub(super) struct Fitting {
+    fit: Fit,
+}
+
+impl Fitting {
+    /// The fit as `pulloff fit` makes it when nothing else is asked; one that did not come to its end, or whose values
+    /// the points do not determine, is a fault.
+    pub(super) fn new(preset: &Preset, go_on: &dyn Fn() -> bool) -> Result<Self, Fault> {
+        let free = preset.data.free().map(str::to_owned).collect();
+        let options = Options { free, ..Options::default() };
+        let fit = fit_own(preset, &options, &mut |_| go_on()).map_err(|error| Fault::of_fit(&error))?;
+        match &fit.direction {
+            _ if fit.ending != Ending::Converged => Err(Fault::bad_fit("it did not converge")),
+            Some(direction) => Err(Fault::bad_fit(direction)),
+            None => Ok(Self { fit }),
+        }
+    }
+
+    fn of(&self, key: &str) -> Option<&Fitted> {
+        self.fit.parameters.iter().find(|fitted| fitted.key == key)
+    }
+
+    pub(super) fn value(&self, key: &str) -> Option<Cell> {
+        self.of(key).map(|fitted| Cell::Number(fitted.value))
+    }
+
+    pub(super) fn error(&self, key: &str) -> Option<Cell> {
+        self.of(key)?.standard_error.map(Cell::Number)
+    }
+
+    pub(super) fn chi_squared(&self) -> Cell {
+        Cell::Number(self.fit.chi_squared)
+    }
+
+    pub(super) fn warnings(&self) -> Cell {
+        Cell::Count(self.fit.warnings.len())
+    }
+
+    pub(super) fn outliers(&self) -> Cell {
+        Cell::Count(self.fit.outliers)
+    }
 }
 
 impl Loop {
