@@ -23,6 +23,8 @@ const RUNS: f64 = -5.0;
 const RUNS_OF: usize = 40;
 /// Residuals below this share of the noise are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
+/// Works of adhesion that differ by less than this share are one, whatever their errors: points without noise have none.
+const DIFFERENT: f64 = 1e-3;
 /// Residuals so many times the noise of the free part, outliers apart, are more than noise.
 const LARGE_SCALE: f64 = 1.3;
 
@@ -51,7 +53,7 @@ pub fn doubts(
     let u = &solved.minimum.parameters;
     let mut unit = |what: String| doubts.push(format!("{what}: check the unit of x"));
     let radius = preset.gap.radius_of_curvature();
-    if let (Some(radius), Some(paths)) = (radius, problem.paths(u, None)) {
+    if let (Some(radius), Some(paths)) = (radius, problem.paths(u)) {
         let (widest, deepest) = extent(problem, u, &paths);
         if widest > WIDE * radius {
             unit(format!("the contact radius reaches {} R", short(widest / radius, 3)));
@@ -78,7 +80,8 @@ pub fn doubts(
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
         && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
-        && (approach.value - retraction.value).abs() > 2.0 * hypot(a, b)
+        && (approach.value - retraction.value).abs()
+            > f64::max(2.0 * hypot(a, b), DIFFERENT * retraction.value)
     {
         doubts.push(
             "the works of adhesion of approach and retraction differ by more than their errors: not a quasi-static loop, but \

@@ -3,9 +3,11 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`least_squares`] | Levenberg and Marquardt with Huber's loss |
+//! | [`way`] | the ways of a device along a curve with snaps |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
 //! | [`problem`] | parameters, data, residuals, derivatives |
+//! | `rings` | loading with rings of contact, which is left out |
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
 //! | [`pose`] | points and parameters of what is asked for |
 //! | [`start`] | where a fit starts |
@@ -28,9 +30,11 @@ pub mod options;
 pub mod path;
 pub mod pose;
 pub mod problem;
+mod rings;
 pub mod run;
 pub mod solve;
 pub mod start;
+pub mod way;
 
 pub use fitted::Fitted;
 pub use options::{FitError, Options};
@@ -38,3 +42,5 @@ pub use run::{Fit, fit, fit_own};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_waves;

@@ -80,12 +80,11 @@ pub enum FitError {
         /// How many are wanted.
         needed: usize,
     },
-    /// Loading alone, on a gap with waves.
+    /// Loading with rings of contact, in words when they begin.
     #[error(
-        "loading on a gap with waves takes another path than unloading, with rings of contact, and is not fitted: use the \
-         retraction"
+        "loading on this gap takes rings of contact, which are not fitted: {0}. Use the retraction, without --separate"
     )]
-    Loading,
+    Loading(String),
     /// No start gives a curve that comes near to the points.
     #[error(
         "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"

@@ -2,15 +2,17 @@
 //!
 //! Without snaps it is the whole equilibrium curve, its unstable part too, so that it passes smoothly through the pull-off as
 //! values change. With snaps it is the path of a quasi-static unloading, jumps included, and behind the pull-off the unstable
-//! stretch that begins there.
+//! stretch that begins there; or that of loading from the first touch.
 
+use super::way::{Leg, Seen, Way, legs};
 use crate::case;
-use crate::disc::{Basis, Exact, Solution};
+use crate::disc::{self, Basis, Exact, Local};
 use crate::elementary::hypot;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced, Units};
-use crate::quasistatic::{Curve, Detail, Losses, Sample, unload::unload_while};
+use crate::quasistatic::overlap::passed_while;
+use crate::quasistatic::{Curve, Detail, Sample};
 use std::sync::Arc;
 
 /// x, P and s.
@@ -54,6 +56,8 @@ pub struct Vertex {
 pub struct Reach {
     /// The largest x, P and s of the points; minus infinity where there are none.
     pub most: Place,
+    /// x and P where the retraction begins.
+    pub turn: [f64; 2],
     /// Where it begins, whatever the points are: of two paths beside each other the pieces are then the same.
     pub radius: Option<f64>,
     /// The length by which a gap without one of its own is reduced.
@@ -63,7 +67,7 @@ pub struct Reach {
 /// The path of one preset.
 #[derive(Debug, Clone)]
 pub struct Path {
-    solution: Arc<dyn Solution>,
+    curve: Curve,
     units: Units,
     abscissa: Abscissa,
     /// 1/k; 0 where x is no way of a spring.
@@ -74,7 +78,7 @@ pub struct Path {
     pub vertices: Vec<Vertex>,
     /// The outermost radius.
     pub outermost: f64,
-    /// The snaps before the pull-off.
+    /// The snaps on it, the first touch and the pull-off left out.
     pub snaps: usize,
     /// The smallest force.
     pub least_force: f64,
@@ -89,9 +93,9 @@ const DEEPEST: usize = 7;
 const MARGIN: f64 = 1.15;
 
 impl Path {
-    /// The path of `preset`; `None` where it has none that reaches so far.
+    /// The path of `preset` on this way; `None` where it has none that reaches so far.
     #[must_use]
-    pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach) -> Option<Self> {
+    pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach, way: Way) -> Option<Self> {
         let control = preset.path.control;
         let length = preset.gap.length().unwrap_or(reach.length);
         let reduced = preset.problem().reduced_by(length);
@@ -114,8 +118,17 @@ impl Path {
         let mut curve = Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, || true)?;
         let held = control.in_units(units.stiffness);
         curve.hold(held);
+        // A rising stretch outside a falling one, or one of either: a curve without snaps.
+        let inside = |s: f64| s > innermost && s < outermost;
+        let limits = curve.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
+        let seen = Seen {
+            x_of: &|at: &Local| x_of(at.approach, at.force, at.contact_radius),
+            most: reach.most[0],
+            turn: [reach.turn[0], reach.turn[1] / units.force],
+        };
+        let legs = if limits > 1 { legs(&mut curve, held, way, &seen) } else { Vec::new() };
         let mut path = Self {
-            solution: Arc::clone(&curve.solution),
+            curve,
             units,
             abscissa,
             compliance,
@@ -125,50 +138,42 @@ impl Path {
             snaps: 0,
             least_force: f64::INFINITY,
         };
-        // A rising stretch outside a falling one, or one of either: a curve without snaps.
-        let inside = |s: f64| s > innermost && s < outermost;
-        let limits = curve.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
-        let unloading =
-            if limits > 1 { unload_while(&curve, held, Losses::Once, || true).ok() } else { None };
-        match unloading.filter(|unloading| unloading.events.iter().any(|event| event.after.is_some())) {
-            None => path.pieces.push(Piece::Arc([outermost, innermost].map(|s| s * units.length))),
-            Some(unloading) => {
-                let mut events = unloading.events.iter();
-                for piece in &unloading.pieces {
-                    path.pieces.push(Piece::Arc(piece.map(|s| s * units.length)));
-                    let Some(event) = events.next() else { break };
-                    if let Some(after) = &event.after {
-                        let ends = [&event.before, after].map(|state| {
-                            let s = state.contact_radius;
-                            [
-                                x_of(state.approach, state.force, s),
-                                state.force * units.force,
-                                s * units.length,
-                            ]
-                        });
-                        path.pieces.push(Piece::Line(ends));
-                        path.snaps += 1;
-                    } else {
-                        // The unstable stretch behind the pull-off.
-                        let from = event.before.contact_radius;
-                        let monotone = curve.monotone(held);
-                        let to = monotone
-                            .limits
-                            .iter()
-                            .map(|limit| limit.contact_radius)
-                            .filter(|s| *s < from * (1.0 - 1e-9))
-                            .fold(innermost, f64::max);
-                        path.pieces.push(Piece::Arc([from, to].map(|s| s * units.length)));
-                    }
+        for leg in &legs {
+            let ends = |places: &[disc::Place; 2]| places.map(|place| path.curve.solution.at(place));
+            let piece = match leg {
+                Leg::Along(places) => Piece::Arc(ends(places).map(|at| at.contact_radius * units.length)),
+                Leg::Jump(places) => {
+                    path.snaps += 1;
+                    let place =
+                        |at: Local| path.place(at.contact_radius * units.length, at.approach, at.force);
+                    Piece::Line(ends(places).map(place))
                 }
-            }
+            };
+            path.pieces.push(piece);
         }
-        path.draw(&curve);
+        if legs.is_empty() {
+            path.pieces.push(Piece::Arc([outermost, innermost].map(|s| s * units.length)));
+        }
+        path.draw();
         Some(path)
     }
 
+    /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: rings of contact take
+    /// another one then.
+    #[must_use]
+    pub fn overlap(&self, to: f64) -> Option<f64> {
+        let reduced = |s: f64| s.min(to) / self.units.length;
+        let arcs = self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
+            _ => None,
+        });
+        let found = passed_while(&self.curve, &arcs.collect::<Vec<_>>(), &mut || true)?;
+        found.iter().map(|overlap| overlap.to * self.units.length).reduce(f64::min)
+    }
+
     /// The corners of the polyline.
-    fn draw(&mut self, curve: &Curve) {
+    fn draw(&mut self) {
+        let curve = &self.curve;
         let mut vertices = Vec::new();
         let ranges = [|at: &Sample| at.approach, |at: &Sample| at.force].map(|of| {
             let ends = curve
@@ -211,8 +216,9 @@ impl Path {
         add: &mut dyn FnMut(Place, f64),
     ) {
         let direction = |s: f64| {
-            let place = self.solution.place((s / self.units.length).min(self.solution.reach()))?;
-            let local = self.solution.at(place);
+            let place =
+                self.curve.solution.place((s / self.units.length).min(self.curve.solution.reach()))?;
+            let local = self.curve.solution.at(place);
             let [x, p] = [local.slopes[0] / ranges[0], local.slopes[1] / ranges[1]];
             let length = hypot(x, p);
             (length > 0.0).then_some([x / length, p / length])
@@ -242,9 +248,9 @@ impl Path {
     /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
     pub fn at(&self, s: f64) -> Option<(Place, Place)> {
         // The outermost radius may be rounded beyond what is known.
-        let reduced = (s / self.units.length).min(self.solution.reach());
-        let place = self.solution.place(reduced)?;
-        let local = self.solution.at(place);
+        let reduced = (s / self.units.length).min(self.curve.solution.reach());
+        let place = self.curve.solution.place(reduced)?;
+        let local = self.curve.solution.at(place);
         let by_radius = local.slopes.map(|slope| slope / local.stretch);
         let delta = by_radius[0];
         let force = by_radius[1] * self.units.force / self.units.length;
@@ -255,8 +261,8 @@ impl Path {
     /// δ at the contact radius `s`.
     #[must_use]
     pub fn approach(&self, s: f64) -> Option<f64> {
-        let place = self.solution.place(s / self.units.length)?;
-        Some(self.solution.at(place).approach * self.units.length)
+        let place = self.curve.solution.place(s / self.units.length)?;
+        Some(self.curve.solution.at(place).approach * self.units.length)
     }
 
     /// Where a foot is on this path.

@@ -4,6 +4,7 @@ use super::options::{FitError, Options, target};
 use super::path::Reach;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
 use crate::gap::Gap;
+use crate::measured::branches::{Point, median};
 use crate::measured::{Abscissa, Branches, Segment};
 use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
@@ -12,6 +13,8 @@ use crate::problem::Start;
 
 /// Points in contact for each free parameter, at least.
 const PER_PARAMETER: usize = 3;
+/// Rows by which the beginning of a retraction is known.
+const TURN: usize = 5;
 /// δ₀ and P₀ begin with a unit of their ranges.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
 
@@ -33,8 +36,10 @@ pub fn posed(
     if preset.basis != BasisSpec::Exact {
         notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
     }
-    let data = data(preset, branches, notes)?;
-    let mut targets = targets(preset, branches, options, &data)?;
+    let data = data(branches);
+    let has_waves = preset.gap.feature_length().is_some();
+    let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
+    let mut targets = targets(preset, branches, options)?;
     let instrument = instrument(&preset.data, branches, &mut targets, notes)?;
     let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
     let parameters: Vec<Parameter> = parameters.collect();
@@ -47,39 +52,33 @@ pub fn posed(
     let reach = reach(branches, &data);
     let sigma = branches.noise.sigma;
     let space = sigma[2] > 0.0 && abscissa != Abscissa::Radius;
-    Ok(Problem { preset: bare, abscissa, parameters, instrument, data, sigma, space, reach, counts: None })
+    Ok(Problem {
+        preset: bare,
+        abscissa,
+        parameters,
+        instrument,
+        data,
+        sigma,
+        space,
+        reach,
+        loops,
+        counts: None,
+    })
 }
 
 /// The points that are fitted.
-fn data(preset: &Preset, branches: &Branches, notes: &mut Vec<String>) -> Result<Vec<Datum>, FitError> {
-    let has_waves = preset.gap.feature_length().is_some();
+fn data(branches: &Branches) -> Vec<Datum> {
     let mut data = Vec::new();
     for branch in &branches.list {
-        let loading = branch.segment == Segment::Approach;
-        if loading && has_waves {
-            if branches.list.len() == 1 {
-                return Err(FitError::Loading);
-            }
-            notes.push(format!(
-                "the {} points of the approach are left out: on a gap with waves loading takes another path, with rings of contact",
-                branch.attached.len() + branch.free.len()
-            ));
-            continue;
-        }
         for (free, points) in [(false, &branch.attached), (true, &branch.free)] {
             data.extend(points.iter().map(|&point| Datum { point, segment: branch.segment, free }));
         }
     }
-    Ok(data)
+    data
 }
 
 /// What is free, by what is asked for.
-fn targets(
-    preset: &Preset,
-    branches: &Branches,
-    options: &Options,
-    data: &[Datum],
-) -> Result<Vec<Target>, FitError> {
+fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<Target>, FitError> {
     let mut targets: Vec<Target> = Vec::new();
     for name in &options.free {
         let target = target(preset, branches.abscissa, name)?;
@@ -94,7 +93,7 @@ fn targets(
     let Some(at) = targets.iter().position(|target| *target == Target::Key(ADHESION.to_owned())) else {
         return refused("--separate splits it, so it must be free");
     };
-    if branches.list.len() < 2 || data.iter().all(|datum| datum.segment == Segment::Retraction) {
+    if branches.list.len() < 2 {
         return refused("--separate needs both an approach and a retraction that are fitted");
     }
     targets.splice(at..=at, [Target::Adhesion(Segment::Approach), Target::Adhesion(Segment::Retraction)]);
@@ -140,7 +139,12 @@ fn reach(branches: &Branches, data: &[Datum]) -> Reach {
     let of_radius = branches.abscissa == Abscissa::Radius;
     let radius = if of_radius { most(|datum| datum.point.x) } else { most(|datum| datum.point.radius) };
     let most = [most(|datum| datum.point.x), most(|datum| datum.point.force), radius];
-    Reach { most, radius: None, length: branches.ranges[0] }
+    // The retraction, from its largest x down.
+    let last = branches.list.iter().rfind(|branch| !branch.attached.is_empty());
+    let first = last.map_or(&[][..], |branch| &branch.attached[..TURN.min(branch.attached.len())]);
+    let middle = |of: fn(&Point) -> f64| median(first.iter().map(of).collect()).unwrap_or(f64::NAN);
+    let turn = [middle(|point| point.x), middle(|point| point.force)];
+    Reach { most, turn, radius: None, length: branches.ranges[0] }
 }
 
 /// A parameter at its start.

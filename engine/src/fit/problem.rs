@@ -3,6 +3,7 @@
 use super::distance::{Nearest, Scaled};
 use super::least_squares::{Evaluated, LeastSquares};
 use super::path::{Path, Place, Reach};
+use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
@@ -112,6 +113,8 @@ pub struct Problem {
     pub space: bool,
     /// What the paths must reach.
     pub reach: Reach,
+    /// Whether approach and retraction go different ways: there are waves, and points of an approach.
+    pub loops: bool,
     /// How often each residual counts; none counts once.
     pub counts: Option<Vec<f64>>,
 }
@@ -119,19 +122,19 @@ pub struct Problem {
 /// The step of a derivative, in u.
 const STEP: f64 = 1e-5;
 
-/// The paths of the two branches, which are one unless their adhesions differ.
+/// The paths of the two branches, which are one unless their adhesions or their ways differ.
 pub struct Paths {
-    approach: Path,
-    retraction: Option<Path>,
+    retraction: Path,
+    approach: Option<Path>,
 }
 
 impl Paths {
     /// The path of a branch.
     #[must_use]
     pub fn of(&self, segment: Segment) -> &Path {
-        match (&self.retraction, segment) {
-            (Some(path), Segment::Retraction) => path,
-            _ => &self.approach,
+        match (&self.approach, segment) {
+            (Some(path), Segment::Approach) => path,
+            _ => &self.retraction,
         }
     }
 }
@@ -188,34 +191,39 @@ impl Problem {
         instrument
     }
 
-    fn path(&self, preset: &Preset, radius: Option<f64>, instrument: &Instrument) -> Option<Path> {
+    /// The path of a branch at `u`, beginning at the radius `radius` where that is given.
+    fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>) -> Option<Path> {
+        let instrument = self.instrument_at(u);
         let [x, force, s] = self.reach.most;
+        let shift = if self.abscissa == Abscissa::Radius { 0.0 } else { instrument.offset };
+        let apart = |x: f64| instrument.baseline + instrument.tilt * x;
+        let turn = self.reach.turn;
         let reach = Reach {
-            most: [x - instrument.offset, force - instrument.baseline, s],
+            most: [x - shift, force - apart(x), s],
+            turn: [turn[0] - shift, turn[1] - apart(turn[0])],
             radius: radius.or(self.reach.radius),
             ..self.reach
         };
-        Path::new(preset, self.abscissa, &reach)
+        let way = if self.loops && segment == Segment::Approach { Way::Up } else { Way::Down };
+        Path::new(&self.preset_at(u, segment)?, self.abscissa, &reach, way)
     }
 
-    /// The paths at `u`, which begin at the radius `radius` where that is given.
+    /// The paths at `u`.
     #[must_use]
-    pub fn paths(&self, u: &[f64], radius: Option<f64>) -> Option<Paths> {
-        let instrument = self.instrument_at(u);
-        let separate = self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)));
-        let of = |segment| self.path(&self.preset_at(u, segment)?, radius, &instrument);
-        let approach = of(Segment::Approach)?;
-        let retraction = if separate { Some(of(Segment::Retraction)?) } else { None };
-        Some(Paths { approach, retraction })
+    pub fn paths(&self, u: &[f64]) -> Option<Paths> {
+        self.paths_from(u, &|_| None)
     }
 
     /// The paths at `u`, each beginning where that of `paths` does.
     fn beside(&self, u: &[f64], paths: &Paths) -> Option<Paths> {
-        let instrument = self.instrument_at(u);
-        let of =
-            |segment| self.path(&self.preset_at(u, segment)?, Some(paths.of(segment).outermost), &instrument);
-        let retraction = if paths.retraction.is_some() { Some(of(Segment::Retraction)?) } else { None };
-        Some(Paths { approach: of(Segment::Approach)?, retraction })
+        self.paths_from(u, &|segment| Some(paths.of(segment).outermost))
+    }
+
+    fn paths_from(&self, u: &[f64], radius: &dyn Fn(Segment) -> Option<f64>) -> Option<Paths> {
+        let of = |segment| self.path(u, segment, radius(segment));
+        let separate = self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)));
+        let approach = if separate || self.loops { Some(of(Segment::Approach)?) } else { None };
+        Some(Paths { retraction: of(Segment::Retraction)?, approach })
     }
 
     /// A point as the model has it, in units of noise.
@@ -260,12 +268,12 @@ impl Problem {
 
 impl LeastSquares for Problem {
     fn residuals(&self, u: &[f64]) -> Option<DVector<f64>> {
-        let (paths, at) = (self.paths(u, None)?, self.instrument_at(u));
+        let (paths, at) = (self.paths(u)?, self.instrument_at(u));
         Some(self.told(&self.feet(&paths, &at)?, &at))
     }
 
     fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
-        let (paths, at) = (self.paths(u, None)?, self.instrument_at(u));
+        let (paths, at) = (self.paths(u)?, self.instrument_at(u));
         let feet = self.feet(&paths, &at)?;
         let residuals = self.told(&feet, &at);
         let (per, weights) = (self.per_point(), self.weights());

@@ -104,7 +104,14 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     let branches = source.branches(&preset.reading()).map_err(FitError::Data)?;
     // A baseline that nobody says is the median of the free part, where a fit begins.
     let problem = posed(preset, &branches, &Options::default(), &mut Vec::new())?;
-    let u: Vec<f64> = problem.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+    let at_start = |problem: &Problem| -> Vec<f64> {
+        problem.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect()
+    };
+    let problem = match problem.overlapping(&at_start(&problem)) {
+        Some(why) => problem.without_loading(why, &mut Vec::new())?,
+        None => problem,
+    };
+    let u = at_start(&problem);
     let residuals = LeastSquares::residuals(&problem, &u).ok_or(FitError::NoStart)?;
     let scale = problem.scale(&residuals);
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
@@ -132,11 +139,18 @@ pub fn fit(
         wanted = wanted && go_on(share);
         wanted
     };
-    let (u, starts) = start(&problem, options.scan, options.robust, &mut told).ok_or(FitError::NoStart)?;
     // Without a free part the residuals say how well the force is known.
     let from_residuals = branches.baseline.is_none() && options.asked.sigma[1].is_none();
     let least = from_residuals.then_some(FLOOR * branches.ranges[1]);
-    let solved = last(&mut problem, &u, options.robust, least, &mut || told(0.85))?;
+    let mut found = |problem: &mut Problem| -> Result<_, FitError> {
+        let (u, starts) = start(problem, options.scan, options.robust, &mut told).ok_or(FitError::NoStart)?;
+        Ok((starts, last(problem, &u, options.robust, least, &mut || told(0.85))?))
+    };
+    let (mut starts, mut solved) = found(&mut problem)?;
+    if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
+        problem = problem.without_loading(why, &mut notes)?;
+        (starts, solved) = found(&mut problem)?;
+    }
     if from_residuals {
         notes.push(
             "there is no free part: sigma of the force is that of the residuals, and the baseline is held"
@@ -171,7 +185,7 @@ pub fn fit(
         direction: what.direction,
         ending: if wanted { solved.minimum.ending } else { Ending::Cancelled },
         starts,
-        snaps: problem.paths(u, None).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
+        snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
         noise: Noise { sigma: problem.sigma, ..branches.noise },
         noise_from_residuals: from_residuals,
         bootstrapped,

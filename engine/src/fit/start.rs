@@ -62,7 +62,7 @@ impl Problem {
             self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
         let offsets = self.index(|t| *t == Target::Offset);
         for _ in 0..if adhesions.is_empty() || least >= 0.0 { 0 } else { TIMES } {
-            let paths = self.paths(&u, None)?;
+            let paths = self.paths(&u)?;
             let ratio = least / paths.of(Segment::Retraction).least_force;
             if !(ratio > 0.0 && ratio.is_finite()) || (ratio - 1.0).abs() < 0.01 {
                 break;
@@ -73,7 +73,7 @@ impl Problem {
             }
         }
         if let (&[j], false) = (offsets.as_slice(), self.abscissa == Abscissa::Radius) {
-            let paths = self.paths(&u, None)?;
+            let paths = self.paths(&u)?;
             let at = self.instrument_at(&u);
             let offset = |datum: &Datum| {
                 let x = paths.of(datum.segment).x_at_force(datum.point.force - at.baseline)?;
@@ -164,7 +164,7 @@ pub fn start(
             let distance = run.distance(&minimum.parameters).unwrap_or(before);
             (distance, minimum.parameters)
         });
-        let snaps = run.paths(&end.1, None).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
+        let snaps = run.paths(&end.1).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
         tried.push(Tried { distance: end.0, snaps });
         if best.as_ref().is_none_or(|best| end.0 < best.0) {
             best = Some(end);

@@ -2,16 +2,14 @@
 
 use super::least_squares::Ending;
 use super::*;
-use crate::case::Case;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::branches::Asked;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::{Preset, read};
-use crate::problem::Control;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-const E: &str = "material.effective_modulus";
-const W: &str = "material.work_of_adhesion";
+pub(super) const E: &str = "material.effective_modulus";
+pub(super) const W: &str = "material.work_of_adhesion";
 
 /// Normal numbers of one seed.
 struct Normal(SplitMix64);
@@ -99,7 +97,7 @@ fn sphere(e: f64, w: f64, r: f64) -> impl Fn(f64) -> (f64, f64) {
     }
 }
 
-fn preset(gap: &str, e: f64, w: f64, more: &str) -> Preset {
+pub(super) fn preset(gap: &str, e: f64, w: f64, more: &str) -> Preset {
     let radius = if gap.contains("e-3") { 3e-4 } else { 0.3 };
     let text = format!(
         "[material]\neffective_modulus={e}\nwork_of_adhesion={w}\n[gap]\n{gap}\n[path]\nstart_contact_radius={radius}\n{more}"
@@ -109,12 +107,12 @@ fn preset(gap: &str, e: f64, w: f64, more: &str) -> Preset {
 
 const SPHERE: &str = "shape='sphere'\nradius_of_curvature=2.0";
 
-fn run(preset: &Preset, points: &Points, free: &[&str]) -> Fit {
+pub(super) fn run(preset: &Preset, points: &Points, free: &[&str]) -> Fit {
     let free = free.iter().map(|key| (*key).to_owned()).collect();
     fit(preset, points, &Options { free, ..Options::default() }, &mut |_| true).unwrap()
 }
 
-fn close(fit: &Fit, truth: &[f64], within: f64) {
+pub(super) fn close(fit: &Fit, truth: &[f64], within: f64) {
     for (fitted, truth) in fit.parameters.iter().zip(truth) {
         let off = (fitted.value - truth).abs() / truth.abs();
         assert!(off < within, "{} {} for {truth}: {off:e}", fitted.key, fitted.value);
@@ -175,47 +173,6 @@ fn a_spring_is_part_of_the_way_and_can_be_fitted() {
     assert!(wrong.chi_squared > 3.0, "{}", wrong.chi_squared);
     assert!(wrong.warnings.iter().any(|warning| warning.contains("times the noise")), "{:?}", wrong.warnings);
     assert!(wrong.warnings.iter().any(|warning| warning.contains("does not describe this")));
-}
-
-#[test]
-fn a_wavy_sphere_is_found_through_its_snaps() {
-    let gap = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
-    let mut truth = preset(gap, 1.0, 0.004, "");
-    truth.path.start = crate::problem::Start::ContactRadius(0.6);
-    let points = unloaded(&truth, 400);
-    let fit = run(&preset(gap, 3.0, 0.0013, ""), &points, &[E, W]);
-    assert!(fit.snaps >= 2, "{}", fit.snaps);
-    close(&fit, &[1.0, 0.004], 1e-8);
-    assert_eq!(fit.starts.len(), super::start::BEST);
-    let fit = run(&preset(&gap.replace("0.0025", "0.003"), 1.2, 0.0035, ""), &points, &[E, W, "A"]);
-    close(&fit, &[1.0, 0.004, 0.0025], 1e-8);
-}
-
-/// Our own unloading of a preset under fixed grips, evenly by the approach, with a free part.
-fn unloaded(preset: &Preset, n: usize) -> Points {
-    let case = Case::new(preset).unwrap();
-    let curve = case.curve(|| true).unwrap();
-    let unloading = case.unload(&curve, Control::Displacement).unwrap();
-    let stable = |delta: f64| {
-        unloading.pieces.iter().find_map(|[outer, inner]| {
-            let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
-            let (mut lo, mut hi) = (*inner, *outer);
-            if !(state(lo).approach..=state(hi).approach).contains(&delta) {
-                return None;
-            }
-            for _ in 0..100 {
-                let middle = 0.5 * (lo + hi);
-                if state(middle).approach > delta { hi = middle } else { lo = middle }
-            }
-            Some(state(0.5 * (lo + hi)).force)
-        })
-    };
-    let (top, bottom) = (curve.samples[0].approach, unloading.min_approach.approach);
-    let bottom = bottom - 0.3 * (top - bottom);
-    let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
-    let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
-    let segments = Some(vec![Segment::Retraction; n]);
-    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments }
 }
 
 #[test]

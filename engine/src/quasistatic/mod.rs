@@ -8,6 +8,7 @@
 //! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
 //! | [`jump`] | where the edge lands when it runs at constant control |
 //! | [`descent`] | the way down at a falling control, jump by jump |
+//! | [`ascent`] | the way up at a rising control, one disc alone |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
 //! | [`cycle`] | the whole loop of loading and unloading, with rings of contact |
@@ -20,6 +21,7 @@
 //! All numbers are in reduced units.
 
 pub mod admissible;
+pub mod ascent;
 pub mod curve;
 pub mod cycle;
 pub mod descent;

@@ -1,0 +1,173 @@
+//! Known values from made loops on waves: the path of our own cycle, whose states are found here by the contact radius.
+
+use super::tests::{E, W, close, preset, run};
+use super::*;
+use crate::case::Case;
+use crate::measured::{Abscissa, Points, Segment};
+use crate::preset::Preset;
+use crate::problem::Control;
+use crate::quasistatic::cycle::{Areas, CycleState, Direction, Turn};
+
+const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
+
+#[test]
+fn a_wavy_sphere_is_found_through_its_snaps() {
+    let mut truth = preset(WAVES, 1.0, 0.004, "");
+    truth.path.start = crate::problem::Start::ContactRadius(0.6);
+    let points = unloaded(&truth, 400);
+    let fit = run(&preset(WAVES, 3.0, 0.0013, ""), &points, &[E, W]);
+    assert!(fit.snaps >= 2, "{}", fit.snaps);
+    close(&fit, &[1.0, 0.004], 1e-8);
+    assert_eq!(fit.starts.len(), super::start::BEST);
+    let fit = run(&preset(&WAVES.replace("0.0025", "0.003"), 1.2, 0.0035, ""), &points, &[E, W, "A"]);
+    close(&fit, &[1.0, 0.004, 0.0025], 1e-8);
+}
+
+/// Our own unloading of a preset under fixed grips, evenly by the approach, with a free part.
+fn unloaded(preset: &Preset, n: usize) -> Points {
+    let case = Case::new(preset).unwrap();
+    let curve = case.curve(|| true).unwrap();
+    let unloading = case.unload(&curve, Control::Displacement).unwrap();
+    let stable = |delta: f64| {
+        unloading.pieces.iter().find_map(|[outer, inner]| {
+            let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
+            let (mut lo, mut hi) = (*inner, *outer);
+            if !(state(lo).approach..=state(hi).approach).contains(&delta) {
+                return None;
+            }
+            for _ in 0..100 {
+                let middle = 0.5 * (lo + hi);
+                if state(middle).approach > delta { hi = middle } else { lo = middle }
+            }
+            Some(state(0.5 * (lo + hi)).force)
+        })
+    };
+    let (top, bottom) = (curve.samples[0].approach, unloading.min_approach.approach);
+    let bottom = bottom - 0.3 * (top - bottom);
+    let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
+    let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
+    let segments = Some(vec![Segment::Retraction; n]);
+    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments }
+}
+
+/// Our own loop of a preset up to the control value `top`, `n` samples each way, evenly by δ or by the way of the device, both from apart.
+fn looped(preset: &Preset, top: f64, n: usize) -> Points {
+    let control = preset.path.control;
+    let case = Case::new(preset).unwrap();
+    let cycle = case.cycle(control, Some(Turn::Control(top)), Areas::No, &|_| true).unwrap();
+    assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
+    let radii = |same: &[CycleState]| {
+        let of = same.iter().map(|state| state.contact_radius);
+        of.fold([f64::INFINITY, 0.0], |[lo, hi], s| [lo.min(s), f64::max(hi, s)])
+    };
+    let pieces: Vec<(Direction, [f64; 2])> = cycle
+        .states
+        .chunk_by(|a, b| (a.direction, a.piece) == (b.direction, b.piece))
+        .map(|same| (same[0].direction, radii(same)))
+        .collect();
+    let state = |s: f64| {
+        let at = case.basis.equilibrium(&case.reduced, s).unwrap();
+        (control.value(at.approach, at.force), at.force)
+    };
+    let stable = |value: f64, direction: Direction| {
+        let of = pieces.iter().filter(|piece| piece.0 == direction).find_map(|(_, [lo, hi])| {
+            let (mut lo, mut hi) = (*lo, *hi);
+            if !(state(lo).0..=state(hi).0).contains(&value) {
+                return None;
+            }
+            for _ in 0..100 {
+                let middle = 0.5 * (lo + hi);
+                if state(middle).0 > value { hi = middle } else { lo = middle }
+            }
+            Some(state(0.5 * (lo + hi)).1)
+        });
+        of.unwrap_or(0.0)
+    };
+    let bottom = cycle.events.iter().map(|event| event.control_value).fold(0.0, f64::min) - 0.3 * top;
+    let mut points = Points {
+        abscissa: if let Control::Stiffness(_) = control { Abscissa::Position } else { Abscissa::Approach },
+        x: Vec::new(),
+        force: Vec::new(),
+        radius: None,
+        steps: [1e-30; 3],
+        segments: Some(Vec::new()),
+    };
+    for (segment, direction) in
+        [(Segment::Approach, Direction::Loading), (Segment::Retraction, Direction::Unloading)]
+    {
+        for i in 0..n {
+            let value = bottom + (i as f64 + 0.5) / n as f64 * (top - bottom);
+            points.x.push(value);
+            points.force.push(stable(value, direction));
+            points.segments.as_mut().unwrap().push(segment);
+        }
+    }
+    points
+}
+
+#[test]
+fn a_loop_on_waves_is_found_by_its_own_ways_up_and_back() {
+    let points = looped(&preset(WAVES, 1.0, 0.004, ""), 0.09, 300);
+    let found = run(&preset(WAVES, 3.0, 0.0013, ""), &points, &[E, W]);
+    assert!(found.points[0] > 350 && found.snaps >= 3, "{:?} {}", found.points, found.snaps);
+    close(&found, &[1.0, 0.004], 1e-8);
+    assert!(found.residuals.iter().any(|at| !at.datum.free && at.datum.segment == Segment::Approach));
+    // The approach alone; each branch with a work of adhesion of its own.
+    let asked = crate::measured::Asked { segment: Some(Segment::Approach), ..Default::default() };
+    let free = vec![E.to_owned(), W.to_owned()];
+    let alone = Options { free: free.clone(), asked, ..Options::default() };
+    close(&fit(&preset(WAVES, 0.4, 0.01, ""), &points, &alone, &mut |_| true).unwrap(), &[1.0, 0.004], 1e-8);
+    let apart = Options { free, separate: true, ..Options::default() };
+    let found = fit(&preset(WAVES, 3.0, 0.0013, ""), &points, &apart, &mut |_| true).unwrap();
+    close(&found, &[1.0, 0.004, 0.004], 1e-8);
+    assert!(found.warnings.iter().all(|warning| !warning.contains("quasi-static")));
+}
+
+#[test]
+fn a_loop_on_waves_under_a_spring_is_found() {
+    let spring = |k: f64| format!("control={{stiffness={k}}}");
+    let points = looped(&preset(WAVES, 1.0, 0.004, &spring(1.5)), 0.09, 300);
+    let found = run(&preset(WAVES, 3.0, 0.0013, &spring(1.5)), &points, &[E, W]);
+    assert!(found.snaps >= 2, "{}", found.snaps);
+    close(&found, &[1.0, 0.004], 1e-8);
+}
+
+#[test]
+fn loading_with_rings_of_contact_is_left_out_and_told() {
+    let truth = preset(WAVES, 1.0, 1e-4, "");
+    let case = Case::new(&truth).unwrap();
+    let turn = Some(Turn::Approach(0.105));
+    let cycle = case.cycle(Control::Displacement, turn, Areas::No, &|_| true).unwrap();
+    assert!(cycle.states.iter().any(|state| state.contacts.len() > 1));
+    let mut points = Points {
+        abscissa: Abscissa::Approach,
+        x: Vec::new(),
+        force: Vec::new(),
+        radius: None,
+        steps: [1e-30; 3],
+        segments: Some(Vec::new()),
+    };
+    let mut add = |x: f64, force: f64, segment: Segment| {
+        points.x.push(x);
+        points.force.push(force);
+        points.segments.as_mut().unwrap().push(segment);
+    };
+    (1..40).rev().for_each(|i| add(-0.001 * f64::from(i), 0.0, Segment::Approach));
+    for state in &cycle.states {
+        let is_loading = state.direction == Direction::Loading;
+        let segment = if is_loading { Segment::Approach } else { Segment::Retraction };
+        add(state.approach, state.force, segment);
+    }
+    (9..40).for_each(|i| add(-0.001 * f64::from(i), 0.0, Segment::Retraction));
+    let found = run(&preset(WAVES, 1.4, 0.7e-4, ""), &points, &[E, W]);
+    assert!(
+        found.notes.iter().any(|note| note.contains("rings of contact are not fitted")),
+        "{:?}",
+        found.notes
+    );
+    close(&found, &[1.0, 1e-4], 1e-6);
+    let asked = crate::measured::Asked { segment: Some(Segment::Approach), ..Default::default() };
+    let options = Options { free: vec![E.to_owned()], asked, scan: false, ..Options::default() };
+    let refused = fit(&truth, &points, &options, &mut |_| true).unwrap_err().to_string();
+    assert!(refused.contains("rings of contact") && refused.contains("a crest outside touches"), "{refused}");
+}

@@ -1,0 +1,127 @@
+//! The ways of a device along a curve with snaps, leg by leg: up from the first touch, or down from where it turned round.
+
+use crate::disc::{Local, Place};
+use crate::problem::Control;
+use crate::quasistatic::Curve;
+use crate::quasistatic::ascent::{Rise, ascend};
+use crate::quasistatic::descent::{descend, stable_start};
+use crate::quasistatic::jump::Landing;
+
+/// Which way the device goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Up from the first touch until the points are reached.
+    Up,
+    /// Down from the state in which the points begin: at one way of the device there are several.
+    Down,
+}
+
+/// What the points say of a way.
+pub struct Seen<'a> {
+    /// x of a state.
+    pub x_of: &'a dyn Fn(&Local) -> f64,
+    /// The largest x.
+    pub most: f64,
+    /// x and the reduced force where the way down begins.
+    pub turn: [f64; 2],
+}
+
+/// A part of a way, by its ends, the outer first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Leg {
+    /// Along equilibria.
+    Along([Place; 2]),
+    /// A jump between them.
+    Jump([Place; 2]),
+}
+
+/// A curve that does not reach far enough is made longer by this factor, so often.
+const LONGER: f64 = 1.1;
+const TIMES: usize = 8;
+
+/// The legs of the way under `control`, running inward. `curve` is made longer where its end is not stable. Empty where there is no
+/// such way.
+///
+/// With the stable legs comes the unstable stretch at the end that is nearer to the axis: so a point just beyond a pull-off or a first
+/// touch has a curve on both sides.
+pub fn legs(curve: &mut Curve, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
+    for _ in 0..TIMES {
+        let found = match way {
+            Way::Up => up(curve, control, seen),
+            Way::Down => {
+                let outermost =
+                    || stable_start(&*curve.solution, &curve.monotone(control), curve.solution.reach());
+                turned(curve, control, seen).or_else(outermost).map(|start| down(curve, control, start))
+            }
+        };
+        if let Some(found) = found {
+            return found;
+        }
+        if !curve.reach(LONGER * curve.solution.reach()) {
+            break;
+        }
+    }
+    Vec::new()
+}
+
+/// The outer end of the stable stretch on which the points begin: of those with a state at their x that whose force is nearest.
+fn turned(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Landing> {
+    const HALVINGS: usize = 50;
+    let [x, force] = seen.turn;
+    let solution = &*curve.solution;
+    let mut best: Option<(f64, Landing)> = None;
+    for (number, stretch) in curve.monotone(control).stretches.iter().enumerate() {
+        let ends = [stretch.inner, stretch.outer].map(|place| (seen.x_of)(&solution.at(place)));
+        if !(stretch.rising && (ends[0]..=ends[1]).contains(&x)) {
+            continue;
+        }
+        let [mut lo, mut hi] = stretch.radii;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (lo + hi);
+            if (seen.x_of)(&solution.at(solution.place(middle)?)) > x { hi = middle } else { lo = middle }
+        }
+        let off = (solution.at(solution.place(lo)?).force - force).abs();
+        if best.is_none_or(|best| off < best.0) {
+            best = Some((off, Landing { place: stretch.outer, stretch: number }));
+        }
+    }
+    best.map(|(_, landing)| landing)
+}
+
+/// The way up, where it goes far enough.
+fn up(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
+    let enough = |at: &Local| (seen.x_of)(at) >= seen.most;
+    let rises = ascend(&*curve.solution, &curve.monotone(control), 0.0, &enough);
+    rises.last().filter(|last| enough(&curve.solution.at(last.end)))?;
+    let stretches = &curve.monotone(control).stretches;
+    let mut legs = Vec::new();
+    for (i, Rise { landing, end }) in rises.iter().enumerate().rev() {
+        if let Some(before) = i.checked_sub(1).and_then(|before| rises.get(before)) {
+            legs.push(Leg::Along([*end, landing.place]));
+            legs.push(Leg::Jump([landing.place, before.end]));
+        } else {
+            legs.push(Leg::Along([*end, stretches[landing.stretch].inner]));
+            let unstable = landing.stretch.checked_sub(1).map(|inner| stretches[inner]);
+            legs.extend(unstable.map(|stretch| Leg::Along([stretch.outer, stretch.inner])));
+        }
+    }
+    Some(legs)
+}
+
+fn down(curve: &Curve, control: Control, from: Landing) -> Vec<Leg> {
+    let stretches = &curve.monotone(control).stretches;
+    let descent = descend(&*curve.solution, &curve.monotone(control), from, curve.innermost());
+    let mut legs = Vec::new();
+    for (i, piece) in descent.pieces.iter().enumerate() {
+        legs.push(Leg::Along(*piece));
+        match descent.jumps.get(i) {
+            Some(jump) => match (jump.landing, jump.stretch.checked_sub(1)) {
+                (Some(landing), _) => legs.push(Leg::Jump([jump.before, landing.place])),
+                (None, Some(inner)) => legs.push(Leg::Along([jump.before, stretches[inner].inner])),
+                (None, None) => {}
+            },
+            None => break,
+        }
+    }
+    legs
+}
