@@ -125,7 +125,7 @@ fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> Str
 fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
     let (before, after) = (parameter.value(u), parameter.value(u + by));
     if parameter.scale.is_none() {
-        let percent = 100.0 * (after / before - 1.0);
+        let percent = 100.0 * by.exp_m1();
         let digits = usize::from(percent.abs() < 9.95);
         return format!("{percent:+.digits$} %").replace('-', "−");
     }

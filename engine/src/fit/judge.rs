@@ -6,6 +6,7 @@ use super::problem::{ADHESION, Problem, Target};
 use super::solve::{Solved, solve};
 use crate::elementary::{exp_m1, hypot};
 use crate::measured::Segment;
+use crate::measured::branches::median;
 use crate::preset::{Preset, Value};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups};
@@ -25,8 +26,10 @@ const RUNS_OF: usize = 40;
 const ROUNDING: f64 = 0.1;
 /// Works of adhesion that differ by less than this share are one, whatever their errors: points without noise have none.
 const DIFFERENT: f64 = 1e-3;
-/// Residuals so many times the noise of the free part, outliers apart, are more than noise.
+/// Residuals so many times the noise of the free part, outliers apart, are more than noise; and how much more where that noise is known
+/// from few points, times 1/√n: three of its deviations.
 const LARGE_SCALE: f64 = 1.3;
+const OF_FEW: f64 = 3.5;
 
 /// The deviation of the number of runs of signs from that of chance, in its own; A. Wald and J. Wolfowitz, Ann. Math. Stat. 11,
 /// 147 (1940).
@@ -90,28 +93,65 @@ pub fn doubts(
         );
     }
     if solved.scale > ROUNDING {
-        let per = problem.per_point();
-        for segment in [Segment::Approach, Segment::Retraction] {
-            let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(per));
-            let of: Vec<f64> =
-                of.filter(|(datum, _)| !datum.free && datum.segment == segment).map(|(_, r)| *r).collect();
-            let runs = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
-            if runs < RUNS {
-                doubts.push(format!(
-                    "the model does not describe this: the residuals of the {} keep their sign for long runs ({} standard \
-                     deviations fewer than by chance)",
-                    segment.name(),
-                    short(-runs, 2)
-                ));
-            }
-        }
+        doubts.extend(of_runs(problem, solved));
     }
-    if known_noise && solved.scale > LARGE_SCALE {
+    let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
+    if known_noise && solved.scale > LARGE_SCALE + OF_FEW / free.sqrt() {
         doubts.push(format!(
             "the residuals are {} times the noise of the points: a value that is held may be wrong (the stiffness of the \
              device above all), or the model",
             short(solved.scale, 2)
         ));
+    }
+    doubts
+}
+
+/// Residuals that keep their sign: of the points in contact, and of those apart.
+fn of_runs(problem: &Problem, solved: &Solved) -> Vec<String> {
+    let per = problem.per_point();
+    let mut doubts = Vec::new();
+    let mut signs = Vec::new();
+    for (segment, free) in [
+        (Segment::Approach, false),
+        (Segment::Retraction, false),
+        (Segment::Approach, true),
+        (Segment::Retraction, true),
+    ] {
+        let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(per));
+        let of = of.filter(|(datum, _)| datum.free == free && datum.segment == segment);
+        let of: Vec<f64> = of.map(|(_, r)| *r).collect();
+        let runs = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
+        if runs >= RUNS {
+            continue;
+        }
+        let fewer = if runs.is_finite() {
+            format!(
+                "keep their sign for long runs ({} standard deviations fewer than by chance)",
+                short(-runs, 2)
+            )
+        } else {
+            "have all one sign".to_owned()
+        };
+        let name = segment.name();
+        if free {
+            doubts.push(format!(
+                "the force is no constant where the bodies are apart: the residuals of the {name} {fewer} there. It drifts, or \
+                 has a tilt: free data.tilt"
+            ));
+        } else {
+            signs.push(median(of).is_some_and(|middle| middle > 0.0));
+            doubts.push(format!("the model does not describe this: the residuals of the {name} {fewer}"));
+        }
+    }
+    let one = problem.parameters.iter().any(|p| p.target == Target::Key(ADHESION.to_owned()));
+    if let ([a, b], true) = (signs.as_slice(), one)
+        && a != b
+    {
+        doubts.push(
+            "approach and retraction lie on different sides of the curve: they may differ in their works of adhesion, which \
+             --separate work_of_adhesion tells"
+                .to_owned(),
+        );
     }
     doubts
 }

@@ -7,6 +7,7 @@ use super::least_squares::LeastSquares;
 use super::problem::{ADHESION, Datum, Problem, Target};
 use super::solve::{Solved, solve};
 use crate::elementary::ln;
+use crate::gap::Gap;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 
@@ -20,6 +21,11 @@ const MOST: usize = 400;
 /// Points by which candidates are compared, and those on which the best are run.
 const COMPARED: usize = 60;
 const RUN: usize = 240;
+/// On waves a candidate is judged by where a few rounds lead it: so many of the best, not farther off than so many times the nearest,
+/// and so many rounds.
+const POOL: usize = 12;
+const NEAR: f64 = 3.0;
+const FEW_ROUNDS: usize = 4;
 /// How many of the best are run, and for how many rounds.
 pub const BEST: usize = 5;
 const ROUNDS: usize = 40;
@@ -152,8 +158,24 @@ pub fn start(
             ranked.extend(compared.distance(&u).map(|distance| (distance, u)));
         }
     }
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ranked.truncate(BEST);
+    let by_distance = |ranked: &mut Vec<(f64, Vec<f64>)>, most: usize| {
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked.truncate(most);
+    };
+    if scan && problem.preset.gap.feature_length().is_some() {
+        by_distance(&mut ranked, POOL);
+        let nearest = ranked.first().map_or(0.0, |(distance, _)| *distance);
+        for (distance, u) in ranked.iter_mut().filter(|(distance, _)| *distance <= NEAR * nearest) {
+            let led =
+                solve(&compared, u, robust, FEW_ROUNDS, &mut || go_on(0.5)).map(|led| led.minimum.parameters);
+            if let Some((closer, led)) = led.and_then(|led| Some((compared.distance(&led)?, led)))
+                && closer < *distance
+            {
+                (*distance, *u) = (closer, led);
+            }
+        }
+    }
+    by_distance(&mut ranked, BEST);
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut tried = Vec::new();
     let count = ranked.len() as f64;

@@ -11,19 +11,15 @@
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
+pub use super::noise::FLOOR;
+pub(crate) use super::noise::median;
+use super::noise::{BEYOND, END_ROWS, END_SHARE, noise_of, range, scatter_over, tenth};
+pub use super::points::Point;
 use super::points::{Abscissa, Points};
 use super::role::Segment;
+use super::signs::{free_end, signs};
 use thiserror::Error;
 
-/// The least noise, as a share of the range: a distance to a curve needs both axes.
-pub const FLOOR: f64 = 1e-4;
-/// Deviations of the free part beyond so many σ belong to the contact.
-const BEYOND: f64 = 6.0;
-/// The share of the rows, and the fewest, by which the ends are judged.
-const END_SHARE: usize = 40;
-const END_ROWS: usize = 5;
-/// A free end varies by less than this share of the range, and of the other end.
-const FLAT: [f64; 2] = [0.1, 0.3];
 /// Steps of x from row to row beyond this share of its range, in the median, are no order.
 const UNORDERED: f64 = 0.1;
 /// Branches with fewer rows are none.
@@ -56,19 +52,6 @@ pub struct Asked {
     pub force: Option<Span>,
     /// σ of x, P and s, where they are known.
     pub sigma: [Option<f64>; 3],
-}
-
-/// One point, its signs put right.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
-    /// x.
-    pub x: f64,
-    /// P.
-    pub force: f64,
-    /// s, where it is measured beside x; not a number elsewhere.
-    pub radius: f64,
-    /// The row of the file, from 1, header not counted.
-    pub row: usize,
 }
 
 /// One branch, from the contact to the free end.
@@ -167,7 +150,10 @@ impl Points {
             .collect();
         let mut notes = Vec::new();
         let of_radius = self.abscissa == Abscissa::Radius;
-        let turned = signs(&mut points, self.abscissa, self.segments.as_deref(), &mut notes)?;
+        let segments = self.segments.as_deref();
+        let is_in_order = disorder(&points, segments) <= UNORDERED;
+        let turned = signs(&mut points, self.abscissa, segments, is_in_order, &mut notes)
+            .ok_or(BranchError::Swapped)?;
         // Of radii, which are zero while apart, none are turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let parts = self.parts(points, ordered, &mut notes)?;
@@ -195,7 +181,10 @@ impl Points {
             range(used.iter().map(|p| p.force)),
             range(used.iter().map(|p| p.radius)),
         ];
-        let noise = noise(&list, asked, self.steps, ranges);
+        let noise = noise(&list, asked, self.steps, ranges, of_radius);
+        for (branch, _) in &mut list {
+            branch.clears_jump(&noise);
+        }
         let free: Vec<f64> =
             list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
         let baseline = median(free);
@@ -251,11 +240,26 @@ impl Points {
     }
 }
 
+/// The median step of x from row to row of a branch, as a share of its range; 0 of few rows.
+fn disorder(points: &[Point], segments: Option<&[Segment]>) -> f64 {
+    let whole = range(points.iter().map(|point| point.x));
+    let branch = |point: &Point| segments.map(|of| of[point.row - 1]);
+    let mut last: [Option<f64>; 3] = [None; 3];
+    let mut steps = Vec::new();
+    for point in points {
+        let slot = match branch(point) {
+            None => 0,
+            Some(Segment::Approach) => 1,
+            Some(_) => 2,
+        };
+        steps.extend(last[slot].replace(point.x).map(|before| (point.x - before).abs() / whole));
+    }
+    if steps.len() < 20 { 0.0 } else { median(steps).unwrap_or(0.0) }
+}
+
 /// Refuses points whose x has no order, unless nothing depends on it.
 fn in_order(points: &[Point], indifferent: bool) -> Result<(), BranchError> {
-    let whole = range(points.iter().map(|point| point.x));
-    let steps: Vec<f64> = points.windows(2).map(|pair| (pair[1].x - pair[0].x).abs() / whole).collect();
-    let share = if steps.len() < 20 { 0.0 } else { median(steps).unwrap_or(0.0) };
+    let share = disorder(points, None);
     if share > UNORDERED && !indifferent {
         Err(BranchError::Unordered { share: 100.0 * share })
     } else {
@@ -263,136 +267,27 @@ fn in_order(points: &[Point], indifferent: bool) -> Result<(), BranchError> {
     }
 }
 
-/// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
-fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
-    let mut order: Vec<usize> = (0..x.len()).collect();
-    order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(y[a].total_cmp(&y[b])));
-    let spread = |ends: &[usize]| {
-        let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
-        y.sort_by(f64::total_cmp);
-        let tenth = y.len() / 10;
-        y[y.len() - 1 - tenth] - y[tenth]
-    };
-    let whole = range(y.iter().copied());
-    let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
-    // Over many rows noise is told from a slope, over few a short free part from the contact.
-    for share in [END_SHARE / 4, END_SHARE] {
-        let count = (x.len() / share).max(END_ROWS).min(x.len());
-        let (low, high) = (spread(&order[..count]), spread(&order[order.len() - count..]));
-        let found = [flat(low, high), flat(high, low)];
-        if found != [false; 2] {
-            return found;
+impl Branch {
+    /// Drops the rows around the jump that the noise of x has put on its other side.
+    fn clears_jump(&mut self, noise: &Noise) {
+        /// Rows within so many σ of x from the jump may be on either side.
+        const NEAR: f64 = 5.0;
+        let [Some(last), Some(first)] = [self.attached.last(), self.free.first()] else { return };
+        let ends = [first.x - NEAR * noise.sigma[0], last.x + NEAR * noise.sigma[0]];
+        let line = Line::of(&self.free);
+        let limit = BEYOND * noise.sigma[1];
+        let pulled = |point: &Point| point.force < line.at(point.x) - limit;
+        let near = |point: &Point| (ends[0]..=ends[1]).contains(&point.x);
+        // Without a jump there is nothing that was mixed.
+        let attached: Vec<&Point> = self.attached.iter().filter(|point| near(point)).collect();
+        if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
+            return;
         }
+        let before = self.attached.len() + self.free.len();
+        self.attached.retain(|point| !near(point) || pulled(point));
+        self.free.retain(|point| !near(point) || !pulled(point));
+        self.dropped += before - self.attached.len() - self.free.len();
     }
-    [false; 2]
-}
-
-/// Turns the signs where the free end and the rise in contact say so; whether x and P were turned.
-fn signs(
-    points: &mut [Point],
-    abscissa: Abscissa,
-    segments: Option<&[Segment]>,
-    notes: &mut Vec<String>,
-) -> Result<[bool; 2], BranchError> {
-    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
-    let force: Vec<f64> = points.iter().map(|point| point.force).collect();
-    let mut turned = [false; 2];
-    if abscissa != Abscissa::Radius {
-        if stands_still(&x, &force) {
-            return Err(BranchError::Swapped);
-        }
-        match free_end(&x, &force) {
-            [true, _] => {}
-            [_, true] => turned[0] = true,
-            _ => {
-                // Without a free end the sense of a way is a matter of the instrument, that of a force is not.
-                turned[0] = abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
-                notes.push("there is no free part: the signs are taken as they are in the file".to_owned());
-            }
-        }
-        if turned[0] {
-            for point in &mut *points {
-                point.x = -point.x;
-            }
-            notes.push(format!("the {} grows as the bodies go apart: its sign is turned", abscissa.name()));
-        }
-    }
-    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
-    let (compression, words) = match pulls(points, segments) {
-        Some(pulls) => (pulls, "the force is positive before the jump to the free part, where bodies pull"),
-        None => (rises(&x, &force) != Some(false), "the force falls as the bodies are pressed together"),
-    };
-    if !compression {
-        turned[1] = true;
-        for point in points {
-            point.force = -point.force;
-        }
-        notes.push(format!("{words}: its sign is turned"));
-    }
-    Ok(turned)
-}
-
-/// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
-/// a free part, or where the jump is so small that the rise in contact says more.
-fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
-    /// A jump is trusted from this share of the largest force.
-    const LARGE: f64 = 0.3;
-    /// Rows behind the jump whose median is taken.
-    const ROWS: usize = 3;
-    let groups: Vec<Vec<Point>> = match segments {
-        None => vec![points.to_vec()],
-        Some(of) => [Segment::Approach, Segment::Retraction]
-            .map(|segment| points.iter().filter(|point| of[point.row - 1] == segment).copied().collect())
-            .to_vec(),
-    };
-    let mut found: Option<f64> = None;
-    for mut group in groups {
-        group.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
-        let (x, force): (Vec<f64>, Vec<f64>) = group.iter().map(|point| (point.x, point.force)).unzip();
-        if group.len() < 2 * END_ROWS || !free_end(&x, &force)[0] {
-            continue;
-        }
-        let end = &force[force.len() - (force.len() / END_SHARE).max(END_ROWS)..];
-        let limit = BEYOND * noise_of(&force).max(FLOOR * range(force.iter().copied()));
-        let base = median(end.to_vec())?;
-        let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
-        let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
-        let behind =
-            median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
-        if behind.abs() > LARGE * most && found.is_none_or(|found| behind.abs() > found.abs()) {
-            found = Some(behind);
-        }
-    }
-    found.map(|behind| behind < 0.0)
-}
-
-/// Whether x stands still at the beginning or the end of the file while P goes on: a way never does, the force of bodies apart
-/// does, but for its noise.
-fn stands_still(x: &[f64], force: &[f64]) -> bool {
-    /// The share of the rows at either end, and the shares of both ranges there.
-    const ROWS: usize = 20;
-    const STILL: f64 = 0.015;
-    const GOES_ON: f64 = 0.02;
-    let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
-    let share = |of: &[f64], rows: std::ops::Range<usize>| {
-        let (first, last) = of[rows].split_at(count / 2);
-        let middles = [first, last].map(|half| median(half.to_vec()).unwrap_or(0.0));
-        (middles[0] - middles[1]).abs() / range(of.iter().copied())
-    };
-    [0..count, x.len() - count..x.len()]
-        .into_iter()
-        .any(|rows| share(x, rows.clone()) < STILL && share(force, rows) > GOES_ON)
-}
-
-/// Whether P rises with x in the outer fifth of x; `None` where it does neither.
-fn rises(x: &[f64], force: &[f64]) -> Option<bool> {
-    let most = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let whole = range(x.iter().copied());
-    let near: Vec<usize> = (0..x.len()).filter(|&i| x[i] >= most - 0.2 * whole).collect();
-    let count = near.len().max(1) as f64;
-    let [mean_x, mean_p] = [x, force].map(|of| near.iter().map(|&i| of[i]).sum::<f64>() / count);
-    let product: f64 = near.iter().map(|&i| (x[i] - mean_x) * (force[i] - mean_p)).sum();
-    (product != 0.0).then_some(product > 0.0)
 }
 
 /// A branch cut into its parts.
@@ -446,11 +341,6 @@ fn filtered(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
 }
 
-/// The last tenth of the rows.
-fn tenth(force: &[f64]) -> &[f64] {
-    &force[force.len() - (force.len() / 10).max(6).min(force.len())..]
-}
-
 /// Whether the force still goes on at the end, as it does where a file ends before the pull-off: the medians of the thirds of the
 /// last tenth differ by more than noise.
 fn trends(force: &[f64]) -> bool {
@@ -487,20 +377,22 @@ impl Line {
     }
 }
 
-/// σ of normal noise at the free end of a branch. Of few rows there it is known badly, of all rows never too low.
-fn noise_of(force: &[f64]) -> f64 {
-    scatter(tenth(force)).min(scatter(force))
-}
-
-/// σ of normal noise on what varies slowly from row to row.
-fn scatter(values: &[f64]) -> f64 {
-    median(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()).unwrap_or(0.0) / 0.954
-}
-
 /// σ of x, P and s, the rows in the order of the file.
-fn noise(list: &[(Branch, Vec<Point>)], asked: &Asked, steps: [f64; 3], ranges: [f64; 3]) -> Noise {
-    let (mut forces, mut ways) = (Vec::new(), Vec::new());
+fn noise(
+    list: &[(Branch, Vec<Point>)],
+    asked: &Asked,
+    steps: [f64; 3],
+    ranges: [f64; 3],
+    of_radius: bool,
+) -> Noise {
+    let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
     for (branch, in_order) in list {
+        // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
+        let touching =
+            in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
+        let with = |point: &Point| if of_radius { [point.force, point.x] } else { [point.x, point.radius] };
+        let (x, s): (Vec<f64>, Vec<f64>) = touching.map(with).map(|[x, s]| (x, s)).unzip();
+        radii.extend(scatter_over(&x, &s));
         let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
         rows.sort_unstable();
         let free: Vec<&Point> =
@@ -508,7 +400,9 @@ fn noise(list: &[(Branch, Vec<Point>)], asked: &Asked, steps: [f64; 3], ranges: 
         forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
         ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
     }
-    let found = [median(ways).map(|way| way / 1.652), median(forces).map(|step| step / 0.954), None];
+    let radius = radii.into_iter().reduce(f64::min);
+    let ways = if of_radius { radius } else { median(ways).map(|way| way / 1.652) };
+    let found = [ways, median(forces).map(|step| step / 0.954), radius];
     let mut noise = Noise { sigma: [0.0; 3], assumed: [false; 3] };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
@@ -524,25 +418,4 @@ fn noise(list: &[(Branch, Vec<Point>)], asked: &Asked, steps: [f64; 3], ranges: 
         };
     }
     noise
-}
-
-/// The median; `None` of nothing.
-pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
-    let count = values.len();
-    if count == 0 {
-        return None;
-    }
-    let (below, at, _) = values.select_nth_unstable_by(count / 2, f64::total_cmp);
-    let at = *at;
-    let other =
-        if count.is_multiple_of(2) { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) } else { at };
-    Some(0.5 * (other + at))
-}
-
-/// The range of what is a number.
-fn range(values: impl Iterator<Item = f64>) -> f64 {
-    let [lo, hi] = values
-        .filter(|x| x.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
-    (hi - lo).max(0.0)
 }

@@ -28,6 +28,19 @@ impl Abscissa {
     }
 }
 
+/// One point, its signs put right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// x.
+    pub x: f64,
+    /// P.
+    pub force: f64,
+    /// s, where it is measured beside x; not a number elsewhere.
+    pub radius: f64,
+    /// The row of the file, from 1, header not counted.
+    pub row: usize,
+}
+
 /// The points of a file, in its order; lengths and forces in SI or reduced units, signs as in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {

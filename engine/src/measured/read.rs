@@ -10,20 +10,16 @@
 //! are in SI (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
 //! Every fault is told with its line and its column, the first of them; a file with faults gives no curve.
 
-use super::role::{Place, Role, Said, Segment, Spec, SpecError, dimensions, unit_of};
+use super::error::{Fault, MOST_COLUMNS, ROW_RANGE, ReadError};
+use super::header::{Header, Wanted, headed, in_si, is_units, sides, wanted};
+use super::role::{Role, Segment, Spec};
 use crate::cells::{
-    self, CellFault, Faults, Head, LARGEST_NUMBER, LONGEST_LINE, LineFault, Separator, heads, is_header,
-    is_unprintable, remark,
+    self, CellFault, Faults, LARGEST_NUMBER, LONGEST_LINE, LineFault, Separator, is_header, is_unprintable,
+    remark,
 };
-use crate::text::{quote, sanitize};
-use crate::units::Unit;
-use std::ops::RangeInclusive;
-use thiserror::Error;
+use crate::text::quote;
+use crate::units::{Quantity, Unit};
 
-/// The allowed numbers of rows.
-pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
-/// The most columns of a file.
-const MOST_COLUMNS: usize = 64;
 /// The longest block of metadata that is read, in bytes.
 const LONGEST_METADATA: usize = 1 << 20;
 
@@ -57,133 +53,29 @@ pub struct Measured {
     pub notes: Vec<String>,
 }
 
-/// What is wrong with one line.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum Fault {
-    /// Of the line as a whole.
-    #[error(transparent)]
-    Line(#[from] LineFault),
-    /// Another number of cells than the first row.
-    #[error("has {found} cells, and the first row has {expected}")]
-    Cells {
-        /// How many it has.
-        found: usize,
-        /// How many are expected.
-        expected: usize,
-    },
-    /// Of one cell.
-    #[error("column {number}: {fault}")]
-    Cell {
-        /// The column, from 1.
-        number: usize,
-        /// What is wrong.
-        fault: CellFault,
-    },
-    /// A branch that is not known.
-    #[error(
-        "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
-    )]
-    Segment {
-        /// The column, from 1.
-        number: usize,
-        /// Its text, safe to show.
-        text: String,
-    },
-}
-
-/// Why a text gives no curve.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum ReadError {
-    /// Bytes that are no text.
-    #[error("line {0}: is not UTF-8 text")]
-    NotText(usize),
-    /// Lines with faults.
-    #[error("{0}")]
-    Faults(Faults<Fault>),
-    /// Too few or too many rows.
-    #[error("has {0} rows, and a measured curve has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
-    Rows(usize),
-    /// More columns than anybody measures.
-    #[error("line {line}: has {found} columns; at most {MOST_COLUMNS} are read")]
-    ManyColumns {
-        /// The first row.
-        line: usize,
-        /// How many it has.
-        found: usize,
-    },
-    /// The header does not say what the columns are, nor does a person.
-    #[error(
-        "line {line}: {} say what they are, as in --columns x=1,force=2",
-        if names.is_empty() { format!("{cells} columns without a header;") } else { format!("the columns {names} are not known;") }
-    )]
-    Unknown {
-        /// The header, or the first row.
-        line: usize,
-        /// The number of columns.
-        cells: usize,
-        /// The names of the header, safe to show.
-        names: String,
-    },
-    /// A column that is needed is not there.
-    #[error("line {line}: there is no column of the {missing}{}", if known.is_empty() { String::new() } else { format!("; there is {known}") })]
-    Lacks {
-        /// The header, or the first row.
-        line: usize,
-        /// What is missing.
-        missing: &'static str,
-        /// What there is, safe to show.
-        known: String,
-    },
-    /// A column that a person names is not there.
-    #[error("line {line}: there is no column {place}{}", if known.is_empty() { String::new() } else { format!("; there is {known}") })]
-    NoColumn {
-        /// The header, or the first row.
-        line: usize,
-        /// What was asked for, safe to show.
-        place: String,
-        /// What there is, safe to show.
-        known: String,
-    },
-    /// A unit in the header that is none of its quantity.
-    #[error("line {line}: {cause}")]
-    Unit {
-        /// The header.
-        line: usize,
-        /// What is wrong.
-        cause: SpecError,
-    },
-}
-
-/// A column that is looked for in each row.
-struct Wanted {
-    role: Role,
-    at: usize,
-    unit: Option<Unit>,
-}
-
-/// A header: the names and units of the columns.
-struct Header {
-    line: usize,
-    heads: Vec<Head>,
-}
-
 /// How rows are taken apart, as the first of them shows.
 struct Layout {
     separator: Separator,
     cells: usize,
     wanted: Vec<Wanted>,
+    /// The columns of the retraction, where they stand beside those of the approach.
+    beside: Vec<Wanted>,
 }
 
 /// A file on its way to columns: what the lines so far have said.
 #[derive(Default)]
 struct Reader<'a> {
     header: Option<(usize, &'a str)>,
+    /// The line below it that has the units.
+    units: Option<&'a str>,
     /// A remark that may be the header.
     candidate: Option<(usize, &'a str)>,
     metadata: Metadata,
     layout: Option<Layout>,
     rows: usize,
     measured: Measured,
+    /// The retraction, where its columns stand beside those of the approach.
+    beside: Measured,
 }
 
 /// Reads the curve in `bytes`, the content of a file, with what a person says of its columns.
@@ -205,8 +97,12 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     if !ROW_RANGE.contains(&reader.rows) {
         return Err(ReadError::Rows(reader.rows));
     }
-    reader.measured.stiffness = reader.metadata.stiffness();
-    Ok(reader.measured)
+    let mut measured = reader.measured;
+    if !reader.beside.columns.is_empty() {
+        measured.appends(reader.beside);
+    }
+    measured.stiffness = reader.metadata.stiffness();
+    Ok(measured)
 }
 
 impl<'a> Reader<'a> {
@@ -227,8 +123,16 @@ impl<'a> Reader<'a> {
         if text.len() > LONGEST_LINE {
             return Ok(Some(LineFault::Long(text.len()).into()));
         }
-        if self.layout.is_none() && self.header.is_none() && is_header(text) {
-            self.header = Some((line, text));
+        if self.layout.is_none() && self.metadata.takes_setting(text) {
+            return Ok(None);
+        }
+        if self.layout.is_none() && is_header(text) {
+            // The last line of words above the rows, and one with their units below it.
+            if self.header.is_some() && is_units(text) {
+                self.units = Some(text);
+            } else {
+                (self.header, self.units) = (Some((line, text)), None);
+            }
             return Ok(None);
         }
         if self.layout.is_none() {
@@ -238,8 +142,21 @@ impl<'a> Reader<'a> {
         if self.rows > *ROW_RANGE.end() {
             return Err(ReadError::Rows(self.rows));
         }
-        let layout = self.layout.as_ref();
-        Ok(layout.and_then(|layout| row(text, layout, &mut self.measured).err()))
+        let Some(layout) = &self.layout else { return Ok(None) };
+        let cells = layout.separator.cells(text);
+        if cells.len() != layout.cells {
+            return Ok(Some(Fault::Cells { found: cells.len(), expected: layout.cells }));
+        }
+        for (wanted, measured) in [(&layout.wanted, &mut self.measured), (&layout.beside, &mut self.beside)] {
+            // Of two branches beside each other one may be shorter.
+            let is_over = wanted.iter().all(|want| cells.get(want.at).is_none_or(|cell| cell.is_empty()));
+            if layout.beside.is_empty() || !is_over {
+                if let Err(fault) = row(&cells, layout.separator, wanted, measured) {
+                    return Ok(Some(fault));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// What the first row, in `line`, and the header above it say of the columns; makes them.
@@ -249,27 +166,68 @@ impl<'a> Reader<'a> {
         if cells > MOST_COLUMNS {
             return Err(ReadError::ManyColumns { line, found: cells });
         }
-        let header = headed(self.header, self.candidate, separator, cells);
+        let header = headed(self.header, self.units, self.candidate, separator, cells);
         self.measured.header = header.as_ref().map(|header| header.line);
-        let mut wanted = wanted(spec, header.as_ref(), line, cells, &mut self.measured.notes)?;
+        let (mut wanted, beside) = self.columns(spec, header.as_ref(), line, cells)?;
         if self.metadata.found {
             in_si(&mut wanted);
         }
+        self.measured.begins(&wanted, (!beside.is_empty()).then_some(Segment::Approach));
+        self.beside.begins(&beside, None);
+        Ok(Layout { separator, cells, wanted, beside })
+    }
+
+    /// The columns that are used, and those of the retraction where they stand beside those of the approach.
+    fn columns(
+        &mut self,
+        spec: &Spec,
+        header: Option<&Header>,
+        line: usize,
+        cells: usize,
+    ) -> Result<(Vec<Wanted>, Vec<Wanted>), ReadError> {
+        let sides = header.filter(|_| spec.0.is_empty()).map(sides).transpose()?.flatten();
+        let Some([approach, retraction]) = sides else {
+            return Ok((wanted(spec, header, line, cells, &mut self.measured.notes)?, Vec::new()));
+        };
+        let listed = |side: &[Wanted]| {
+            let numbers: Vec<String> = side.iter().map(|want| (want.at + 1).to_string()).collect();
+            numbers.join(" and ")
+        };
+        self.measured.notes.push(format!(
+            "columns {} are the approach, {} the retraction, whose rows are counted on from its own",
+            listed(&approach),
+            listed(&retraction)
+        ));
+        Ok((approach, retraction))
+    }
+}
+
+impl Measured {
+    /// Makes the columns; `all` is the branch of all rows, where no column says it.
+    fn begins(&mut self, wanted: &[Wanted], all: Option<Segment>) {
         for column in wanted.iter().filter(|column| column.role != Role::Segment) {
             let (role, unit) = (column.role, column.unit.clone());
-            let number = column.at + 1;
-            self.measured.columns.push(Column {
-                role,
-                number,
-                unit,
-                values: Vec::new(),
-                step: f64::INFINITY,
-            });
+            let (number, values) = (column.at + 1, Vec::new());
+            self.columns.push(Column { role, number, unit, values, step: f64::INFINITY });
         }
-        if wanted.iter().any(|column| column.role == Role::Segment) {
-            self.measured.segments = Some(Vec::new());
+        if all.is_some() || wanted.iter().any(|column| column.role == Role::Segment) {
+            self.segments = Some(Vec::new());
         }
-        Ok(Layout { separator, cells, wanted })
+    }
+
+    /// Appends the rows of the retraction, whose columns are the same.
+    fn appends(&mut self, retraction: Self) {
+        let rows = |of: &Self| of.columns.first().map_or(0, |column| column.values.len());
+        let mut segments = vec![Segment::Approach; rows(self)];
+        segments.resize(rows(self) + rows(&retraction), Segment::Retraction);
+        self.segments = Some(segments);
+        for column in &mut self.columns {
+            let Some(other) = retraction.columns.iter().find(|other| other.role == column.role) else {
+                continue;
+            };
+            column.values.extend_from_slice(&other.values);
+            column.step = column.step.min(other.step);
+        }
     }
 }
 
@@ -279,6 +237,8 @@ struct Metadata {
     inside: bool,
     found: bool,
     text: String,
+    /// A stiffness on a line of its own.
+    stated: Option<f64>,
 }
 
 impl Metadata {
@@ -300,175 +260,48 @@ impl Metadata {
         self.inside
     }
 
+    /// Whether a line above the rows is a setting, as in `Force Constant, nN/nm: 0.2`.
+    fn takes_setting(&mut self, text: &str) -> bool {
+        let Some((key, value)) = text.split_once(':') else { return false };
+        let is_key = key.starts_with(char::is_alphabetic) && !key.contains(['\t', ';']);
+        if !is_key || !(value.is_empty() || value.starts_with(char::is_whitespace)) {
+            return false;
+        }
+        let lower = key.to_lowercase();
+        if let (true, Some((_, unit))) = (
+            ["force constant", "spring constant"].iter().any(|name| lower.starts_with(name)),
+            key.split_once(','),
+        ) {
+            let unit = Unit::parse(unit.trim(), 0).ok();
+            let unit = unit.filter(|unit| unit.dimension() == Quantity::ForcePerLength.dimension());
+            let value: Option<f64> = value.trim().parse().ok();
+            // 1 is what instruments write that have not been calibrated.
+            let value = value.filter(|k| *k > 0.0 && *k <= LARGEST_NUMBER && k.total_cmp(&1.0).is_ne());
+            self.stated = unit.zip(value).map(|(unit, value)| unit.to_si(value)).or(self.stated);
+        }
+        true
+    }
+
     /// The spring constant in N/m, where there is a positive one.
     fn stiffness(&self) -> Option<f64> {
+        if self.stated.is_some() {
+            return self.stated;
+        }
         let value: serde_json::Value = serde_json::from_str(&self.text).ok()?;
         value.get("spring constant")?.as_f64().filter(|k| *k > 0.0 && *k <= LARGEST_NUMBER)
     }
 }
 
-/// The header: a line of its own, or the last remark above the rows where it has as many cells as they.
-fn headed(
-    header: Option<(usize, &str)>,
-    candidate: Option<(usize, &str)>,
-    separator: Separator,
-    cells: usize,
-) -> Option<Header> {
-    // A header may be parted otherwise than the rows below it.
-    let read = |(line, text): (usize, &str)| {
-        let of = |separator| Some(heads(text, separator, &dimensions())).filter(|heads| heads.len() == cells);
-        let heads = of(separator).or_else(|| of(Separator::of(text)))?;
-        Some(Header { line, heads: heads.into_iter().map(whole).collect() })
-    };
-    header.and_then(read).or_else(|| {
-        let header = candidate.and_then(read)?;
-        // A remark of the right number of words need not be a header.
-        let known = header.heads.iter().filter(|(name, _)| Role::of(name).is_some()).count();
-        (known >= 2).then_some(header)
-    })
-}
-
-/// What stands in parentheses and is no unit belongs to the name: `height (measured)`.
-fn whole((name, unit): Head) -> Head {
-    match unit {
-        Some(text) if Unit::parse(&text, 0).is_err() => {
-            let longer = format!("{name} {text}");
-            if Role::of(&longer).is_some() || Role::of(&name).is_none() {
-                (longer, None)
-            } else {
-                (name, Some(text))
-            }
-        }
-        unit => (name, unit),
-    }
-}
-
-/// Which columns are used, in a file whose first row is in the line `row`.
-fn wanted(
-    spec: &Spec,
-    header: Option<&Header>,
-    row: usize,
-    cells: usize,
-    notes: &mut Vec<String>,
-) -> Result<Vec<Wanted>, ReadError> {
-    let line = header.map_or(row, |header| header.line);
-    let known = || header.map_or_else(String::new, |header| listed(&header.heads));
-    let wanted = match header {
-        _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
-        Some(header) => of_header(header, notes)?,
-        None if cells == 2 => {
-            notes.push(
-                "there is no header: the first column is taken for the approach, the second for the force"
-                    .to_owned(),
-            );
-            let of = |(at, role)| Wanted { role, at, unit: None };
-            [(0, Role::Approach), (1, Role::Force)].map(of).into()
-        }
-        None => Vec::new(),
-    };
-    if wanted.is_empty() {
-        return Err(ReadError::Unknown { line, cells, names: known() });
-    }
-    let has = |role| wanted.iter().any(|column: &Wanted| column.role == role);
-    let lacks = |missing| Err(ReadError::Lacks { line, missing, known: known() });
-    if !(has(Role::Force) || has(Role::Deflection)) {
-        return lacks("force, or of the deflection");
-    }
-    if !(has(Role::Approach) || has(Role::Position) || has(Role::Radius)) {
-        return lacks("approach, of the position or of the contact radius");
-    }
-    Ok(wanted)
-}
-
-/// The unit that a header names for the column `at`, of the role `role`.
-fn unit_in(header: &Header, at: usize, role: Role) -> Result<Option<Unit>, ReadError> {
-    let text = header.heads.get(at).and_then(|head| head.1.as_deref());
-    text.map(|text| unit_of(role, text))
-        .transpose()
-        .map_err(|cause| ReadError::Unit { line: header.line, cause })
-}
-
-/// The columns that a person names.
-fn of_person(
-    spec: &Spec,
-    header: Option<&Header>,
-    line: usize,
-    cells: usize,
-) -> Result<Vec<Wanted>, ReadError> {
-    let column = |said: &Said| {
-        let at = match &said.place {
-            Place::Number(number) => Some(number - 1).filter(|at| *at < cells),
-            Place::Name(name) => header.and_then(|header| {
-                header.heads.iter().position(|(known, _)| known.eq_ignore_ascii_case(name))
-            }),
-        };
-        let Some(at) = at else {
-            let place = match &said.place {
-                Place::Number(number) => format!("{number}: a row has {cells}"),
-                Place::Name(name) => format!("\"{}\"", quote(name)),
-            };
-            let known = header.map_or_else(String::new, |header| listed(&header.heads));
-            return Err(ReadError::NoColumn { line, place, known });
-        };
-        let unit = match (&said.unit, header) {
-            (Some(unit), _) => Some(unit.clone()),
-            (None, Some(header)) => unit_in(header, at, said.role)?,
-            (None, None) => None,
-        };
-        Ok(Wanted { role: said.role, at, unit })
-    };
-    spec.0.iter().map(column).collect()
-}
-
-/// The columns whose names in the header are known.
-fn of_header(header: &Header, notes: &mut Vec<String>) -> Result<Vec<Wanted>, ReadError> {
-    let mut wanted: Vec<Wanted> = Vec::new();
-    for (at, (name, _)) in header.heads.iter().enumerate() {
-        let Some(role) = Role::of(name) else { continue };
-        let Some(known) = wanted.iter_mut().find(|column| column.role == role) else {
-            wanted.push(Wanted { role, at, unit: None });
-            continue;
-        };
-        // Of two heights that of the sensor is the one that was reached.
-        let better = name.to_lowercase().contains("measured");
-        let (taken, left) = if better { (at, known.at) } else { (known.at, at) };
-        known.at = taken;
-        notes.push(format!(
-            "columns {} and {} are both a {}: the {} is read, the other left out",
-            taken.min(left) + 1,
-            taken.max(left) + 1,
-            role.word(),
-            if taken < left { "first" } else { "second" }
-        ));
-    }
-    for column in &mut wanted {
-        column.unit = unit_in(header, column.at, column.role)?;
-    }
-    Ok(wanted)
-}
-
-/// Gives columns without a unit that of SI.
-fn in_si(wanted: &mut [Wanted]) {
-    for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
-        let si = column.role.quantity().and_then(crate::units::Quantity::si);
-        column.unit = si.and_then(|si| Unit::parse(si, 0).ok());
-    }
-}
-
-/// The names of a header, safe to show.
-fn listed(heads: &[Head]) -> String {
-    let names: Vec<String> = heads.iter().map(|(name, _)| format!("\"{}\"", quote(name))).collect();
-    sanitize(&names.join(", "), 200)
-}
-
 /// Takes a row in, up to its first fault.
-fn row(text: &str, layout: &Layout, measured: &mut Measured) -> Result<(), Fault> {
-    let cells = layout.separator.cells(text);
-    if cells.len() != layout.cells {
-        return Err(Fault::Cells { found: cells.len(), expected: layout.cells });
-    }
+fn row(
+    cells: &[&str],
+    separator: Separator,
+    wanted: &[Wanted],
+    measured: &mut Measured,
+) -> Result<(), Fault> {
+    const COMMAS: &str = "decimals have a comma: 0,1 is read as 0.1";
     let mut columns = measured.columns.iter_mut();
-    for want in &layout.wanted {
+    for want in wanted {
         let number = want.at + 1;
         let text = cells.get(want.at).copied().unwrap_or_default();
         let what = want.role.word();
@@ -478,6 +311,15 @@ fn row(text: &str, layout: &Layout, measured: &mut Measured) -> Result<(), Fault
             let segment = if text.is_empty() { Err(missing) } else { known(text) };
             measured.segments.get_or_insert_default().push(segment?);
         } else if let Some(column) = columns.next() {
+            // Where cells are parted otherwise.
+            let has_comma = separator != Separator::Character(',')
+                && text.matches(',').count() == 1
+                && !text.contains('.');
+            let pointed = if has_comma { text.replace(',', ".") } else { String::new() };
+            if has_comma && measured.notes.iter().all(|note| note != COMMAS) {
+                measured.notes.push(COMMAS.to_owned());
+            }
+            let text = if has_comma { &pointed } else { text };
             let value = cells::number(text, what).map_err(|fault| Fault::Cell { number, fault })?;
             column.values.push(value);
             column.step = column.step.min(last_digit(text));

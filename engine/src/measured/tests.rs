@@ -258,3 +258,100 @@ fn two_hundred_broken_files_are_a_sentence_each() {
         assert!(message.contains(expected), "{message}");
     }
 }
+
+/// The rows of approach and retraction beside each other, as some microscopes write them.
+fn side_by_side(rows: &[(f64, f64, bool)], head: &str) -> String {
+    let [up, down] = [false, true].map(|back| rows.iter().filter(move |row| row.2 == back));
+    up.zip(down).fold(head.to_owned(), |mut text, (a, b)| {
+        writeln!(text, "{:?},{:?},{:?},{:?}", a.0, a.1, b.0, b.1).unwrap();
+        text
+    })
+}
+
+#[test]
+fn branches_beside_each_other_are_two_segments() {
+    let rows = jkr(2e-5);
+    let whole = branches(&csv(&rows)).unwrap();
+    for head in [
+        "Extend Z,Extend Force,Retract Z,Retract Force\n",
+        "Force-Distance Curve\nFile Format:    3\n\nDate:    Wednesday, August 1, 2018\nX, um:    27.25\n\nExtend \
+         Z-Sense,Extend Force,Retract Z-Sense,Retract Force\n",
+        "z (approach),force (approach),z (retraction),force (retraction)\n",
+    ] {
+        let found = branches(&side_by_side(&rows, head)).unwrap();
+        assert_eq!(strip(&found.list), strip(&whole.list), "{head}");
+        assert!(found.notes.is_empty(), "{:?}", found.notes);
+    }
+    // The shorter one has empty cells; its stiffness stands above.
+    let mut text = side_by_side(
+        &rows,
+        "Force Constant, nN/nm: 0.25\nExtend Z (nm),Extend Force (nN),Retract Z (nm),Retract Force (nN)\n",
+    );
+    text.push_str("0.06,0.1,,\n");
+    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    assert_eq!(measured.stiffness, Some(0.25));
+    assert_eq!(measured.columns[0].values.len(), rows.len() + 1);
+    assert_eq!(measured.segments.unwrap().iter().filter(|of| **of == Segment::Approach).count(), 302);
+    assert!(measured.notes[0].starts_with("columns 1 and 2 are the approach, 3 and 4 the retraction"));
+    // Half of one side is a fault, and so are units that differ: nobody knows then what is meant.
+    text.push_str("0.06,0.1,0.3,\n");
+    assert!(
+        parse(text.as_bytes(), &Spec::default()).unwrap_err().to_string().contains("the force is missing")
+    );
+    let mixed = side_by_side(&rows, "Extend Z (nm),Extend Force (nN),Retract Z (um),Retract Force (nN)\n");
+    assert!(parse(mixed.as_bytes(), &Spec::default()).unwrap_err().to_string().contains("--columns"));
+}
+
+#[test]
+fn decimals_with_a_comma_and_units_below_the_header_are_read() {
+    let rows = jkr(2e-5);
+    let text = rows.iter().fold("delta;force;segment\n(um);(nN);\n".to_owned(), |text, (x, p, back)| {
+        text + &format!("{x:?};{p:?};{back}\n").replace('.', ",")
+    });
+    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let same = measured.columns[1].values.iter().zip(&rows).all(|(p, row)| p.total_cmp(&row.1).is_eq());
+    assert!(same && measured.notes == ["decimals have a comma: 0,1 is read as 0.1"], "{:?}", measured.notes);
+    assert_eq!(measured.columns[1].unit.as_ref().unwrap().ascii(), "nN");
+    let deflection = "Z position [nm]\tvDeflection [nN]\n".to_owned() + &"1\t2\n".repeat(10);
+    let measured = parse(deflection.as_bytes(), &Spec::default()).unwrap();
+    assert_eq!([measured.columns[0].role, measured.columns[1].role], [Role::Position, Role::Force]);
+}
+
+#[test]
+fn rows_that_are_shuffled_stay_and_those_in_no_order_are_not_called_swapped() {
+    let mut rows = jkr(2e-5);
+    let whole = branches(&csv(&rows)).unwrap();
+    let mut random = SplitMix64::new(5);
+    for i in (1..rows.len()).rev() {
+        rows.swap(i, usize::try_from(random.bits() % (i as u64 + 1)).unwrap());
+    }
+    let text = csv(&rows);
+    assert!(matches!(branches(&text), Err(BranchError::Unordered { .. })), "{:?}", branches(&text));
+    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let points = measured.points(&UnitSystem::Reduced, None).unwrap();
+    let sigma = [Some(whole.noise.sigma[0]), Some(whole.noise.sigma[1]), None];
+    let found = points.branches(&Asked { sigma, ..Asked::default() }).unwrap();
+    assert_eq!(strip(&found.list), strip(&whole.list));
+}
+
+#[test]
+fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped() {
+    let noisy = branches(&csv(&jkr(2e-3))).unwrap();
+    assert!(noisy.baseline.is_some() && noisy.turned == [false; 2], "{:?}", noisy.notes);
+    let mut rows = jkr(2e-5);
+    let top = rows[300];
+    let mut random = SplitMix64::new(6);
+    rows.splice(300..300, (0..150).map(|_| (top.0 - 1e-4 * random.unit(), top.1, false)));
+    let paused = branches(&csv(&rows)).unwrap();
+    assert!(paused.baseline.is_some() && paused.list.iter().all(|branch| branch.free.len() > 40));
+    // x with noise of some rows: those that lie on the wrong side of the jump are no outliers.
+    let mut rows = jkr(2e-5);
+    rows.iter_mut().for_each(|row| row.0 += 2e-3 * (random.unit() + random.unit() - 1.0));
+    let found = branches(&csv(&rows)).unwrap();
+    let baseline = found.baseline.unwrap();
+    for branch in &found.list {
+        let jump = branch.attached.last().unwrap().force;
+        assert!(jump < -0.01 && branch.dropped > 0, "{jump} {}", branch.dropped);
+        assert!(branch.free.iter().all(|point| (point.force - baseline).abs() < 1e-3));
+    }
+}

@@ -6,7 +6,7 @@ use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Residual};
-use crate::measured::Segment;
+use crate::measured::{Abscissa, Segment};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -44,10 +44,10 @@ pub struct FitReport {
     pub ended: &'static str,
     /// What x is.
     pub abscissa: &'static str,
-    /// σ of x and of P.
-    pub sigma: [f64; 2],
+    /// σ of x and of P, and of s where it is measured beside x.
+    pub sigma: Vec<f64>,
     /// Whether each was assumed.
-    pub sigma_assumed: [bool; 2],
+    pub sigma_assumed: Vec<bool>,
     /// Whether σ of P is that of the residuals.
     pub sigma_from_residuals: bool,
     /// The snaps of the fitted path.
@@ -144,6 +144,7 @@ impl FitReport {
             .map(|tried| StartReport { distance: tried.distance, snaps: tried.snaps })
             .collect();
         starts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let measured = if fit.noise.sigma[2] > 0.0 && fit.abscissa != Abscissa::Radius { 3 } else { 2 };
         Self {
             schema: super::SCHEMA,
             file: file.to_owned(),
@@ -164,8 +165,8 @@ impl FitReport {
                 Ending::Cancelled => "cancelled",
             },
             abscissa: fit.abscissa.name(),
-            sigma: [fit.noise.sigma[0], fit.noise.sigma[1]],
-            sigma_assumed: [fit.noise.assumed[0], fit.noise.assumed[1]],
+            sigma: fit.noise.sigma[..measured].to_vec(),
+            sigma_assumed: fit.noise.assumed[..measured].to_vec(),
             sigma_from_residuals: fit.noise_from_residuals,
             snaps: fit.snaps,
             starts,
@@ -266,9 +267,13 @@ impl FitReport {
         let of_force = if self.sigma_from_residuals { " (of the residuals)" } else { "" };
         let _ = writeln!(
             text,
-            "sigma of x {}, of P {}{of_force}",
+            "sigma of x {}, of P {}{of_force}{}",
             sigma(Quantity::Length, self.sigma[0], self.sigma_assumed[0]),
-            sigma(Quantity::Force, self.sigma[1], self.sigma_assumed[1] && !self.sigma_from_residuals)
+            sigma(Quantity::Force, self.sigma[1], self.sigma_assumed[1] && !self.sigma_from_residuals),
+            match (self.sigma.get(2), self.sigma_assumed.get(2)) {
+                (Some(s), Some(assumed)) => format!(", of s {}", sigma(Quantity::Length, *s, *assumed)),
+                _ => String::new(),
+            }
         );
         let starts: Vec<String> = self
             .starts

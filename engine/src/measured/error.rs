@@ -1,0 +1,107 @@
+//! What is wrong with the text of a measured curve.
+
+use super::role::SpecError;
+use crate::cells::{CellFault, Faults, LineFault};
+use std::ops::RangeInclusive;
+use thiserror::Error;
+
+/// The allowed numbers of rows.
+pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
+/// The most columns of a file.
+pub const MOST_COLUMNS: usize = 64;
+/// What is wrong with one line.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Fault {
+    /// Of the line as a whole.
+    #[error(transparent)]
+    Line(#[from] LineFault),
+    /// Another number of cells than the first row.
+    #[error("has {found} cells, and the first row has {expected}")]
+    Cells {
+        /// How many it has.
+        found: usize,
+        /// How many are expected.
+        expected: usize,
+    },
+    /// Of one cell.
+    #[error("column {number}: {fault}")]
+    Cell {
+        /// The column, from 1.
+        number: usize,
+        /// What is wrong.
+        fault: CellFault,
+    },
+    /// A branch that is not known.
+    #[error(
+        "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
+    )]
+    Segment {
+        /// The column, from 1.
+        number: usize,
+        /// Its text, safe to show.
+        text: String,
+    },
+}
+
+/// Why a text gives no curve.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ReadError {
+    /// Bytes that are no text.
+    #[error("line {0}: is not UTF-8 text")]
+    NotText(usize),
+    /// Lines with faults.
+    #[error("{0}")]
+    Faults(Faults<Fault>),
+    /// Too few or too many rows.
+    #[error("has {0} rows, and a measured curve has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
+    Rows(usize),
+    /// More columns than anybody measures.
+    #[error("line {line}: has {found} columns; at most {MOST_COLUMNS} are read")]
+    ManyColumns {
+        /// The first row.
+        line: usize,
+        /// How many it has.
+        found: usize,
+    },
+    /// The header does not say what the columns are, nor does a person.
+    #[error(
+        "line {line}: {} say what they are, as in --columns x=1,force=2",
+        if names.is_empty() { format!("{cells} columns without a header;") } else { format!("the columns {names} are not known;") }
+    )]
+    Unknown {
+        /// The header, or the first row.
+        line: usize,
+        /// The number of columns.
+        cells: usize,
+        /// The names of the header, safe to show.
+        names: String,
+    },
+    /// A column that is needed is not there.
+    #[error("line {line}: there is no column of the {missing}{}", if known.is_empty() { String::new() } else { format!("; there is {known}: say what they are, as in --columns x=1,force=2") })]
+    Lacks {
+        /// The header, or the first row.
+        line: usize,
+        /// What is missing.
+        missing: &'static str,
+        /// What there is, safe to show.
+        known: String,
+    },
+    /// A column that a person names is not there.
+    #[error("line {line}: there is no column {place}{}", if known.is_empty() { String::new() } else { format!("; there is {known}") })]
+    NoColumn {
+        /// The header, or the first row.
+        line: usize,
+        /// What was asked for, safe to show.
+        place: String,
+        /// What there is, safe to show.
+        known: String,
+    },
+    /// A unit in the header that is none of its quantity.
+    #[error("line {line}: {cause}")]
+    Unit {
+        /// The header.
+        line: usize,
+        /// What is wrong.
+        cause: SpecError,
+    },
+}

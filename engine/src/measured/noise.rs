@@ -1,0 +1,58 @@
+//! Medians, ranges and the noise of what varies slowly from row to row.
+
+/// The least noise, as a share of the range: a distance to a curve needs both axes.
+pub const FLOOR: f64 = 1e-4;
+/// Deviations of the free part beyond so many σ belong to the contact.
+pub(super) const BEYOND: f64 = 6.0;
+/// The share of the rows, and the fewest, by which the ends are judged.
+pub(super) const END_SHARE: usize = 40;
+pub(super) const END_ROWS: usize = 5;
+
+/// The median; `None` of nothing.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    let count = values.len();
+    if count == 0 {
+        return None;
+    }
+    let (below, at, _) = values.select_nth_unstable_by(count / 2, f64::total_cmp);
+    let at = *at;
+    let other =
+        if count.is_multiple_of(2) { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) } else { at };
+    Some(0.5 * (other + at))
+}
+
+/// The range of what is a number.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let [lo, hi] = values
+        .filter(|x| x.is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+    (hi - lo).max(0.0)
+}
+
+/// The last tenth of the rows.
+pub(super) fn tenth(force: &[f64]) -> &[f64] {
+    &force[force.len() - (force.len() / 10).max(6).min(force.len())..]
+}
+
+/// σ of normal noise at the free end of a branch. Of few rows there it is known badly, of all rows never too low.
+pub(super) fn noise_of(force: &[f64]) -> f64 {
+    scatter(tenth(force)).min(scatter(force))
+}
+
+/// σ of normal noise on what varies slowly from row to row.
+pub(super) fn scatter(values: &[f64]) -> f64 {
+    median(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()).unwrap_or(0.0) / 0.954
+}
+
+/// σ of normal noise on y that varies slowly with x from row to row, however uneven the steps of x are: each row beside the line through
+/// its neighbours.
+pub(super) fn scatter_over(x: &[f64], y: &[f64]) -> Option<f64> {
+    let off = |i: usize| {
+        let share = (x[i] - x[i - 1]) / (x[i + 1] - x[i - 1]);
+        let off = y[i] - y[i - 1] - share * (y[i + 1] - y[i - 1]);
+        let factor = (1.0 + share * share + (1.0 - share).powi(2)).sqrt();
+        (0.0..=1.0).contains(&share).then(|| off.abs() / factor)
+    };
+    let offs: Vec<f64> = (1..x.len().saturating_sub(1)).filter_map(off).collect();
+    median(offs).map(|off| off / 0.6745)
+}

@@ -1,0 +1,175 @@
+//! Where the bodies are apart, and the signs of x and P that follow from it.
+
+use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
+use super::points::{Abscissa, Point};
+use super::role::Segment;
+
+/// A free end varies by less than this share of the range, and of the other end.
+const FLAT: [f64; 2] = [0.1, 0.3];
+/// Rows at an end stay at one x that go over less than this share of what as many go over elsewhere.
+const PAUSE: f64 = 0.1;
+
+/// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
+pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
+    let mut order: Vec<usize> = (0..x.len()).collect();
+    order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(y[a].total_cmp(&y[b])));
+    let spread = |ends: &[usize]| {
+        let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
+        y.sort_by(f64::total_cmp);
+        let tenth = y.len() / 10;
+        y[y.len() - 1 - tenth] - y[tenth]
+    };
+    // Rows of a pause say nothing.
+    let way = range(x.iter().copied());
+    let stays = |end: &[usize], count: usize| {
+        range(end.iter().map(|&i| x[i])) < PAUSE * way * count as f64 / x.len() as f64
+    };
+    let whole = range(y.iter().copied());
+    let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
+    // Over many rows noise is told from a slope, over few a short free part from the contact.
+    for share in [END_SHARE / 4, END_SHARE] {
+        let count = (x.len() / share).max(END_ROWS).min(x.len());
+        let ends = [&order[..count], &order[order.len() - count..]];
+        if ends.iter().any(|end| stays(end, count)) {
+            continue;
+        }
+        let [low, high] = ends.map(spread);
+        let found = [flat(low, high), flat(high, low)];
+        if found != [false; 2] {
+            return found;
+        }
+    }
+    // Of much noise, or of rows that stay at one x: the medians of parts of either end.
+    let trends = trends(x, y, &order);
+    trends.map_or([false; 2], |[low, high]| [flat(low, high), flat(high, low)])
+}
+
+/// By how much the force goes on over the outer parts of the range of x, low and high, by the medians of bins; `None` of few rows.
+fn trends(x: &[f64], y: &[f64], order: &[usize]) -> Option<[f64; 2]> {
+    /// The share of the range of x, its bins, and the rows in each.
+    const SHARE: f64 = 0.08;
+    const BINS: usize = 4;
+    const ROWS: usize = 4;
+    let (first, last) = (x[*order.first()?], x[*order.last()?]);
+    let bin = SHARE * (last - first) / BINS as f64;
+    let trend = |from: f64| {
+        let of_bin = |k: usize| {
+            let lo = from + k as f64 * bin;
+            let inside = order.iter().filter(|&&i| x[i] >= lo && x[i] <= lo + bin).map(|&i| y[i]);
+            Some(inside.collect::<Vec<f64>>()).filter(|rows| rows.len() >= ROWS).and_then(median)
+        };
+        let medians: Option<Vec<f64>> = (0..BINS).map(of_bin).collect();
+        medians.map(|medians| range(medians.into_iter()))
+    };
+    Some([trend(first)?, trend(last - BINS as f64 * bin)?])
+}
+
+/// Turns the signs where the free end and the rise in contact say so; whether x and P were turned. `None` where x stands still while P
+/// goes on, as in columns that are swapped; only rows in order show it.
+pub(super) fn signs(
+    points: &mut [Point],
+    abscissa: Abscissa,
+    segments: Option<&[Segment]>,
+    is_in_order: bool,
+    notes: &mut Vec<String>,
+) -> Option<[bool; 2]> {
+    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
+    let force: Vec<f64> = points.iter().map(|point| point.force).collect();
+    let mut turned = [false; 2];
+    if abscissa != Abscissa::Radius {
+        if is_in_order && stands_still(&x, &force) {
+            return None;
+        }
+        match free_end(&x, &force) {
+            [true, _] => {}
+            [_, true] => turned[0] = true,
+            _ => {
+                // Without a free end the sense of a way is a matter of the instrument, that of a force is not.
+                turned[0] = abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
+                notes.push("there is no free part: the signs are taken as they are in the file".to_owned());
+            }
+        }
+        if turned[0] {
+            for point in &mut *points {
+                point.x = -point.x;
+            }
+            notes.push(format!("the {} grows as the bodies go apart: its sign is turned", abscissa.name()));
+        }
+    }
+    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
+    let (compression, words) = match pulls(points, segments) {
+        Some(pulls) => (pulls, "the force is positive before the jump to the free part, where bodies pull"),
+        None => (rises(&x, &force) != Some(false), "the force falls as the bodies are pressed together"),
+    };
+    if !compression {
+        turned[1] = true;
+        for point in points {
+            point.force = -point.force;
+        }
+        notes.push(format!("{words}: its sign is turned"));
+    }
+    Some(turned)
+}
+
+/// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
+/// a free part, or where the jump is so small that the rise in contact says more.
+fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
+    /// A jump is trusted from this share of the largest force.
+    const LARGE: f64 = 0.3;
+    /// Rows behind the jump whose median is taken.
+    const ROWS: usize = 3;
+    let groups: Vec<Vec<Point>> = match segments {
+        None => vec![points.to_vec()],
+        Some(of) => [Segment::Approach, Segment::Retraction]
+            .map(|segment| points.iter().filter(|point| of[point.row - 1] == segment).copied().collect())
+            .to_vec(),
+    };
+    let mut found: Option<f64> = None;
+    for mut group in groups {
+        group.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
+        let (x, force): (Vec<f64>, Vec<f64>) = group.iter().map(|point| (point.x, point.force)).unzip();
+        if group.len() < 2 * END_ROWS || !free_end(&x, &force)[0] {
+            continue;
+        }
+        let end = &force[force.len() - (force.len() / END_SHARE).max(END_ROWS)..];
+        let limit = BEYOND * noise_of(&force).max(FLOOR * range(force.iter().copied()));
+        let base = median(end.to_vec())?;
+        let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
+        let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
+        let behind =
+            median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
+        if behind.abs() > LARGE * most && found.is_none_or(|found| behind.abs() > found.abs()) {
+            found = Some(behind);
+        }
+    }
+    found.map(|behind| behind < 0.0)
+}
+
+/// Whether x stands still at the beginning or the end of the file while P goes on: a way never does, the force of bodies apart
+/// does, but for its noise.
+fn stands_still(x: &[f64], force: &[f64]) -> bool {
+    /// The share of the rows at either end, and the shares of both ranges there.
+    const ROWS: usize = 20;
+    const STILL: f64 = 0.015;
+    const GOES_ON: f64 = 0.02;
+    let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
+    let share = |of: &[f64], rows: std::ops::Range<usize>| {
+        let (first, last) = of[rows].split_at(count / 2);
+        let middles = [first, last].map(|half| median(half.to_vec()).unwrap_or(0.0));
+        (middles[0] - middles[1]).abs() / range(of.iter().copied())
+    };
+    [0..count, x.len() - count..x.len()]
+        .into_iter()
+        .any(|rows| share(x, rows.clone()) < STILL && share(force, rows) > GOES_ON)
+}
+
+/// Whether P rises with x in the outer fifth of x; `None` where it does neither.
+fn rises(x: &[f64], force: &[f64]) -> Option<bool> {
+    let most = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let whole = range(x.iter().copied());
+    let near: Vec<usize> = (0..x.len()).filter(|&i| x[i] >= most - 0.2 * whole).collect();
+    let count = near.len().max(1) as f64;
+    let [mean_x, mean_p] = [x, force].map(|of| near.iter().map(|&i| of[i]).sum::<f64>() / count);
+    let product: f64 = near.iter().map(|&i| (x[i] - mean_x) * (force[i] - mean_p)).sum();
+    (product != 0.0).then_some(product > 0.0)
+}
