@@ -35,7 +35,7 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
     for view in View::ALL {
         let count: usize = drawn(&session, view).iter().map(Vec::len).sum();
         let expected = match view {
-            View::ForceApproach | View::Unloading | View::Cycle => 700,
+            View::ForceApproach | View::ForcePosition | View::Unloading | View::Cycle => 700,
             // There is no radius among the columns.
             _ => 0,
         };
@@ -49,6 +49,19 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
         assert!((a.0 - b.0 - 5.0).abs() < 1e-9 && a.1.to_bits() == b.1.to_bits(), "{a:?} {b:?}");
     }
     assert!(std::sync::Arc::ptr_eq(&curve, session.model.curve.as_ref().unwrap()));
+    // Over the way of the device they are as measured, less the offset: the spring is in the curve.
+    let branches = session.model.preset.branches().unwrap().unwrap();
+    let rows = branches.list.iter().flat_map(|branch| branch.attached.iter().chain(&branch.free));
+    let over_position = drawn(&session, View::ForcePosition);
+    for (row, at) in rows.zip(over_position.iter().flatten()) {
+        assert!((1e6 * row.x - 5.0 - at.0).abs() < 1e-9, "{row:?} {at:?}");
+    }
+    // And the curve over it is δ + P/k.
+    let figure = Subject::of(&session.model).unwrap().figure(View::ForcePosition);
+    let line = figure.lines.iter().find(|line| line.name == "stable").unwrap();
+    let on_curve = curve.points.iter().map(|at| 1e6 * (at.approach + at.force / 500.0));
+    let [lo, hi] = on_curve.fold([f64::MAX, f64::MIN], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+    assert!(line.points.iter().all(|at| at.0 > lo - 1e-9 && at.0 < hi + 1e-9) && figure.x.symbol == "Δ");
     // Turned by a key: a thousandth of the range, from wherever it is.
     let knob = |key: &'static str| Command::Turn { id: Id::More, key: key.into() };
     let range = session.model.preset.branches().unwrap().unwrap().ranges;

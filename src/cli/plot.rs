@@ -7,6 +7,7 @@ use super::{Failure, output};
 use crate::explorer::fitting::FitWish;
 use crate::explorer::maps::{MapAxes, MapWish};
 use crate::explorer::profile::{Ask, Inside};
+use crate::explorer::reach::no_spring;
 use crate::explorer::{Axes, CurveData, Overlays, View};
 use crate::figure::measured::Points;
 use crate::figure::range::RangeError;
@@ -137,6 +138,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
     warn(&curve.base.warnings);
     let view = arguments.view.0;
+    if let Some(why) = no_spring(&preset).filter(|_| view == View::ForcePosition) {
+        return Err(Failure::Usage(format!("--view {}: {why}", view.name())));
+    }
     let inside = if view.is_state() {
         Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
     } else if arguments.contact_radius.is_some() {

@@ -5,13 +5,15 @@ use super::model::{Level, Model};
 use super::node::Node;
 use super::studies::range;
 use super::view::View;
-use pulloff_engine::preset::{Key, Value};
+use pulloff_engine::preset::{Key, Preset, Value};
+use pulloff_engine::problem::Control;
 
 /// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
 pub fn why_not(model: &Model, view: View) -> Option<String> {
     let node = model.history.current();
     match view {
         View::ForceApproach | View::RadiusForce | View::RadiusApproach | View::Stability => None,
+        View::ForcePosition => no_spring(&model.preset),
         View::Pressure | View::Gap | View::Contact | View::Energy => {
             let apart = node.is_some_and(Node::is_apart);
             apart.then(|| "the bodies are apart: there is no contact".to_owned())
@@ -43,6 +45,15 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
         View::Walk => (model.history.len() < 2)
             .then(|| format!("nothing is walked yet: {} runs to a limit point", Id::NextLimit.named())),
     }
+}
+
+/// Why there is no way of a device beside the approach; `None` where there is a spring.
+pub fn no_spring(preset: &Preset) -> Option<String> {
+    let is_spring = matches!(preset.path.control, Control::Stiffness(_));
+    (!is_spring).then(|| {
+        "the device has no spring, and its way is the approach: path.control has the stiffness of one"
+            .to_owned()
+    })
 }
 
 /// The key that a study varies, and the values it takes: those of the selected value.

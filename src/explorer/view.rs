@@ -66,6 +66,8 @@ impl EventSource {
 pub enum View {
     /// P over δ.
     ForceApproach,
+    /// P over Δ, the way of the device's far end.
+    ForcePosition,
     /// s over P.
     RadiusForce,
     /// s over δ.
@@ -100,8 +102,9 @@ pub enum View {
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::ForceApproach,
+        Self::ForcePosition,
         Self::RadiusForce,
         Self::RadiusApproach,
         Self::Pressure,
@@ -123,6 +126,7 @@ impl View {
     pub fn name(self) -> &'static str {
         match self {
             Self::ForceApproach => "force-approach",
+            Self::ForcePosition => "force-position",
             Self::RadiusForce => "radius-force",
             Self::RadiusApproach => "radius-approach",
             Self::Pressure => "pressure",
@@ -145,6 +149,7 @@ impl View {
     pub fn meaning(self) -> &'static str {
         match self {
             Self::ForceApproach => "the force P over the approach",
+            Self::ForcePosition => "the force P over the way of the device's far end",
             Self::RadiusForce => "the contact radius s over the force",
             Self::RadiusApproach => "the contact radius s over the approach",
             Self::Pressure => "the contact pressure of the walker's state",
@@ -175,7 +180,12 @@ impl View {
 
     /// Whether it shows the equilibrium curve, on which walker, pins and overlays have a place.
     pub fn is_curve(self) -> bool {
-        matches!(self, Self::ForceApproach | Self::RadiusForce | Self::RadiusApproach)
+        matches!(self, Self::ForceApproach | Self::ForcePosition | Self::RadiusForce | Self::RadiusApproach)
+    }
+
+    /// Whether it shows forces of a curve and no radius.
+    pub fn is_without_radius(self) -> bool {
+        matches!(self, Self::ForceApproach | Self::ForcePosition)
     }
 
     /// Whether it shows the whole loop of loading and unloading.
@@ -198,8 +208,8 @@ impl View {
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, Gap, Map, Pressure,
-            RadiusApproach, RadiusForce, Residuals, Stability, Study, Unloading, Walk,
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, Gap, Map,
+            Pressure, RadiusApproach, RadiusForce, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
             ForceApproach => [RadiusForce, Pressure, Energy],
@@ -211,7 +221,7 @@ impl View {
             Residuals => [ForceApproach, RadiusForce, Pressure],
             Study => [ForceApproach, Unloading, RadiusForce],
             Differences => [ForceApproach, RadiusForce, RadiusApproach],
-            RadiusForce | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
+            ForcePosition | RadiusForce | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
             Energy => [RadiusApproach, ForceApproach, Pressure],

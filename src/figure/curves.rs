@@ -48,12 +48,12 @@ fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figur
         };
         let place = |at: &PathStateReport, r: f64| scale.place(view, [at.state.approach, at.state.force, r]);
         // Without a radius on the axes there is one line, however many contacts.
-        let contacts = if view == View::ForceApproach { 1 } else { piece[0].state.contacts.len() };
+        let contacts = if view.is_without_radius() { 1 } else { piece[0].state.contacts.len() };
         for contact in 0..contacts {
             for edge in [1, 0] {
                 let radius =
                     |at: &PathStateReport| at.state.contacts.get(contact).map_or(0.0, |edges| edges[edge]);
-                if edge == 0 && (view == View::ForceApproach || radius(&piece[0]) == 0.0) {
+                if edge == 0 && (view.is_without_radius() || radius(&piece[0]) == 0.0) {
                     continue;
                 }
                 let points = piece.iter().map(|at| place(at, radius(at))).collect();
@@ -102,7 +102,7 @@ pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure:
 
 /// The line of the loading device, where it is shown; it has no radius.
 fn device(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
-    if let (View::ForceApproach, Some(ends)) = (view, subject.device) {
+    if let (true, Some(ends)) = (view.is_without_radius(), subject.device) {
         let points = ends.map(|(approach, force)| scale.place(view, [approach, force, 0.0]));
         figure.lines.push(Line::new(Role::Device, "device", points.to_vec()));
     }

@@ -10,6 +10,7 @@
 use super::parts::Axis;
 use crate::explorer::{Axes, CurveData, View};
 use pulloff_engine::gap::Gap;
+use pulloff_engine::problem::Control;
 use pulloff_engine::units::{Quantity, UnitSystem};
 
 /// The divisors of the axes; an axis without one (no adhesion, no single wave) stays raw.
@@ -22,6 +23,8 @@ pub struct Scale<'a> {
     /// R, of a preset without units.
     pub curvature: Option<f64>,
     pub modulus: Option<f64>,
+    /// 1/k of the device, in the user's units; 0 without a spring.
+    pub compliance: f64,
     /// The units in which the other axes are shown.
     pub units: &'a UnitSystem,
 }
@@ -30,8 +33,12 @@ impl<'a> Scale<'a> {
     /// The divisors for `curve`.
     pub fn of(curve: &'a CurveData, axes: Axes) -> Self {
         let units = &curve.setting.preset.units;
+        let compliance = match curve.setting.preset.path.control {
+            Control::Stiffness(k) => 1.0 / k,
+            Control::Displacement | Control::Force => 0.0,
+        };
         if axes == Axes::Raw {
-            return Self::raw(units);
+            return Self { compliance, ..Self::raw(units) };
         }
         let problem = &curve.case.problem;
         Self {
@@ -39,21 +46,24 @@ impl<'a> Scale<'a> {
             wave: problem.shape.wavelength(),
             curvature: problem.shape.radius_of_curvature().filter(|_| *units == UnitSystem::Reduced),
             modulus: Some(problem.effective_modulus),
+            compliance,
             units,
         }
     }
 
     /// No divisors.
     pub fn raw(units: &'a UnitSystem) -> Self {
-        Self { force: None, wave: None, curvature: None, modulus: None, units }
+        Self { force: None, wave: None, curvature: None, modulus: None, compliance: 0.0, units }
     }
 
     /// The place of δ, P and s (in the user's units) in a view of the curve.
     pub fn place(self, view: View, [approach, force, radius]: [f64; 3]) -> (f64, f64) {
+        let position = self.length(approach + self.compliance * force);
         let approach = self.length(approach);
         let force = self.force(force);
         let radius = self.radius(radius);
         match view {
+            View::ForcePosition => (position, force),
             View::RadiusForce => (force, radius),
             View::RadiusApproach => (approach, radius),
             _ => (approach, force),
@@ -78,6 +88,7 @@ impl<'a> Scale<'a> {
     /// The axes of a view of the curve: x, then y.
     pub fn axes(self, view: View) -> [Axis; 2] {
         match view {
+            View::ForcePosition => [self.length_axis("Δ"), self.force_axis()],
             View::RadiusForce => [self.force_axis(), self.radius_axis("s")],
             View::RadiusApproach => [self.length_axis("δ"), self.radius_axis("s")],
             _ => [self.length_axis("δ"), self.force_axis()],

@@ -11,7 +11,7 @@ use super::least_squares::Evaluated;
 use super::options::letter;
 use super::problem::{Parameter, Problem};
 use super::solve::HUBER;
-use crate::elementary::ln;
+use crate::elementary::{exp_m1, ln};
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
 use nalgebra::{DMatrix, DVector};
@@ -125,7 +125,7 @@ fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> Str
 fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
     let (before, after) = (parameter.value(u), parameter.value(u + by));
     if parameter.scale.is_none() {
-        let percent = 100.0 * by.exp_m1();
+        let percent = 100.0 * exp_m1(by);
         let digits = usize::from(percent.abs() < 9.95);
         return format!("{percent:+.digits$} %").replace('-', "−");
     }

@@ -99,7 +99,7 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     }
     let mut measured = reader.measured;
     if !reader.beside.columns.is_empty() {
-        measured.appends(reader.beside);
+        measured.appends(&reader.beside);
     }
     measured.stiffness = reader.metadata.stiffness();
     Ok(measured)
@@ -150,10 +150,10 @@ impl<'a> Reader<'a> {
         for (wanted, measured) in [(&layout.wanted, &mut self.measured), (&layout.beside, &mut self.beside)] {
             // Of two branches beside each other one may be shorter.
             let is_over = wanted.iter().all(|want| cells.get(want.at).is_none_or(|cell| cell.is_empty()));
-            if layout.beside.is_empty() || !is_over {
-                if let Err(fault) = row(&cells, layout.separator, wanted, measured) {
-                    return Ok(Some(fault));
-                }
+            if (layout.beside.is_empty() || !is_over)
+                && let Err(fault) = row(&cells, layout.separator, wanted, measured)
+            {
+                return Ok(Some(fault));
             }
         }
         Ok(None)
@@ -216,10 +216,10 @@ impl Measured {
     }
 
     /// Appends the rows of the retraction, whose columns are the same.
-    fn appends(&mut self, retraction: Self) {
+    fn appends(&mut self, retraction: &Self) {
         let rows = |of: &Self| of.columns.first().map_or(0, |column| column.values.len());
         let mut segments = vec![Segment::Approach; rows(self)];
-        segments.resize(rows(self) + rows(&retraction), Segment::Retraction);
+        segments.resize(rows(self) + rows(retraction), Segment::Retraction);
         self.segments = Some(segments);
         for column in &mut self.columns {
             let Some(other) = retraction.columns.iter().find(|other| other.role == column.role) else {
