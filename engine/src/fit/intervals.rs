@@ -10,7 +10,8 @@ use crate::preset::Value;
 const RISE: f64 = 3.841_458_820_694_124;
 
 /// The rounds and the tolerance of a fit that begins next to its end.
-const WARM: Settings = Settings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY };
+const WARM: Settings =
+    Settings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
 
 /// What a bootstrap found of one parameter, in base units.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use super::path::Foot;
 use super::problem::{ADHESION, Problem, Target};
 use super::solve::{Solved, solve};
 use crate::elementary::{exp_m1, hypot};
-use crate::measured::Segment;
 use crate::measured::branches::median;
+use crate::measured::{Abscissa, Segment};
 use crate::preset::{Preset, Value};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups};
@@ -20,6 +20,8 @@ const DEEP: f64 = 1.0;
 const MODULI: [f64; 2] = [10.0, 1e12];
 /// Deviations of the number of runs beyond so many of its own are no chance.
 const RUNS: f64 = -5.0;
+/// A slope of so many standard deviations is a tilt.
+const SLOPED: f64 = 4.5;
 /// Runs are counted in so many points at least.
 const RUNS_OF: usize = 40;
 /// Residuals below this share of the noise are rounding, in which there is always some order.
@@ -106,6 +108,30 @@ pub fn doubts(
     doubts
 }
 
+/// The slope of the residuals of free points over x, in its own standard deviations; `None` where the tilt is free, or of few points.
+fn slope(problem: &Problem, solved: &Solved) -> Option<f64> {
+    /// Outliers count as so many σ.
+    const MOST: f64 = 3.0;
+    if problem.abscissa == Abscissa::Radius || problem.parameters.iter().any(|p| p.target == Target::Tilt) {
+        return None;
+    }
+    let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(problem.per_point()));
+    let of = of.filter(|(datum, _)| datum.free).map(|(datum, r)| (datum.point.x, r.clamp(-MOST, MOST)));
+    let (x, r): (Vec<f64>, Vec<f64>) = of.unzip();
+    let n = x.len() as f64;
+    if x.len() < RUNS_OF {
+        return None;
+    }
+    let (mean_x, mean_r) = (x.iter().sum::<f64>() / n, r.iter().sum::<f64>() / n);
+    let [xx, xr, rr] = x.iter().zip(&r).fold([0.0; 3], |[xx, xr, rr], (x, r)| {
+        let (x, r) = (x - mean_x, r - mean_r);
+        [xx + x * x, xr + x * r, rr + r * r]
+    });
+    let correlation = xr / (xx * rr).sqrt();
+    let deviations = correlation.abs() * n.sqrt();
+    deviations.is_finite().then_some(deviations)
+}
+
 /// Residuals that keep their sign: of the points in contact, and of those apart.
 fn of_runs(problem: &Problem, solved: &Solved) -> Vec<String> {
     let per = problem.per_point();
@@ -119,7 +145,12 @@ fn of_runs(problem: &Problem, solved: &Solved) -> Vec<String> {
     ] {
         let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(per));
         let of = of.filter(|(datum, _)| datum.free == free && datum.segment == segment);
-        let of: Vec<f64> = of.map(|(_, r)| *r).collect();
+        let mut of: Vec<(usize, f64)> = of.map(|(datum, r)| (datum.point.row, *r)).collect();
+        if free {
+            // Of a radius all are at 0 there, and their order is that of the file.
+            of.sort_by_key(|(row, _)| *row);
+        }
+        let of: Vec<f64> = of.into_iter().map(|(_, r)| r).collect();
         let runs = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
         if runs >= RUNS {
             continue;
@@ -142,6 +173,14 @@ fn of_runs(problem: &Problem, solved: &Solved) -> Vec<String> {
             signs.push(median(of).is_some_and(|middle| middle > 0.0));
             doubts.push(format!("the model does not describe this: the residuals of the {name} {fewer}"));
         }
+    }
+    if doubts.iter().all(|doubt| !doubt.contains("data.tilt"))
+        && let Some(deviations) = slope(problem, solved).filter(|t| *t > SLOPED)
+    {
+        doubts.push(format!(
+            "the force has a slope over x where the bodies are apart ({} standard deviations): free data.tilt",
+            short(deviations, 2)
+        ));
     }
     let one = problem.parameters.iter().any(|p| p.target == Target::Key(ADHESION.to_owned()));
     if let ([a, b], true) = (signs.as_slice(), one)

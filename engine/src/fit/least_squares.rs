@@ -45,11 +45,14 @@ pub struct Settings {
     pub resolution: f64,
     /// c: residuals beyond it count linearly; infinite for plain squares.
     pub huber: f64,
+    /// A gain of the cost that no value shows, beside a share of the cost itself: where the residuals have kinks, ever smaller ones are found
+    /// without end.
+    pub nothing: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY }
+        Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 }
     }
 }
 
@@ -156,7 +159,7 @@ pub fn minimize(
     /// The first damping, its smallest change and the largest that is tried.
     const FIRST: f64 = 1e-3;
     const LARGEST: f64 = 1e16;
-    /// So many rounds, each better by a share of the cost that no value shows, are the end.
+    /// So many rounds, each better by a gain that no value shows, are the end.
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
     let mut idle = 0;
@@ -199,7 +202,7 @@ pub fn minimize(
             if let Some(cost) = found.filter(|cost| *cost < best || (is_last && *cost <= best))
                 && let Some(evaluated) = problem.evaluate(&next)
             {
-                idle = if best - cost <= SHOWN * best { idle + 1 } else { 0 };
+                idle = if best - cost <= f64::max(SHOWN * best, settings.nothing) { idle + 1 } else { 0 };
                 (u, at, best) = (next, evaluated, cost);
                 mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));
                 growth = 2.0;

@@ -47,13 +47,20 @@ pub fn solve(
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
     const SCALES: usize = 12;
+    /// A way of so many standard errors along the best direction is none.
+    const NOTHING: f64 = 1e-3;
     let residuals = super::least_squares::LeastSquares::residuals(problem, start)?;
     let mut scale = problem.scale(&residuals);
     let mut u = start.to_vec();
     let mut left = rounds;
     for turn in 0..SCALES {
         let huber = if robust { HUBER * scale } else { f64::INFINITY };
-        let settings = Settings { rounds: left.max(1), huber, ..Settings::default() };
+        let settings = Settings {
+            rounds: left.max(1),
+            huber,
+            nothing: 0.5 * (NOTHING * scale).powi(2),
+            ..Settings::default()
+        };
         let minimum = minimize(problem, &u, &settings, go_on)?;
         left = left.saturating_sub(minimum.rounds);
         let next = problem.scale(&minimum.at.residuals);

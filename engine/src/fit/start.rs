@@ -61,8 +61,9 @@ impl Problem {
         (0..self.parameters.len()).filter(|j| is(&self.parameters[*j].target)).collect()
     }
 
-    /// Lets γ have the smallest force of the points, and δ₀ their median offset.
-    fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<f64>> {
+    /// Lets γ have the smallest force of the points, and δ₀ their median offset; on waves, where several states have one force, also that
+    /// of the pull-off.
+    fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<Vec<f64>>> {
         const TIMES: usize = 6;
         let adhesions =
             self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
@@ -86,11 +87,23 @@ impl Problem {
                 Some(datum.point.x - x)
             };
             let offsets: Vec<f64> = self.data.iter().filter(|datum| !datum.free).filter_map(offset).collect();
-            if let Some(offset) = median(offsets) {
+            let of_retraction =
+                self.data.iter().filter(|datum| !datum.free && datum.segment == Segment::Retraction);
+            let last = of_retraction.map(|datum| datum.point.x).fold(f64::INFINITY, f64::min);
+            let ends = paths.of(Segment::Retraction).vertices.iter().map(|vertex| vertex.at[0]);
+            let pull_off = last - ends.fold(f64::INFINITY, f64::min);
+            let has_waves = self.preset.gap.feature_length().is_some();
+            let found =
+                median(offsets).into_iter().chain(Some(pull_off).filter(|x| has_waves && x.is_finite()));
+            let with = |offset| {
+                let mut u = u.clone();
                 u[j] = self.parameters[j].inner(offset);
-            }
+                u
+            };
+            let found: Vec<Vec<f64>> = found.map(with).collect();
+            return Some(if found.is_empty() { vec![u] } else { found });
         }
-        Some(u)
+        Some(vec![u])
     }
 
     /// The candidates, that of the preset first.
@@ -121,12 +134,15 @@ impl Problem {
                 })
                 .collect();
         }
+        // On waves a smaller step is needed not to miss the right count of snaps.
+        let fine = self.preset.gap.feature_length().is_some() && grid.len() == 1;
+        let count = if fine { 2 * MODULI - 1 } else { MODULI };
         for u in grid {
             match modulus.first() {
                 None => list.push(u),
-                Some(&j) => list.extend((0..MODULI).map(|i| {
+                Some(&j) => list.extend((0..count).map(|i| {
                     let mut u = u.clone();
-                    u[j] += (i as f64 / (MODULI - 1) as f64 - 0.5) * DECADES * std::f64::consts::LN_10;
+                    u[j] += (i as f64 / (count - 1) as f64 - 0.5) * DECADES * std::f64::consts::LN_10;
                     u
                 })),
             }
@@ -153,8 +169,9 @@ pub fn start(
             break;
         }
         let at = problem.instrument_at(&u);
-        let settled = if scan { compared.settled(u.clone(), least - at.baseline) } else { Some(u.clone()) };
-        for u in [Some(u).filter(|_| i == 0), settled].into_iter().flatten() {
+        let settled = if scan { compared.settled(u.clone(), least - at.baseline) } else { None };
+        let own = Some(u).filter(|_| i == 0 || !scan);
+        for u in own.into_iter().chain(settled.into_iter().flatten()) {
             ranked.extend(compared.distance(&u).map(|distance| (distance, u)));
         }
     }

@@ -171,3 +171,19 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     let refused = fit(&truth, &points, &options, &mut |_| true).unwrap_err().to_string();
     assert!(refused.contains("rings of contact") && refused.contains("a crest outside touches"), "{refused}");
 }
+
+#[test]
+fn the_retraction_alone_is_found_from_three_times_off_with_its_offset_and_its_amplitude() {
+    let mut points = looped(&preset(WAVES, 1.0, 0.004, ""), 0.12, 300);
+    points.x.iter_mut().for_each(|x| *x += 0.03);
+    let asked = crate::measured::Asked { segment: Some(Segment::Retraction), ..Default::default() };
+    let free = [E, W, "data.offset"].map(str::to_owned).to_vec();
+    let options = Options { free, asked, ..Options::default() };
+    let start = preset(WAVES, 3.0, 0.0013, "");
+    let found = fit(&start, &points, &options, &mut |_| true).unwrap();
+    close(&found, &[1.0, 0.004, 0.03], 1e-8);
+    let free = [E, W, "data.offset", "A"].map(str::to_owned).to_vec();
+    let found = fit(&start, &points, &Options { free, ..Options::default() }, &mut |_| true).unwrap();
+    assert_eq!(found.ending, super::least_squares::Ending::Converged);
+    close(&found, &[1.0, 0.004, 0.03, 0.0025], 1e-8);
+}

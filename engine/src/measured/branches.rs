@@ -313,7 +313,8 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap_or(0);
     let rise = |i: usize| force[i + 1] - force[i];
     let jump = (least..force.len() - 1).max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
-    if let Some(jump) = jump.filter(|&jump| rise(jump) > limit) {
+    let jump = jump.filter(|&jump| rise(jump) > limit).or_else(|| blurred(&points, least, limit));
+    if let Some(jump) = jump {
         let rest = points.split_off(jump + 1);
         let line = Line::of(&rest);
         let within = rest.iter().position(|point| point.force >= line.at(point.x) - limit);
@@ -333,6 +334,20 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     }
     let free = points.split_off((at + off).min(points.len()));
     Branch { segment, attached: points, free, dropped: 0 }
+}
+
+/// The last row before a jump that is spread over some rows, since the noise of x has put them on either side: the medians beside it
+/// differ most there, by more than `limit`.
+fn blurred(points: &[Point], from: usize, limit: f64) -> Option<usize> {
+    const ROWS: usize = 7;
+    let of = |rows: &[Point]| median(rows.iter().map(|point| point.force).collect());
+    let rise = |at: usize| {
+        let (before, after) = (&points[at + 1 - ROWS..=at], &points[at + 1..=at + ROWS]);
+        Some((of(after)? - of(before)?, at))
+    };
+    let last = points.len().checked_sub(ROWS + 1)?;
+    let rises = (from.max(ROWS)..=last).filter_map(rise).filter(|(rise, _)| *rise > limit);
+    rises.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
 }
 
 /// The running median of five, of fewer at the ends.
@@ -401,8 +416,12 @@ fn noise(
         ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
     }
     let radius = radii.into_iter().reduce(f64::min);
-    let ways = if of_radius { radius } else { median(ways).map(|way| way / 1.652) };
-    let found = [ways, median(forces).map(|step| step / 0.954), radius];
+    let forces = median(forces).map(|step| step / 0.954);
+    // Of radii alone the scatter has that of the force in it: both cannot be told where neither is known.
+    let known = forces.is_some() || asked.sigma[1].is_some();
+    let of_ways = || median(ways).map(|way| way / 1.652);
+    let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
+    let found = [ways, forces, radius];
     let mut noise = Noise { sigma: [0.0; 3], assumed: [false; 3] };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];

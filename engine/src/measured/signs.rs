@@ -8,6 +8,8 @@ use super::role::Segment;
 const FLAT: [f64; 2] = [0.1, 0.3];
 /// Rows at an end stay at one x that go over less than this share of what as many go over elsewhere.
 const PAUSE: f64 = 0.1;
+/// The shares of the range of x over which the force is looked at, where much noise is on it.
+const SHARES: [f64; 2] = [0.08, 0.16];
 
 /// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
@@ -40,18 +42,22 @@ pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
         }
     }
     // Of much noise, or of rows that stay at one x: the medians of parts of either end.
-    let trends = trends(x, y, &order);
-    trends.map_or([false; 2], |[low, high]| [flat(low, high), flat(high, low)])
+    for share in SHARES {
+        let found = trends(x, y, &order, share).map(|[low, high]| [flat(low, high), flat(high, low)]);
+        if let Some(found) = found.filter(|found| *found != [false; 2]) {
+            return found;
+        }
+    }
+    [false; 2]
 }
 
-/// By how much the force goes on over the outer parts of the range of x, low and high, by the medians of bins; `None` of few rows.
-fn trends(x: &[f64], y: &[f64], order: &[usize]) -> Option<[f64; 2]> {
-    /// The share of the range of x, its bins, and the rows in each.
-    const SHARE: f64 = 0.08;
+/// By how much the force goes on over the outer parts of the range of x, of this share of it, low and high, by the medians of bins; `None` of few rows.
+fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]> {
+    /// The bins, and the rows in each.
     const BINS: usize = 4;
     const ROWS: usize = 4;
     let (first, last) = (x[*order.first()?], x[*order.last()?]);
-    let bin = SHARE * (last - first) / BINS as f64;
+    let bin = share * (last - first) / BINS as f64;
     let trend = |from: f64| {
         let of_bin = |k: usize| {
             let lo = from + k as f64 * bin;
