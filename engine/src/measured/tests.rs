@@ -346,7 +346,9 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
     assert!(paused.baseline.is_some() && paused.list.iter().all(|branch| branch.free.len() > 40));
     // x with noise of some rows: those that lie on the wrong side of the jump are no outliers.
     let mut rows = jkr(2e-5);
-    rows.iter_mut().for_each(|row| row.0 += 2e-3 * (random.unit() + random.unit() - 1.0));
+    for row in &mut rows {
+        row.0 += 2e-3 * (random.unit() + random.unit() - 1.0);
+    }
     let found = branches(&csv(&rows)).unwrap();
     let baseline = found.baseline.unwrap();
     for branch in &found.list {
