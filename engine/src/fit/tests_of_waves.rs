@@ -152,13 +152,17 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
         points.force.push(force);
         points.segments.as_mut().unwrap().push(segment);
     };
-    (1..40).rev().for_each(|i| add(-0.001 * f64::from(i), 0.0, Segment::Approach));
+    for i in (1..40).rev() {
+        add(-0.001 * f64::from(i), 0.0, Segment::Approach);
+    }
     for state in &cycle.states {
         let is_loading = state.direction == Direction::Loading;
         let segment = if is_loading { Segment::Approach } else { Segment::Retraction };
         add(state.approach, state.force, segment);
     }
-    (9..40).for_each(|i| add(-0.001 * f64::from(i), 0.0, Segment::Retraction));
+    for i in 9..40 {
+        add(-0.001 * f64::from(i), 0.0, Segment::Retraction);
+    }
     let found = run(&preset(WAVES, 1.4, 0.7e-4, ""), &points, &[E, W]);
     assert!(
         found.notes.iter().any(|note| note.contains("rings of contact are not fitted")),
@@ -175,7 +179,9 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
 #[test]
 fn the_retraction_alone_is_found_from_three_times_off_with_its_offset_and_its_amplitude() {
     let mut points = looped(&preset(WAVES, 1.0, 0.004, ""), 0.12, 300);
-    points.x.iter_mut().for_each(|x| *x += 0.03);
+    for x in &mut points.x {
+        *x += 0.03;
+    }
     let asked = crate::measured::Asked { segment: Some(Segment::Retraction), ..Default::default() };
     let free = [E, W, "data.offset"].map(str::to_owned).to_vec();
     let options = Options { free, asked, ..Options::default() };
