@@ -74,7 +74,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         assert!(figure.walker().is_some() && is_fit(&figure));
     }
     let titles = View::ALL.map(|view| session.figure(view).title);
-    assert_eq!(titles[..3], ["P/Pc over δ/R", "s/λ over P/Pc", "s/λ over δ/R"]);
+    assert_eq!(titles[..4], ["P/Pc over δ/R", "P/Pc over Δ/R", "s/λ over P/Pc", "s/λ over δ/R"]);
     session.does(Id::Axes);
     assert_eq!(session.figure(View::RadiusForce).title, "s over P");
     assert_eq!(session.figure(View::RadiusForce).x.unit, "force");
