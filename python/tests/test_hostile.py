@@ -39,6 +39,7 @@ def test_hostile_calls():
                 lambda: problem.pressure(value, other),
                 lambda: problem.gap(value, other),
                 lambda: problem.unload(value, areas=False, admissibility=False),
+                lambda: problem.stability(value, samples=other),
                 lambda: problem[key],
                 lambda: pulloff.sweep(value),
                 lambda: pulloff.sweep({"preset": problem, "axis": [{"key": key, "values": [value, other]}]}, jobs=1),
