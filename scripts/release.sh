@@ -5,6 +5,7 @@
 #   scripts/release.sh [FOLDER]             into FOLDER [default: target/release-files]
 #   PROGRAM=FILE scripts/release.sh …       packs this program instead of building one
 #   PARTS="tar deb wheels" …                some of the parts alone
+#   MAINTAINER='NAME <ADDRESS>' …            who keeps the Debian package [default: who holds the copyright]
 #
 # Needs a C compiler for musl (Debian: musl-tools), dpkg-deb for the package, maturin and zig for wheels. A part that cannot
 # be made here is refused with a sentence, and the script then ends with status 3.
@@ -14,6 +15,7 @@ target=x86_64-unknown-linux-musl
 folder=$(realpath -m "${1:-target/release-files}")
 parts=${PARTS:-tar deb wheels}
 version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
+maintainer=${MAINTAINER:-$(sed -n 's/^Copyright (c) [0-9]* //p' LICENSE-MIT)}
 name=pulloff-$version-x86_64-linux
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -82,7 +84,7 @@ Version: $version
 Architecture: amd64
 Section: science
 Priority: optional
-Maintainer: the authors of pulloff <pulloff@localhost>
+Maintainer: $maintainer
 Installed-Size: $(du -sk "$tree/usr" | cut -f 1)
 Description: terminal explorer for adhesive contact
  Traces and steps the detachment of rough and smooth spheres: snaps, pull-off, losses.
