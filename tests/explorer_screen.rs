@@ -118,7 +118,7 @@ fn every_view_a_closer_look_and_a_pin() {
         "s/λ over P/Pc",
         "s/λ over δ",
         "p/E* over r/λ",
-        "gap over r/λ",
+        "gap/R over r/λ",
         "contact, s/λ",
         "U over s/λ",
         "unloading: P/Pc",

@@ -55,12 +55,12 @@ fn a_row_is_the_fit_of_its_file_and_says_why_there_is_none() {
             all.iter().find(|parameter| parameter["key"] == key).unwrap()[what].as_f64().unwrap()
         };
         let number = |at: usize| row[at].parse::<f64>().unwrap();
-        assert_eq!(number(2), of("material.effective_modulus", "value"));
-        assert_eq!(number(3), of("material.effective_modulus", "standard_error"));
-        assert_eq!(number(4), of("material.work_of_adhesion", "value"));
-        assert_eq!(number(5), of("data.offset", "value"));
-        assert_eq!(number(7), found["chi_squared"].as_f64().unwrap());
-        assert_eq!(number(8), found["outliers"].as_f64().unwrap());
+        assert_eq!(number(2).to_bits(), of("material.effective_modulus", "value").to_bits());
+        assert_eq!(number(3).to_bits(), of("material.effective_modulus", "standard_error").to_bits());
+        assert_eq!(number(4).to_bits(), of("material.work_of_adhesion", "value").to_bits());
+        assert_eq!(number(5).to_bits(), of("data.offset", "value").to_bits());
+        assert_eq!(number(7).to_bits(), found["chi_squared"].as_f64().unwrap().to_bits());
+        assert_eq!(number(8).to_bits(), found["outliers"].as_f64().unwrap().to_bits());
         assert!((number(2) / 1e6 - 1.0).abs() < 3e-3 && (number(4) / 0.05 - 1.0).abs() < 5e-3);
         // R is not free.
         assert_eq!(row[6], "");

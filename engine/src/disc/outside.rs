@@ -62,13 +62,18 @@ fn rule(distance: f64, width: f64) -> &'static [[f64; 2]] {
 
 /// The deformed gap at `r ≥ s` around a disc of radius `s` at the approach `delta`; the panels must reach to `r`.
 pub fn gap_from(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
+    gap_by(panels, s, r, |i, ends| stretch_outside(panels, i, &panels.list()[i], delta, r, ends))
+}
+
+/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there.
+fn gap_by(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> f64) -> f64 {
     if r <= s {
         return 0.0;
     }
     let (first, last) = (panels.place(s).panel, panels.place(r).panel);
     let part = |i: usize| {
-        let panel = &*panels.list()[i];
-        stretch_outside(panels, i, panel, delta, r, [panel.span.lo.max(s), panel.span.hi.min(r)])
+        let span = panels.list()[i].span;
+        stretch(i, [span.lo.max(s), span.hi.min(r)])
     };
     FRAC_2_PI * (first..=last).map(part).sum::<f64>()
 }
@@ -132,16 +137,7 @@ fn stretch_by(
 
 /// The same to the last digits of the table, with as many nodes on far panels as on near ones: for what is differentiated.
 pub fn gap_from_fine(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
-    if r <= s {
-        return 0.0;
-    }
-    let (first, last) = (panels.place(s).panel, panels.place(r).panel);
-    let part = |i: usize| {
-        let panel = &*panels.list()[i];
-        let ends = [panel.span.lo.max(s), panel.span.hi.min(r)];
-        stretch_by(panels, i, panel, delta, r, ends, &RULES[0])
-    };
-    FRAC_2_PI * (first..=last).map(part).sum::<f64>()
+    gap_by(panels, s, r, |i, ends| stretch_by(panels, i, &panels.list()[i], delta, r, ends, &RULES[0]))
 }
 
 /// d/dr ∫_s^r g/√(r² − a²) da at `r > s`; the panels must reach to `r`.
