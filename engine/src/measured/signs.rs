@@ -18,8 +18,9 @@ pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
     let spread = |ends: &[usize]| {
         let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
         y.sort_by(f64::total_cmp);
-        let tenth = y.len() / 10;
-        y[y.len() - 1 - tenth] - y[tenth]
+        // Some rows that are off among few hide nothing.
+        let fifth = y.len() / 5;
+        y[y.len() - 1 - fifth] - y[fifth]
     };
     // Rows of a pause say nothing.
     let way = range(x.iter().copied());

@@ -344,6 +344,13 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
     rows.splice(300..300, (0..150).map(|_| (top.0 - 1e-4 * random.unit(), top.1, false)));
     let paused = branches(&csv(&rows)).unwrap();
     assert!(paused.baseline.is_some() && paused.list.iter().all(|branch| branch.free.len() > 40));
+    // Some rows of the free end are far off.
+    let mut rows = jkr(2e-5);
+    for row in rows.iter_mut().take(30).step_by(6) {
+        row.1 += 0.02;
+    }
+    let found = branches(&csv(&rows)).unwrap();
+    assert!(found.list.iter().all(|branch| branch.free.len() > 40));
     // x with noise of some rows: those that lie on the wrong side of the jump are no outliers.
     let mut rows = jkr(2e-5);
     for row in &mut rows {
