@@ -135,7 +135,7 @@ fn every_view_a_closer_look_and_a_pin() {
         pty.wait_for(|screen| !screen.contains("computing"), "its picture");
     }
     pty.keys("t");
-    pty.wait_for(|screen| screen.contains("P/Pc over δ  (t:"), "the first view again");
+    pty.wait_for(|screen| screen.contains("P/Pc over δ/R  (t:"), "the first view again");
 
     pty.keys("++");
     pty.wait_for(|screen| screen.contains("zoom 4x"), "a closer look");
