@@ -24,7 +24,7 @@
 //! Rows that do not begin at 0 are continued to the axis by the even parabola that the spline has there; h(0) = 0 then
 //! holds by subtraction, whatever height the rows were measured from. From the mean of the last cell to the last row f is
 //! straight, as the smoothest curve is. Beyond the last row nothing is known and nothing is extrapolated:
-//! [`Gap::largest_radius`] says where, and jets beyond are NaN.
+//! [`Gap::largest_radius`](crate::gap::Gap::largest_radius) says where, and jets beyond are NaN.
 //!
 //! The reference length is R = 1/κ, or the largest radius where κ is not positive. The feature length is the mean
 //! distance of the crests of f as a random profile would have it, 2π √(∫f'²/∫f''²) (λ itself for a single wave), and
