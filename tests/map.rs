@@ -190,3 +190,35 @@ fn refusals_name_what_is_wrong_and_keep_files() {
     }
     assert_eq!(fs::read_to_string(home.path().join("there.csv")).unwrap(), "mine");
 }
+
+#[test]
+fn a_line_of_cusps_that_crosses_the_map_within_a_hair_of_radii_is_on_it() {
+    let home = tempfile::tempdir().unwrap();
+    // Crest, x and y of the points of the cusps, over a range of adhesions that begins at zero.
+    let cusps = |most: f64| -> Vec<(String, [f64; 2])> {
+        let y = format!("material.work_of_adhesion=0.0005..{most}");
+        let rows = text(
+            home.path(),
+            &["map", "wavy-sphere", "--x-key", "gap.amplitude=0.0002..0.001", "--y-key", &y],
+        );
+        let mut rows = csv::Reader::from_reader(rows.as_bytes());
+        let rows = rows.records().map(|row| row.unwrap());
+        let cusps = rows.filter(|row| &row[1] == "cusp");
+        cusps.map(|row| (row[2].to_owned(), [4, 5].map(|k| row[k].parse().unwrap()))).collect()
+    };
+    let whole = cusps(0.02);
+    for most in [0.0075, 0.003, 0.001] {
+        let part = cusps(most);
+        let near =
+            |[x, y]: [f64; 2], [u, v]: [f64; 2]| ((x - u) / 0.0008).hypot((y - v) / (most - 0.0005)) < 0.03;
+        let within: Vec<_> = whole.iter().filter(|(_, [_, y])| *y < most).collect();
+        let crests: std::collections::BTreeSet<&str> = within.iter().map(|(crest, _)| &**crest).collect();
+        assert!(crests.len() > 5, "{crests:?}");
+        for (crest, at) in within {
+            assert!(
+                part.iter().any(|(other, place)| other == crest && near(*place, *at)),
+                "up to {most} the cusp of crest {crest} at {at:?} is missing"
+            );
+        }
+    }
+}

@@ -20,8 +20,10 @@ const MOST: f64 = 40_000.0;
 /// Neighbours on a line are nearer to each other than this, in shares of the axes, after so many halvings at most.
 const CLOSE: f64 = 0.02;
 const DEPTH: usize = 20;
-/// Parts of a step in which a line is looked for that neither end is on.
-const BETWEEN: u32 = 8;
+/// Halvings of a step in which a line is looked for that neither end is on, and of those the ones in which it is looked for
+/// although neither end has one.
+const SOUGHT: usize = 40;
+const BLIND: usize = 3;
 /// Halvings of the last step at the border of the map, and at a swallowtail.
 const HALVINGS: usize = 48;
 
@@ -175,12 +177,12 @@ impl Family {
                     (None, Some(here)) => good(last(&good, from, s)).map(|edge| (edge, here)),
                     (Some(old), None) => good(last(&good, s, from)).map(|edge| (old, edge)),
                     // A whole line may lie between: where F is steep.
-                    (None, None) => (1..BETWEEN)
-                        .map(|k| from + (s - from) * f64::from(k) / f64::from(BETWEEN))
-                        .find(|middle| good(*middle).is_some())
-                        .and_then(|middle| {
+                    (None, None) => {
+                        let ends = [(from, born(from)), (s, born(s))];
+                        within(born, ends, SOUGHT).and_then(|middle| {
                             Some((good(last(&good, from, middle))?, good(last(&good, s, middle))?))
-                        }),
+                        })
+                    }
                 };
                 if let Some((a, b)) = ends {
                     refine(&good, a, b, DEPTH, &mut lines);
@@ -250,6 +252,31 @@ fn last<T>(good: &dyn Fn(f64) -> Option<T>, mut outside: f64, mut inside: f64) -
         if good(middle).is_some() { inside = middle } else { outside = middle }
     }
     inside
+}
+
+/// A radius between two, at neither of which the line is on the map, at which it is. A line may cross the whole map in a small
+/// part of a step, where F is steep.
+fn within(
+    born: &dyn Fn(f64) -> Option<Born>,
+    [a, b]: [(f64, Option<Born>); 2],
+    halvings: usize,
+) -> Option<f64> {
+    let is_sought = match (a.1, b.1) {
+        // Both beyond one border: so is what lies between.
+        (Some(a), Some(b)) => (0..2).all(|k| a.at[k].max(b.at[k]) >= 0.0 && a.at[k].min(b.at[k]) <= 1.0),
+        (None, None) => halvings > SOUGHT - BLIND,
+        _ => true,
+    };
+    if halvings == 0 || !is_sought {
+        return None;
+    }
+    let middle = 0.5 * (a.0 + b.0);
+    let here = born(middle);
+    if here.is_some_and(|here| here.is_inside()) {
+        return Some(middle);
+    }
+    let parts = [[a, (middle, here)], [(middle, here), b]];
+    parts.into_iter().find_map(|ends| within(born, ends, halvings - 1))
 }
 
 /// Adds the line from `a` to `b` to the last one, its points closer to each other than [`CLOSE`], with the swallowtails between
