@@ -3,6 +3,7 @@
 use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
+use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, short, significant, with_unit};
 use pulloff_engine::report::unload::{StateReport, control_name};
@@ -131,6 +132,10 @@ fn next(model: &Model) -> String {
     }
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
+    let kept = match control {
+        Control::Stiffness(_) => "with the spring's far end held".to_owned(),
+        Control::Displacement | Control::Force => format!("at the {held} held"),
+    };
     if node.is_limit(control) {
         return limit_hint(model, node);
     }
@@ -141,7 +146,7 @@ fn next(model: &Model) -> String {
             format!("Start, stable under {held} control. {limit} runs to a limit point, {help} helps")
         }
         (true, NodeKind::Solved) => {
-            format!("Solved again at the {held} held, stable. {limit} runs to a limit point")
+            format!("Solved again {kept}, stable. {limit} runs to a limit point")
         }
         (true, _) => {
             format!("Stable under {held} control. {step} steps {way}, {limit} runs to a limit point")
@@ -150,7 +155,7 @@ fn next(model: &Model) -> String {
             format!("This start is unstable under {held} control: {jump} lets the edge run outward")
         }
         (false, NodeKind::Solved) => {
-            format!("Solved again at the {held} held, unstable there: {jump} lets the edge run")
+            format!("Solved again {kept}, unstable there: {jump} lets the edge run")
         }
         (false, _) => {
             format!("Unstable under {held} control. {jump} lets the edge run, {step} steps {way}")

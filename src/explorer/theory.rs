@@ -7,8 +7,8 @@ use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::{KesariLew, Side};
 use pulloff_engine::theory::{Disc, Exact};
 
-/// Points of a smooth curve.
-const SMOOTH_POINTS: u32 = 200;
+/// Points of a smooth curve, so many that its difference from a wavy one shows the waves.
+const SMOOTH_POINTS: u32 = 1000;
 /// Theory goes on beyond both ends of the curve, as far as a chart shows it: outward to this many times the start,
 /// inward to this share of the end.
 const BEYOND: [f64; 2] = [1.1, 0.1];

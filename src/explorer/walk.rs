@@ -167,7 +167,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             Outcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
         }
         WalkEnd::Failed(WalkFailure::NotSolved) => {
-            let held = control_name(request.control);
+            let held = match request.control {
+                Control::Stiffness(_) => "place of the spring's far end",
+                control => control_name(control),
+            };
             Outcome::Stopped(match request.action {
                 Action::Solve { rings: Some(_), .. } => {
                     format!("no equilibrium of these contacts at this {held} near the old edges")

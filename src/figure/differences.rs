@@ -10,16 +10,19 @@ use crate::explorer::curve::CurvePoint;
 use pulloff_engine::disc::solution::Solution;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::significant;
+use pulloff_engine::theory::Exact;
 use std::mem::discriminant;
 
 /// Halvings of a stretch of the curve: far below what is drawn, and below rounding.
 const HALVINGS: usize = 50;
 
 /// Another curve: δ, P and s of its states in the user's units, from the outermost inward.
-struct Other {
+struct Other<'a> {
     role: Role,
     name: String,
     states: Vec<[f64; 3]>,
+    /// P at any s.
+    force: Box<dyn Fn(f64) -> Option<f64> + 'a>,
 }
 
 /// Builds the view.
@@ -38,12 +41,16 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         return figure;
     }
     let walker = subject.walk.last().filter(|node| subject.is_on_curve(node) && !node.is_apart());
-    let walker = walker.map(|node| node.state.in_units(node.setting.units()).contact_radius);
+    let walker = walker.map(|node| node.state.in_units(node.setting.units()));
     let (mut said, mut here) = (Vec::new(), None);
     for other in &others {
         let by_radius: Vec<(f64, f64)> = ours.at_equal_radius(&other.states).into_iter().map(place).collect();
         let by_approach = ours.at_equal_approach(&other.states).into_iter().map(place).collect();
-        if let Some(at) = walker.and_then(|s| between(&by_radius, scale.radius(s))) {
+        // At the state itself, not between two that are drawn.
+        if let Some((state, force)) =
+            walker.and_then(|state| Some((state, (other.force)(state.contact_radius)?)))
+        {
+            let at = place([state.contact_radius, state.force - force]);
             said.push(format!("{} {}", other.name, significant(at.1, 3)));
             here.get_or_insert(at);
         }
@@ -59,24 +66,31 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 }
 
 /// The curves to compare with; a pin whose numbers have other units is left out, and said.
-fn others(subject: &Subject<'_>, notes: &mut Vec<String>) -> Vec<Other> {
+fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<Other<'a>> {
     let theory = &subject.curve.base.theory;
     let overlays = subject.overlays;
     let (curve, unit) = (&subject.curve.base.curve, subject.curve.case.units().length);
     let ours = curve.innermost() * unit..=curve.outermost() * unit;
     let mut all = Vec::new();
-    let mut add = |role, name: &str, states: &[[f64; 3]], is_on: bool| {
+    let mut add = |role, name: &str, states: &'a [[f64; 3]], force: Box<dyn Fn(f64) -> Option<f64> + 'a>| {
         // Theory goes on beyond our curve, where other branches have the same δ.
         let states: Vec<_> = states.iter().copied().filter(|at| ours.contains(&at[2])).collect();
-        if is_on && !states.is_empty() {
-            all.push(Other { role, name: name.to_owned(), states });
+        if !states.is_empty() {
+            all.push(Other { role, name: name.to_owned(), states, force });
         }
     };
-    add(Role::Smooth, theory.smooth_name, &theory.smooth, overlays.smooth);
-    if let Some(envelope) = &theory.envelope {
-        add(Role::Envelope, "envelope", &envelope.unloading, overlays.envelope);
+    let problem = &subject.curve.case.problem;
+    if let (Some(smooth), true) = (subject.curve.case.smooth(), overlays.smooth) {
+        add(Role::Smooth, theory.smooth_name, &theory.smooth, Box::new(move |s| Some(smooth.force(s))));
     }
-    add(Role::Exact, theory.exact_name, &theory.exact, overlays.exact);
+    if let (Some(envelope), true) = (&theory.envelope, overlays.envelope) {
+        let states = &envelope.unloading;
+        add(Role::Envelope, "envelope", states, Box::new(|s| between(states, s)));
+    }
+    if overlays.exact {
+        let exact = Exact::of(problem);
+        add(Role::Exact, theory.exact_name, &theory.exact, Box::new(move |s| Some(exact.force(s))));
+    }
     let mut pinned = Vec::new();
     for pin in subject.pins {
         if discriminant(&pin.preset().units) != discriminant(&subject.preset.units) {
@@ -86,7 +100,9 @@ fn others(subject: &Subject<'_>, notes: &mut Vec<String>) -> Vec<Other> {
         let state = |at: &CurvePoint| [at.approach, at.force, at.contact_radius];
         let states = pin.curve.points.iter().map(state).collect();
         let name = format!("{} {}", pin.number, pin.name(subject.preset));
-        pinned.push(Other { role: Role::Pin(pin.number), name, states });
+        let (solution, units) = (&pin.curve.base.curve.solution, pin.curve.case.units());
+        let force = move |s: f64| Some(solution.at(solution.place(s / units.length)?).force * units.force);
+        pinned.push(Other { role: Role::Pin(pin.number), name, states, force: Box::new(force) });
     }
     all.extend(pinned);
     all
@@ -216,11 +232,11 @@ fn rises<T>(stretch: &[T], of: impl Fn(&T) -> f64) -> bool {
     stretch.first().zip(stretch.last()).is_some_and(|(first, last)| of(last) > of(first))
 }
 
-/// The point of a line at `x`, between its neighbours.
-fn between(points: &[(f64, f64)], x: f64) -> Option<(f64, f64)> {
-    points.windows(2).find_map(|pair| {
-        let [(a, y), (b, z)] = [pair[0], pair[1]];
-        let share = (x - a) / (b - a);
-        ((0.0..=1.0).contains(&share) && y.is_finite() && z.is_finite()).then_some((x, y + (z - y) * share))
+/// P at the radius `s`, between neighbours of smooth states.
+fn between(states: &[[f64; 3]], s: f64) -> Option<f64> {
+    states.windows(2).find_map(|pair| {
+        let [[_, p, a], [_, q, b]] = [pair[0], pair[1]];
+        let share = (s - a) / (b - a);
+        (0.0..=1.0).contains(&share).then_some(p + (q - p) * share)
     })
 }

@@ -475,6 +475,16 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
         assert!((y - scale.force(force - at.force)).abs() < 1e-9, "{x}: {y}");
     }
     assert!(is_fit(&figure) && figure.walker().is_some());
+    // What is said of the walker is of its own state: far from a limit point and on it, against a closed form.
+    session.does(Id::NextLimit);
+    let figure = session.figure(View::Differences);
+    let jkr = session.model.curve.as_ref().unwrap().case.smooth().unwrap();
+    let node = session.model.history.current().unwrap();
+    let state = node.state.in_units(node.setting.units());
+    let scale = Subject::of(&session.model).unwrap().scale();
+    let expected = scale.force(state.force - jkr.force(state.contact_radius));
+    assert!((figure.walker().unwrap().1 - expected).abs() < 1e-12 * expected.abs(), "{expected}");
+    session.does(Id::Undo);
     let (count, most) = largest(&of(Role::Pin(1), true));
     assert!(count > 100 && most > 0.0 && most < 1e-2, "{count} points, {most}");
     session.does(Command::Unpin(None)).does(Command::Overlay(Overlay::Exact));

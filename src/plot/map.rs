@@ -25,7 +25,7 @@ const ONE_SNAP: f64 = 0.5;
 /// Bands of colour.
 const BANDS: usize = 12;
 /// Colours of counts at most: more cannot be told apart.
-const COUNTS: f64 = 9.0;
+const COUNTS: f64 = 12.0;
 /// An axis of equal factors is logarithmic where it reaches over this factor at least.
 const DECADE: f64 = 10.0;
 
@@ -379,7 +379,7 @@ mod tests {
         assert!(drawn(&colors[0]) >= 2 && drawn(&colors[4]) >= 2 && drawn(&colors[3]) <= drawn(&colors[0]));
         assert_eq!(few.places(|cell| few.counts().unwrap()[0].holds(cell)).len(), 2);
         let many = map(vec![vec![0.0, 10.0, 20.0]; 3]);
-        assert_eq!(names(&many)[..2], ["snaps 0-2", "3-5"]);
-        assert_eq!(names(&many).last().map(String::as_str), Some("18-20"));
+        assert_eq!(names(&many)[..2], ["snaps 0-1", "2-3"]);
+        assert_eq!(names(&many).last().map(String::as_str), Some("20"));
     }
 }

@@ -147,7 +147,11 @@ impl Choose {
     pub fn shown(&self) -> Vec<(usize, &Item)> {
         let wanted = self.filter.to_lowercase();
         let items = self.items.iter().enumerate();
-        items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect()
+        let mut found: Vec<_> =
+            items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect();
+        // What is called so before what only speaks of it.
+        found.sort_by_key(|(_, item)| !item.text.to_lowercase().starts_with(&wanted));
+        found
     }
 
     /// The selected line, and its place among all; `None` where no line has what was typed.

@@ -65,6 +65,10 @@ pub(super) fn curve_came(
             if first {
                 return begin_walk(model, &curve);
             }
+            if model.is_computing() {
+                // Solved again on the newer curve.
+                return Some(Vec::new());
+            }
             let is_tried = std::mem::take(&mut model.is_tried);
             if model.walking.is_some() {
                 // Solved again once that is over.
