@@ -20,8 +20,8 @@ const MOST: f64 = 40_000.0;
 /// Neighbours on a line are nearer to each other than this, in shares of the axes, after so many halvings at most.
 const CLOSE: f64 = 0.02;
 const DEPTH: usize = 20;
-/// Halvings of a step in which a line is looked for that neither end is on, and of those the ones in which it is looked for
-/// although neither end has one.
+/// Halvings of a step in which a line is looked for that neither end is on; the first ones look everywhere, the others where
+/// the ends say that it may be.
 const SOUGHT: usize = 40;
 const BLIND: usize = 3;
 /// Halvings of the last step at the border of the map, and at a swallowtail.
@@ -262,12 +262,12 @@ fn within(
     halvings: usize,
 ) -> Option<f64> {
     let is_sought = match (a.1, b.1) {
-        // Both beyond one border: so is what lies between.
+        // Both beyond one border: so, in a part so small, is what lies between.
         (Some(a), Some(b)) => (0..2).all(|k| a.at[k].max(b.at[k]) >= 0.0 && a.at[k].min(b.at[k]) <= 1.0),
-        (None, None) => halvings > SOUGHT - BLIND,
+        (None, None) => false,
         _ => true,
     };
-    if halvings == 0 || !is_sought {
+    if halvings == 0 || !(is_sought || halvings > SOUGHT - BLIND) {
         return None;
     }
     let middle = 0.5 * (a.0 + b.0);

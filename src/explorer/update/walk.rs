@@ -95,8 +95,11 @@ fn tell_of_fold(model: &mut Model, before: f64) {
         length(after),
         length(before)
     );
-    // What was said of the values stands before it.
-    let said = model.message.take().filter(|(level, _)| *level == Level::Info).map(|(_, said)| said);
+    // What was said of the values stands before it; what went wrong meanwhile stays.
+    let said = match &model.message {
+        Some((level, _)) if level.is_bad() => return,
+        said => said.as_ref().map(|(_, said)| said.clone()),
+    };
     model.tell(Level::Info, said.into_iter().chain([text]).collect::<Vec<_>>().join("; "));
 }
 
