@@ -12,6 +12,7 @@ use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::{Areas, EVEN, Setting, Turn, cycle};
 use pulloff_engine::ritz::{Grading, Rings};
 use pulloff_engine::stability::{Axis, Family, Law};
@@ -49,7 +50,7 @@ fn fig_9_in(basis: BasisSpec) -> Case {
 /// B̃, W̃ and the factorization.
 #[divan::bench(args = BUILT, max_time = 5)]
 fn assembly_and_factorization(rings: usize) -> Rings {
-    Rings::new(black_box(rings), Grading::Uniform, &mut |_| true).unwrap()
+    Rings::new(black_box(rings), Grading::Uniform, &pulloff_engine::progress::Unwatched).unwrap()
 }
 
 /// Residual, force, energy and their derivatives at one (s, δ).
@@ -63,20 +64,20 @@ fn evaluation(bencher: Bencher, rings: usize) {
 #[divan::bench(args = SIZES, max_time = 5)]
 fn curve(bencher: Bencher, rings: usize) {
     let case = fig_9(rings);
-    bencher.bench_local(|| case.curve(|| true).unwrap());
+    bencher.bench_local(|| case.curve(&Unwatched).unwrap());
 }
 
 /// The curve by arc-length continuation.
 #[divan::bench(args = TRACED, max_time = 5)]
 fn trace(bencher: Bencher, rings: usize) {
     let case = fig_9(rings);
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     bencher.bench_local(|| case.trace(&curve).unwrap());
 }
 
 /// Every jump of the curve with its two losses.
 fn unload(bencher: Bencher, case: &Case, control: Control) {
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     bencher.bench_local(|| case.unload(&curve, control).unwrap());
 }
 
@@ -103,7 +104,7 @@ fn dense_radii() -> Vec<f64> {
 }
 
 fn dense(case: &Case, radii: &[f64]) -> Vec<Evaluation> {
-    case.basis.equilibria(&case.reduced, radii, Order::State, &mut || true)
+    case.basis.equilibria(&case.reduced, radii, Order::State, &Unwatched)
 }
 
 /// 2000 explicit points.
@@ -119,7 +120,7 @@ fn exact_dense_curve(bencher: Bencher) {
     let (problem, radii) = (problem(), dense_radii());
     bencher.bench_local(|| {
         let basis = Exact::of(&problem, 0.5).unwrap();
-        basis.equilibria(&problem, black_box(&radii), Order::State, &mut || true)
+        basis.equilibria(&problem, black_box(&radii), Order::State, &Unwatched)
     });
 }
 
@@ -127,7 +128,7 @@ fn exact_dense_curve(bencher: Bencher) {
 #[divan::bench]
 fn exact_table(bencher: Bencher) {
     let problem = problem();
-    bencher.bench_local(|| Table::new(Arc::clone(&problem.gap), black_box(0.5), &mut || true).unwrap());
+    bencher.bench_local(|| Table::new(Arc::clone(&problem.gap), black_box(0.5), &Unwatched).unwrap());
 }
 
 /// The problem of Fig. 9, reduced.
@@ -140,7 +141,7 @@ fn problem() -> pulloff_engine::problem::Reduced {
 /// The limit points under displacement, force and a spring, and every jump and both losses of the three unloadings, on a
 /// curve that is there.
 fn events(bencher: Bencher, case: &Case) {
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
     bencher.with_inputs(|| curve.clone()).bench_local_values(|mut curve| {
         for control in controls {
@@ -169,13 +170,13 @@ fn exact_evaluation(bencher: Bencher) {
 #[divan::bench(max_time = 5)]
 fn exact_curve(bencher: Bencher) {
     let case = fig_9_exact();
-    bencher.bench_local(|| case.curve(|| true).unwrap());
+    bencher.bench_local(|| case.curve(&Unwatched).unwrap());
 }
 
 #[divan::bench(max_time = 5)]
 fn exact_trace(bencher: Bencher) {
     let case = fig_9_exact();
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     bencher.bench_local(|| case.trace(&curve).unwrap());
 }
 
@@ -217,8 +218,8 @@ fn whole_loop(bencher: Bencher, work_of_adhesion: f64, turn: f64) {
     let turn = Turn::Approach(turn);
     let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
     bencher.bench_local(|| {
-        let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &mut || true).unwrap());
-        cycle(&table, black_box(work_of_adhesion), &setting, &|_| true).unwrap()
+        let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &Unwatched).unwrap());
+        cycle(&table, black_box(work_of_adhesion), &setting, &Unwatched).unwrap()
     });
 }
 
@@ -254,5 +255,6 @@ fn map_lines(bencher: Bencher, key: &str) {
     let range = if key.contains("radius") { [0.02, 0.1] } else { [0.0, 0.0125] };
     let x = Axis::new(key, range, false, 1.0).unwrap();
     let y = Axis::new("groups.adhesion", [1e-3, 1.0], true, 1.0).unwrap();
-    bencher.bench_local(|| Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map(&|| true).unwrap());
+    bencher
+        .bench_local(|| Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map(&Unwatched).unwrap());
 }

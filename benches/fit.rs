@@ -12,6 +12,7 @@ use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::measured::{Abscissa, Points, Segment, Spec, parse};
 use pulloff_engine::preset::{Preset, read};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use std::fmt::Write;
 
 /// Points of a fit.
@@ -41,7 +42,7 @@ fn preset(gap: &str) -> Preset {
 /// The unloading of a preset under fixed grips with a free part, evenly by the approach, with noise.
 fn unloaded(preset: &Preset) -> Points {
     let case = Case::new(preset).unwrap();
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let unloading = case.unload(&curve, Control::Displacement).unwrap();
     let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
     let force = |delta: f64| {
@@ -74,7 +75,7 @@ fn fits(bencher: Bencher, preset: &Preset, bootstrap: Option<(usize, u64)>) {
     let options = Options { free, bootstrap, ..Options::default() };
     let mut start = preset.clone();
     start.material.effective_modulus = 1.5;
-    bencher.bench_local(|| fit(&start, &points, &options, &mut |_| true).unwrap());
+    bencher.bench_local(|| fit(&start, &points, &options, &pulloff_engine::progress::Unwatched).unwrap());
 }
 
 #[divan::bench(max_time = 5)]

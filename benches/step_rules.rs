@@ -8,6 +8,7 @@ use pulloff_engine::continuation::{Settings, Tracer};
 use pulloff_engine::disc::Basis;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::curve::settings;
 use pulloff_engine::quasistatic::{Curve, CurveStop};
 use pulloff_engine::ritz::Rings;
@@ -73,7 +74,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 settings.points = 5000;
             };
             let Some(curve) = Curve::of(problem.clone(), basis.clone(), FROM, TO) else { continue };
-            let Some((branch, stop)) = curve.traced(adjust, || true) else { continue };
+            let Some((branch, stop)) = curve.traced(adjust, &Unwatched) else { continue };
             at_end += usize::from(stop == CurveStop::End);
             let counts = CONTROLS.map(|control| {
                 let mut settings = settings(&curve.equilibrium);

@@ -29,6 +29,7 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Unloading;
 use quadrature::{Bump, Disc, Path, State, Term};
 use rayon::prelude::*;
@@ -437,7 +438,7 @@ fn judge(problem: &Problem) -> Outcome {
         Ok(case) => case,
         Err(error) => return refused(problem, &error),
     };
-    let curve = match case.curve(|| true) {
+    let curve = match case.curve(&Unwatched) {
         Ok(curve) => curve,
         Err(error) => return refused(problem, &error),
     };

@@ -40,7 +40,7 @@ fn with_grading(
     value: f64,
     exact: f64,
 ) -> Solved {
-    let basis = Rings::shared_with(rings, grading, &mut |_| true).unwrap();
+    let basis = Rings::shared_with(rings, grading, &pulloff_engine::progress::Unwatched).unwrap();
     solve(basis.as_ref(), &sphere(gamma), control, value, 3.0 * exact, NewtonSettings::default())
         .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
 }
@@ -108,7 +108,7 @@ fn rings_crowded_towards_the_edge_without_adhesion_and_with_little() {
     let (gamma, s) = (1e-6, 0.3);
     let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
     let [uniform, edge] = Grading::ALL.map(|grading| {
-        let basis = Rings::shared_with(200, grading, &mut |_| true).unwrap();
+        let basis = Rings::shared_with(200, grading, &pulloff_engine::progress::Unwatched).unwrap();
         let adhesion = basis.equilibrium(&sphere(gamma), s).unwrap().approach - s * s;
         (adhesion / (jkr.approach(s) - s * s) - 1.0).abs()
     });

@@ -3,12 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::explorer::CurveData;
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
+use pulloff::explorer::{CurveData, Staged};
 use pulloff::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::quasistatic::{CurveStop, EventKind};
 use pulloff_engine::report::TraceReport;
@@ -30,7 +31,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
         let preset = preset(height);
         let case = Case::new(&preset).unwrap();
         let unit = case.units().length;
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         assert_eq!(curve.corners().len(), 1, "{height}");
         let (branch, stop) = case.trace(&curve).unwrap();
         assert_eq!(stop, CurveStop::End, "{height}");
@@ -58,7 +59,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
 #[test]
 fn a_limit_point_sits_on_the_corner() {
     let case = Case::new(&preset(0.07)).unwrap();
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let unloading = case.unload(&curve, Control::Displacement).unwrap();
     assert_eq!(unloading.events.len(), 1);
     let event = &unloading.events[0];
@@ -74,7 +75,7 @@ fn a_limit_point_sits_on_the_corner() {
 
 /// The radii of a walk by hand from the start inward, or with `back` from far inside outward.
 fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
-    let curve = Arc::new(CurveData::compute(preset, |_| true).unwrap());
+    let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let drawn = &curve.base.curve;
     let corner = drawn.corners()[0];
     let from = if back { 0.94 * corner } else { 1.3 * corner };

@@ -4,8 +4,9 @@
 mod session;
 
 use pulloff::explorer::device::line;
-use pulloff::explorer::{Axes, CurveData, Effect, Id, NodeKind, update};
+use pulloff::explorer::{Axes, CurveData, Effect, Id, NodeKind, Staged, update};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use session::Session;
 use std::sync::Arc;
 
@@ -26,8 +27,8 @@ fn radii(curve: &CurveData) -> Vec<f64> {
 
 /// What belongs to the control is as if the whole curve had been computed for it.
 fn assert_as_computed_afresh(session: &Session) {
-    let fresh = CurveData::compute(&session.model.preset, |_| true).expect("a curve");
-    let (ours, fresh) = (curve(session), fresh.checked(&mut || true).expect("not stopped"));
+    let fresh = CurveData::compute(&session.model.preset, &Staged::unwatched()).expect("a curve");
+    let (ours, fresh) = (curve(session), fresh.checked(&Unwatched).expect("not stopped"));
     assert_eq!(ours.case.control, fresh.case.control);
     assert_eq!(radii(&ours), radii(&fresh));
     assert_eq!(ours.points, fresh.points);

@@ -8,6 +8,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{BasisSpec, PARAMETERS, Preset};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::{State, Unloading};
 use pulloff_engine::ritz::Grading;
 use pulloff_engine::theory::Exact;
@@ -98,7 +99,7 @@ fn check(name: &str, preset: &Preset, tolerances: [f64; 3]) {
     println!("{name}: curve {curve:.1e}");
     assert!(curve <= tolerances[0], "{name}: {curve:e}");
     for control in [Control::Displacement, Control::Force] {
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         let ours = case.unload(&curve, control).unwrap();
         let truth = unload(&*exact, control, case.start * case.units().length).unwrap();
         // The exact path goes on to the pull-off, ours to the end asked for.
@@ -158,7 +159,7 @@ fn the_table_follows_a_start_that_runs_far_outward() {
     let found: Vec<_> = (0..20).filter_map(|i| far(0.1 + 0.005 * f64::from(i))).step_by(4).collect();
     assert!(found.len() > 1);
     for (case, truth, waves) in found {
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         let ours = case.unload(&curve, Control::Force).unwrap();
         let off = off_the_path(&case, &ours, &truth);
         println!("outward by {waves:.2} waves, {off:?}");

@@ -7,8 +7,10 @@ use pulloff_engine::case::Case;
 use pulloff_engine::disc::Order;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::theory::Exact;
+use std::cell::Cell;
 
 /// A shipped preset in the exact basis.
 fn preset(name: &str, assignments: &[&str]) -> Preset {
@@ -37,7 +39,7 @@ fn without_adhesion_every_way_gives_hertz_to_rounding() {
         assert!((approach / (s * s) - 1.0).abs() < 1e-12, "{way}: s = {s}, approach {approach}");
         assert!((force / (4.0 / 3.0 * s.powi(3)) - 1.0).abs() < 1e-12, "{way}: s = {s}, force {force}");
     };
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     assert!(curve.samples.len() > 100);
     for at in &curve.samples {
         check("curve", [at.approach, at.force, at.contact_radius]);
@@ -57,7 +59,7 @@ fn without_adhesion_every_way_gives_hertz_to_rounding() {
 fn a_dense_curve_is_the_exact_one() {
     let case = Case::new(&preset("fig-9", &[])).unwrap();
     let radii: Vec<f64> = (0..2000).map(|i| 0.5 - 0.498 * f64::from(i) / 1999.0).collect();
-    let ours = case.basis.equilibria(&case.reduced, &radii, Order::State, &mut || true);
+    let ours = case.basis.equilibria(&case.reduced, &radii, Order::State, &Unwatched);
     assert_eq!(ours.len(), radii.len());
     let exact = Exact::of(&case.problem);
     let units = case.units();
@@ -77,13 +79,14 @@ fn a_dense_curve_is_the_exact_one() {
         assert!(worst < 1e-12 * (hi - lo), "off by {:.1e} of the range", worst / (hi - lo));
     }
     // It is made in one piece of work that can be given up between points.
-    let mut asked = 0;
-    let few = case.basis.equilibria(&case.reduced, &radii, Order::State, &mut || {
-        asked += 1;
-        asked <= 7
+    let asked = Cell::new(0);
+    let few = case.basis.equilibria(&case.reduced, &radii, Order::State, &|| {
+        asked.set(asked.get() + 1);
+        asked.get() > 7
     });
+    // Up to eight at a time.
     assert!(
-        few.len() <= 7
+        (7..=56).contains(&few.len())
             && few.iter().zip(&ours).all(|(few, all)| few.approach.to_bits() == all.approach.to_bits())
     );
 }

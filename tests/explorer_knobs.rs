@@ -5,7 +5,7 @@
 mod session;
 
 use pulloff::explorer::model::Level;
-use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Progress, Reply, answer, update};
+use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Reply, Stage, answer, update};
 use pulloff_engine::preset::Value;
 use pulloff_engine::problem::Control;
 use session::Session;
@@ -114,9 +114,9 @@ fn how_far_a_curve_is_belongs_to_the_newest_one() {
     let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
     let effects = update(&mut session.model, set);
     let id = session.model.curve_wanted;
-    let far = |id| Reply::Progress { id, progress: Progress::Curve(70) };
+    let far = |id| Reply::Stage { id, stage: Stage::Curve(70) };
     assert!(answer(&mut session.model, far(id - 1)).is_empty());
-    assert_eq!(session.model.progress, None);
+    assert_eq!(session.model.stage, None);
     answer(&mut session.model, far(id));
     assert!(session.status().ends_with("point 70; cancel gives up"), "{}", session.status());
     session.driver.settle(&mut session.model, effects);

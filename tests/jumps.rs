@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff::explorer::walk::{Action, Outcome, Request, walk};
-use pulloff::explorer::{CurveData, NodeKind};
+use pulloff::explorer::{CurveData, NodeKind, Staged};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
@@ -37,7 +37,7 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
 /// What the jumps from every limit point of a problem come to: how many land or pull off, inward and outward, and how
 /// many are refused because the potential rises.
 fn jumps(preset: &Preset) -> [usize; 3] {
-    let curve = Arc::new(CurveData::compute(preset, |_| true).unwrap());
+    let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let mut counts = [0; 3];
     for limit in &curve.limits {
         let inward = limit.turn == Turn::Minimum;

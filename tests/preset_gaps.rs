@@ -7,6 +7,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::theory::{Exact, unloading};
 use std::sync::Arc;
 
@@ -68,7 +69,7 @@ fn limit_points_and_jumps_are_those_of_the_exact_path() {
         let case = Case::new(&preset(name, &[])).unwrap();
         let exact = Exact::of(&case.problem);
         let units = *case.units();
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         for control in [Control::Displacement, Control::Force] {
             let start = case.start * units.length;
             let limits = unloading::limit_points(&*exact, control, start, case.end * units.length);

@@ -9,6 +9,7 @@ use pulloff_engine::continuation::Tracer;
 use pulloff_engine::disc::{Basis, Exact};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::curve::settings;
 use pulloff_engine::quasistatic::{Curve, CurveStop, Equilibrium, Point};
 use pulloff_engine::ritz::Rings;
@@ -75,7 +76,7 @@ fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Ba
         let basis = basis(&problem);
         let truth = sign_changes(&problem, &basis, wavelength);
         let curve = Curve::of(problem, basis, FROM, TO).unwrap();
-        let (branch, stop) = curve.traced(|_| {}, || true).unwrap();
+        let (branch, stop) = curve.traced(|_| {}, &Unwatched).unwrap();
         assert_eq!(stop, CurveStop::End, "{problem_number}");
         for (control, truth) in [Control::Displacement, Control::Force].into_iter().zip(truth) {
             let by_trace = located(&curve.equilibrium, &branch.points, control);

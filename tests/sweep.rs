@@ -9,6 +9,7 @@ use home::{Ended, Home};
 use pulloff::store::Store;
 use pulloff::sweep::{Results, Shard, spec};
 use pulloff_engine::gap::Shape;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::KesariLew;
@@ -601,7 +602,7 @@ distribution = {{ log-uniform = [0.01, 0.05] }}
 fn enhanced(spec: &Spec) -> (Vec<(u64, f64, f64)>, Vec<u64>) {
     let (mut had, mut cut_off) = (Vec::new(), Vec::new());
     for index in 0..Shard::WHOLE.len(spec.rows) {
-        let measured = spec.measure(index, &|| true).unwrap();
+        let measured = spec.measure(index, &Unwatched).unwrap();
         let number =
             |column: usize| measured.cells[column].map(|cell| cell.to_string().parse::<f64>().unwrap());
         match (number(0), number(1), number(2)) {

@@ -20,6 +20,7 @@ use pulloff_engine::gap::shapes::Profile;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Admissibility;
 use pulloff_engine::report::UnloadReport;
 use pulloff_engine::report::unload::EventReport;
@@ -164,7 +165,7 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
     let mut losses = |control: Control| -> Vec<[f64; 2]> {
         preset.path.control = control;
         let case = Case::new(&preset).unwrap();
-        let path = case.unload(&case.curve(|| true).unwrap(), control).unwrap();
+        let path = case.unload(&case.curve(&Unwatched).unwrap(), control).unwrap();
         let both = |event: &pulloff_engine::quasistatic::Event| {
             [event.dissipated, event.dissipated_by_area].map(Option::unwrap)
         };
@@ -187,7 +188,7 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
 
 /// The verdict on the state of radius `s`.
 fn verdict(case: &Case, s: f64) -> Admissibility {
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let state = case.basis.equilibrium(&case.reduced, s / case.units().length).unwrap();
     curve.equilibrium.judge().judge(state.contact_radius, state.approach)
 }
@@ -232,7 +233,7 @@ fn of_ninety_seven_radii_so_many_are_inadmissible() {
         (0.0025, 0.05, 0.025 / TAU, 0),
     ] {
         let case = Case::new(&wavy(amplitude, wavelength, gamma, 0.5)).unwrap();
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         let judge = curve.equilibrium.judge();
         let holds = |s: f64| {
             let state = case.basis.equilibrium(&case.reduced, s).unwrap();
@@ -299,7 +300,7 @@ fn a_thousand_waves_have_the_events_of_their_sum() {
     preset.set("gap.shortest_wavelength", 0.003.into()).unwrap();
     preset.set("path.start_contact_radius", 1.0.into()).unwrap();
     let (case, gamma) = (Case::new(&preset).unwrap(), preset.material.work_of_adhesion);
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let path = case.unload(&curve, Control::Displacement).unwrap();
     assert!(path.events.len() > 5, "{:?}", path.events.len());
     let rule = quadrature::gauss(1300);

@@ -8,6 +8,7 @@ use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::changes::changes;
 use pulloff_engine::preset::{Preset, Value, write};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::unload::UnloadError;
 use pulloff_engine::quasistatic::{CurveStop, PathStop};
 use pulloff_engine::report::{ProblemReport, TraceReport, UnloadReport, json, table};
@@ -423,7 +424,7 @@ start_contact_radius = \"1 mm\"
 
 /// What computing a preset says when it refuses.
 fn refusal(preset: &Preset) -> String {
-    let unloaded = Case::new(preset).and_then(|case| case.unload(&case.curve(|| true)?, case.control));
+    let unloaded = Case::new(preset).and_then(|case| case.unload(&case.curve(&Unwatched)?, case.control));
     unloaded.unwrap_err().to_string()
 }
 

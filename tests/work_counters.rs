@@ -9,6 +9,7 @@ use pulloff::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::ritz::Grading;
 
 /// Points, rejected steps, evaluations of the equations, Newton rounds of the points that were kept; limit points under
@@ -29,7 +30,7 @@ fn counts(name: &str, basis: BasisSpec) -> Counts {
     let mut preset = store.load(&store.resolve(name).unwrap(), &[] as &[&str]).unwrap().preset;
     preset.basis = basis;
     let case = Case::new(&preset).unwrap();
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let (branch, _) = case.trace(&curve).unwrap();
     Counts {
         points: branch.points.len(),

@@ -13,13 +13,13 @@ use crate::gap::{Gap, Shape};
 use crate::preset::{BasisSpec, Material, Preset};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
+use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::cycle::{Areas, Cycle, CycleError, EVEN, Setting, Turn, cycle};
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
 use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, CurveStop, Detail, Losses, Unloading};
-use crate::ritz::parallel::Progress;
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use crate::units::number::said;
@@ -118,15 +118,15 @@ impl Case {
     /// # Errors
     /// [`CaseError`] when the basis or the start state cannot be had.
     pub fn new(preset: &Preset) -> Result<Self, CaseError> {
-        Self::prepare(preset, &mut |_| true)
+        Self::prepare(preset, &Unwatched)
     }
 
     /// The same for a basis that takes long: `progress` is told the share of it that is built, and stops it by
     /// answering no.
     ///
     /// # Errors
-    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said no.
-    pub fn prepare(preset: &Preset, progress: Progress<'_>) -> Result<Self, CaseError> {
+    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn prepare(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         let problem = preset.problem();
         let reduced = preset.reduced();
         let units = reduced.units;
@@ -147,8 +147,7 @@ impl Case {
             }
             BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
         };
-        let mut go_on = || progress(1.0);
-        let start = contact_radius(&reduced, &*basis, wanted, &mut go_on)
+        let start = contact_radius(&reduced, &*basis, wanted, progress)
             .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
@@ -168,9 +167,9 @@ impl Case {
     /// The table of g from the axis to the start.
     ///
     /// # Errors
-    /// [`CaseError::Table`], and [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn panels(&self, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Panels>, CaseError> {
-        let made = self.table.up_to_while(self.start, 0, go_on);
+    /// [`CaseError::Table`], and [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn panels(&self, progress: &dyn Progress) -> Result<Arc<Panels>, CaseError> {
+        let made = self.table.up_to_while(self.start, 0, progress);
         made.map_err(|error| refusal(error, self.units().length, &self.shown))
     }
 
@@ -196,23 +195,19 @@ impl Case {
     /// The curve from start to end.
     ///
     /// # Errors
-    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn curve(&self, go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
-        self.curve_in(Detail::Drawn, go_on)
+    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn curve(&self, progress: &dyn Progress) -> Result<Curve, CaseError> {
+        self.curve_in(Detail::Drawn, progress)
     }
 
     /// The same with as many states as asked for.
     ///
     /// # Errors
     /// As [`Case::curve`].
-    pub fn curve_in(&self, detail: Detail, mut go_on: impl FnMut() -> bool) -> Result<Curve, CaseError> {
-        let mut wanted = true;
+    pub fn curve_in(&self, detail: Detail, progress: &dyn Progress) -> Result<Curve, CaseError> {
         let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
-        let curve = Curve::new(self.reduced.clone(), basis, table, [self.start, self.end], detail, || {
-            wanted = wanted && go_on();
-            wanted
-        });
-        if !wanted {
+        let curve = Curve::new(self.reduced.clone(), basis, table, [self.start, self.end], detail, progress);
+        if progress.stop() {
             return Err(CaseError::Cancelled);
         }
         curve.ok_or_else(|| self.no_start())
@@ -223,27 +218,20 @@ impl Case {
     /// # Errors
     /// [`CaseError::Start`] when there is no equilibrium at the start.
     pub fn trace(&self, curve: &Curve) -> Result<(Branch, CurveStop), CaseError> {
-        self.trace_while(curve, || true)
+        self.trace_while(curve, &Unwatched)
     }
 
-    /// The same; `go_on` is asked before each point.
+    /// The same; `progress` is asked before each point.
     ///
     /// # Errors
-    /// As [`Case::trace`], and [`CaseError::Cancelled`] when `go_on` said no.
+    /// As [`Case::trace`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn trace_while(
         &self,
         curve: &Curve,
-        mut go_on: impl FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Result<(Branch, CurveStop), CaseError> {
-        let mut wanted = true;
-        let traced = curve.traced(
-            |settings| settings.points = TRACE_POINTS,
-            || {
-                wanted = wanted && go_on();
-                wanted
-            },
-        );
-        if !wanted {
+        let traced = curve.traced(|settings| settings.points = TRACE_POINTS, progress);
+        if progress.stop() {
             return Err(CaseError::Cancelled);
         }
         traced.ok_or_else(|| self.no_start())
@@ -254,21 +242,21 @@ impl Case {
     /// # Errors
     /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
     pub fn unload(&self, curve: &Curve, control: Control) -> Result<Unloading, CaseError> {
-        self.unload_while(curve, control, Losses::Twice, || true)
+        self.unload_while(curve, control, Losses::Twice, &Unwatched)
     }
 
-    /// The same as [`Case::unload`], with these losses; `go_on` is asked before each event.
+    /// The same as [`Case::unload`], with these losses; `progress` is asked before each event.
     ///
     /// # Errors
-    /// As [`Case::unload`], and [`CaseError::Cancelled`] when `go_on` said no.
+    /// As [`Case::unload`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn unload_while(
         &self,
         curve: &Curve,
         control: Control,
         losses: Losses,
-        go_on: impl FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Unloading, CaseError> {
-        unload_while(curve, control, losses, go_on).map_err(|e| match e {
+        unload_while(curve, control, losses, progress).map_err(|e| match e {
             UnloadError::Cancelled => CaseError::Cancelled,
             other @ UnloadError::UnstableStart { .. } => {
                 CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
@@ -277,17 +265,17 @@ impl Case {
     }
 
     /// The whole loop under `control`, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the
-    /// start of its unloading, where none is given) and down until the bodies are apart. `go_on` is asked before each step with
+    /// start of its unloading, where none is given) and down until the bodies are apart. `progress` is asked before each step with
     /// the share of the way that is done, roughly.
     ///
     /// # Errors
-    /// [`CaseError::Cycle`], and [`CaseError::Cancelled`] when `go_on` said no.
+    /// [`CaseError::Cycle`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn cycle(
         &self,
         control: Control,
         turn: Option<Turn>,
         areas: Areas,
-        go_on: &dyn Fn(f64) -> bool,
+        progress: &dyn Progress,
     ) -> Result<Cycle, CaseError> {
         let failed = |error: CycleError| match error {
             CycleError::Cancelled => CaseError::Cancelled,
@@ -303,19 +291,24 @@ impl Case {
             areas,
             mobility: EVEN,
         };
-        cycle(&self.table, self.reduced.work_of_adhesion, &setting, go_on).map_err(failed)
+        cycle(&self.table, self.reduced.work_of_adhesion, &setting, progress).map_err(failed)
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
     /// twice as wide others are found. `None` where they are the same, or the gap is no profile of averaged rows.
-    pub fn unsettled(&self, unloading: &Unloading) -> Option<String> {
+    pub fn unsettled(&self, unloading: &Unloading, progress: &dyn Progress) -> Option<String> {
         let Shape::Profile(measured) = &self.problem.shape else { return None };
         let profile = measured.coarser()?;
         let gap: Arc<dyn Gap> = Arc::new(Scaled::new(profile, self.units().length));
         let problem = Reduced { gap, ..self.reduced.clone() };
-        let basis = Arc::new(Exact::of(&problem, self.start).ok()?);
-        let curve = Curve::of(problem, basis, self.start, self.end)?;
-        let coarser = unload_while(&curve, unloading.control, Losses::Once, || true).ok();
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), self.start, progress).ok()?);
+        let basis = Arc::new(Exact::new(Arc::clone(&table), self.start));
+        let ends = [self.start, self.end];
+        let curve = Curve::new(problem, basis, table, ends, Detail::Drawn, progress)?;
+        let coarser = unload_while(&curve, unloading.control, Losses::Once, progress).ok();
+        if progress.stop() {
+            return None;
+        }
         let count = coarser.map_or(0, |path| path.events.len());
         (count != unloading.events.len()).then(|| {
             format!(
@@ -418,10 +411,10 @@ pub(crate) fn table(
     reduced: &Reduced,
     reach: f64,
     shown: &UnitSystem,
-    progress: Progress<'_>,
+    progress: &dyn Progress,
 ) -> Result<Arc<Table>, CaseError> {
     let key = (shape.clone(), reduced.units.length.to_bits());
-    Table::shared(&TABLES, &key, &reduced.gap, reach, &mut || progress(0.0))
+    Table::shared(&TABLES, &key, &reduced.gap, reach, progress)
         .map_err(|error| refusal(error, reduced.units.length, shown))
 }
 

@@ -102,6 +102,7 @@ pub mod measured;
 pub mod preset;
 #[doc(hidden)]
 pub mod problem;
+pub mod progress;
 #[doc(hidden)]
 pub mod quasistatic;
 #[doc(hidden)]

@@ -13,6 +13,7 @@ use pulloff_engine::disc::Table;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::{
     Areas, Balance, Cycle, CycleError, CycleState, Direction, EVEN, EventKind, Setting, Turn, Warning, cycle,
     cycle_on,
@@ -23,9 +24,9 @@ use std::sync::Arc;
 use support::{Numbers, numbers, random_gap, reference, wavy};
 
 fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, areas: Areas) -> Cycle {
-    let table = Arc::new(Table::new(gap, 0.3, &mut || true).unwrap());
+    let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
     let setting = Setting { control, turn, areas, mobility: EVEN };
-    cycle(&table, gamma, &setting, &|_| true).unwrap()
+    cycle(&table, gamma, &setting, &Unwatched).unwrap()
 }
 
 /// Holds the events of a loop to a reference, `tolerance` of each range; losses to `losses` of themselves.
@@ -214,10 +215,10 @@ fn random_loop(number: u64, areas: Areas) -> Result<(Cycle, String), String> {
             [random.usize(0..3)];
     let approach = 0.01 + 0.07 * random.f64();
     let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
-    let table = Arc::new(Table::new(gap, 0.3, &mut || true).unwrap());
+    let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
     let setting = Setting { control, turn: Turn::Approach(approach), areas, mobility: EVEN };
     let started = std::time::Instant::now();
-    let found = cycle(&table, gamma, &setting, &|_| true).map_err(|error| format!("{name}: {error}"))?;
+    let found = cycle(&table, gamma, &setting, &Unwatched).map_err(|error| format!("{name}: {error}"))?;
     println!("{:.0} ms", started.elapsed().as_secs_f64() * 1e3);
     Ok((found, name))
 }
@@ -262,7 +263,7 @@ fn mobilities_decide_nothing_that_lasts() {
     let run = |mobility: &(dyn Fn(f64) -> f64 + Sync)| {
         let turn = Turn::Approach(0.04);
         let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility };
-        cycle_on(&ground, 1e-4, &setting, &|_| true).unwrap()
+        cycle_on(&ground, 1e-4, &setting, &Unwatched).unwrap()
     };
     let even = run(EVEN);
     for seed in 0..3_u64 {
@@ -284,7 +285,7 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
     let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
     let fails = |gamma: f64, control: Control, turn: Turn| {
         let setting = Setting { control, turn, areas: Areas::No, mobility: EVEN };
-        cycle_on(&ground, gamma, &setting, &|_| true).unwrap_err()
+        cycle_on(&ground, gamma, &setting, &Unwatched).unwrap_err()
     };
     let before = fails(1e-4, Control::Displacement, Turn::Control(-0.01));
     assert_eq!(before, CycleError::TurnBeforeTouch { turn: -0.01, touch: 0.0 });
@@ -296,7 +297,7 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
     assert!(matches!(never, CycleError::BeyondGap { .. }), "{never:?}");
     let setting =
         Setting { control: Control::Force, turn: Turn::Force(0.01), areas: Areas::No, mobility: EVEN };
-    assert_eq!(cycle_on(&ground, 1e-4, &setting, &|_| false).unwrap_err(), CycleError::Cancelled);
+    assert_eq!(cycle_on(&ground, 1e-4, &setting, &|| true).unwrap_err(), CycleError::Cancelled);
 }
 
 #[test]
@@ -353,7 +354,7 @@ fn without_adhesion_solving_afresh_finds_the_same() {
         let ground = Ground::of(Arc::clone(&gap), 0.7).unwrap();
         let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
         let setting = Setting { control, turn: Turn::Approach(approach), areas: Areas::No, mobility: EVEN };
-        let found = match cycle_on(&ground, 0.0, &setting, &|_| true) {
+        let found = match cycle_on(&ground, 0.0, &setting, &Unwatched) {
             Ok(found) => found,
             Err(error) => panic!("{number} {name}: {error}"),
         };
@@ -393,7 +394,7 @@ fn without_adhesion_corners_are_passed() {
         let turn = Turn::Approach(approach);
         let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
         let found =
-            cycle_on(&ground, 0.0, &setting, &|_| true).unwrap_or_else(|error| panic!("{text}: {error}"));
+            cycle_on(&ground, 0.0, &setting, &Unwatched).unwrap_or_else(|error| panic!("{text}: {error}"));
         assert!(found.events.iter().any(|event| event.kind == EventKind::Touch), "{text}");
         is_the_one_solution(&ground, &found, &text);
     }
@@ -419,11 +420,11 @@ fn loops_of_measured_profiles() {
             })
             .collect();
         let gap: Arc<dyn Gap> = Arc::new(Profile::new(&radii, &rows, Smoothing::None).unwrap());
-        let table = Arc::new(Table::new(gap, 0.3, &mut || true).unwrap());
+        let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
         let turn = Turn::Approach(0.02);
         let setting = Setting { control: Control::Displacement, turn, areas: Areas::Yes, mobility: EVEN };
         let started = std::time::Instant::now();
-        let found = cycle(&table, gamma, &setting, &|_| true);
+        let found = cycle(&table, gamma, &setting, &Unwatched);
         let seconds = started.elapsed().as_secs_f64();
         match found {
             Ok(found) => {
@@ -448,15 +449,15 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
     let text = "r^2/2+0.0025*(1-cos(2*pi*r/0.05))+0.05*max(r-0.1,0)";
     let none: Vec<FormulaParameter> = Vec::new();
     let gap: Arc<dyn Gap> = Arc::new(Shape::Formula(Arc::new(TypedGap::new(text, none, Some(0.6)).unwrap())));
-    let table = Arc::new(Table::new(gap, 0.4, &mut || true).unwrap());
-    let ground = Ground::new(table, 0.4, &mut || true).unwrap();
+    let table = Arc::new(Table::new(gap, 0.4, &Unwatched).unwrap());
+    let ground = Ground::new(table, 0.4, &Unwatched).unwrap();
     let setting = Setting {
         control: Control::Displacement,
         turn: Turn::Approach(0.03),
         areas: Areas::Yes,
         mobility: EVEN,
     };
-    let found = cycle_on(&ground, 1e-4, &setting, &|_| true).unwrap();
+    let found = cycle_on(&ground, 1e-4, &setting, &Unwatched).unwrap();
     println!("{:?} {:?}", found.totals, found.warnings);
     assert!(found.totals.balance.unwrap() < 1e-6);
     // Within r < 0.1 this gap is that of the smooth wave, and so is the second touch; the other program took its least gap from a
@@ -514,10 +515,10 @@ fn broken_loop(number: u64) -> Result<(Cycle, String), String> {
     let none: Vec<FormulaParameter> = Vec::new();
     let gap: Arc<dyn Gap> =
         Arc::new(Shape::Formula(Arc::new(TypedGap::new(&text, none, Some(0.6)).unwrap())));
-    let table = Arc::new(Table::new(gap, 0.5, &mut || true).unwrap());
-    let ground = Ground::new(table, 0.7, &mut || true).unwrap();
+    let table = Arc::new(Table::new(gap, 0.5, &Unwatched).unwrap());
+    let ground = Ground::new(table, 0.7, &Unwatched).unwrap();
     let setting = Setting { control, turn: Turn::Approach(approach), areas: Areas::Yes, mobility: EVEN };
-    let found = cycle_on(&ground, gamma, &setting, &|_| true).map_err(|error| format!("{name}: {error}"))?;
+    let found = cycle_on(&ground, gamma, &setting, &Unwatched).map_err(|error| format!("{name}: {error}"))?;
     Ok((found, name))
 }
 

@@ -112,7 +112,7 @@ fn elements_added_while_the_energy_falls_find_the_same_contacts() {
     let ground = Ground::of(Arc::clone(&gap), 0.5).unwrap();
     let turn = Turn::Approach(0.03);
     let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
-    let found = cycle_on(&ground, GAMMA, &setting, &|_| true).unwrap();
+    let found = cycle_on(&ground, GAMMA, &setting, &pulloff_engine::progress::Unwatched).unwrap();
     let loading = |state: &&CycleState| state.direction == Direction::Loading;
     let pieces = found.states.iter().filter(loading).map(|state| state.piece).max().unwrap();
     // The middle of each stretch of loading: limit points move with the width of an element.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::stability::count::EXACTLY;
 use pulloff_engine::stability::law::{adhesion_of, root_of};
 use pulloff_engine::stability::{Axis, Cause, Family, Onset, even};
@@ -133,7 +134,7 @@ fn every_change_of_the_count_is_a_cusp_or_a_landing_where_it_is_known() {
     for (name, most) in [("displacement", 0.0125), ("force", 0.05), ("0.15", 0.0105), ("0.6", 0.0063)] {
         let preset = waves(control(name), start, 0.05, adhesion);
         let family = Family::new(&preset, vec![axis(AMPLITUDE, [1e-5, most], false)]).unwrap();
-        let found = family.changes(0, &[0.0], &even(150), EXACTLY, &|| true);
+        let found = family.changes(0, &[0.0], &even(150), EXACTLY, &Unwatched);
         let rows = rows(&known[name]);
         let words: Vec<_> = found.iter().map(|c| (c.snaps, family.axes[0].value(c.share), c.cause)).collect();
         assert!(found.len() >= rows.len(), "{name}: {words:?}");
@@ -159,7 +160,7 @@ fn the_law_holds_at_every_limit_point_of_the_curve() {
     for control in traced {
         let preset = waves(control, 0.5, 0.05, 0.025);
         let case = pulloff_engine::Case::new(&preset).unwrap();
-        let curve = case.curve(|| true).unwrap();
+        let curve = case.curve(&Unwatched).unwrap();
         let family = Family::new(&preset, Vec::new()).unwrap();
         let law = family.member(&[]).unwrap().law(&[]).unwrap();
         let radii: Vec<f64> = (1..=1000).map(|k| 0.0005 * f64::from(k)).collect();
@@ -191,13 +192,13 @@ fn the_smallest_amplitude_that_snaps_is_that_known_for_every_device() {
     }
     // The first snap of the path from 0.41.
     for (device, given) in [("displacement", 1.215e-3), ("force", 2.43e-3), ("stiffness=0.15", 1.076e-3)] {
-        let onset = Onset::of(&waves(control(device), 0.41, 0.05, adhesion), &|| true).unwrap().unwrap();
+        let onset = Onset::of(&waves(control(device), 0.41, 0.05, adhesion), &Unwatched).unwrap().unwrap();
         assert!(same(onset.amplitude_over_wavelength, given, 1e-6), "{device} {onset:?}");
         assert!(matches!(onset.cause, Cause::Cusp(_)));
     }
     let mut sphere = waves(Control::Displacement, 0.41, 0.05, adhesion);
     sphere.set("gap.shape", "sphere".into()).unwrap();
-    assert_eq!(Onset::of(&sphere, &|| true).unwrap(), None);
+    assert_eq!(Onset::of(&sphere, &Unwatched).unwrap(), None);
 }
 
 #[test]
@@ -219,9 +220,9 @@ fn fold_curves_pass_the_limit_points_of_the_curve() {
             (ADHESION, _) => along.share(0.025),
             _ => along.share(0.05),
         };
-        let folds = Family::new(&preset, vec![along]).unwrap().folds(&|| true).unwrap();
+        let folds = Family::new(&preset, vec![along]).unwrap().folds(&Unwatched).unwrap();
         let case = pulloff_engine::Case::new(&preset).unwrap();
-        let limits = case.curve(|| true).unwrap().limit_points(device);
+        let limits = case.curve(&Unwatched).unwrap().limit_points(device);
         let mut hits = 0;
         for line in &folds.lines {
             for pair in line.points.windows(2) {

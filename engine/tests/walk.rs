@@ -12,6 +12,7 @@ use pulloff_engine::disc::{Exact, Table};
 use pulloff_engine::gap::formula::TypedGap;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::{Areas, Cycle, EVEN, EventKind, Setting, Turn, cycle};
 use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
 use pulloff_engine::quasistatic::{Curve, Point};
@@ -127,9 +128,9 @@ fn walks(curve: &Curve, control: Control, found: &Cycle) -> [f64; 4] {
 }
 
 fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Cycle {
-    let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &mut || true).unwrap());
+    let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
     let setting = Setting { control, turn, areas: Areas::No, mobility: EVEN };
-    cycle(&table, gamma, &setting, &|_| true).unwrap()
+    cycle(&table, gamma, &setting, &pulloff_engine::progress::Unwatched).unwrap()
 }
 
 /// Holds a walk to the events of another program, through the loop, which is held to them.

@@ -84,7 +84,7 @@ pub fn fitted(
         profile,
         bootstrap,
     };
-    let made = long(py, progress, |go_on| fit_own(&preset, &options, &mut |share| go_on(share)))?;
+    let made = long(py, progress, |progress| fit_own(&preset, &options, progress))?;
     let made = made.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
         error => refused(&error),

@@ -11,6 +11,7 @@ use pulloff_engine::gap::shapes::{Profile, Rows, Smoothing};
 use pulloff_engine::preset::read::{Held, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, shipped, write};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::report::map::Ordinate;
@@ -174,7 +175,7 @@ impl Problem {
 
     /// The equilibrium curve.
     fn trace(&self, py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<Document> {
-        let made = long(py, progress, |go_on| TraceReport::compute_while(&self.preset, go_on))?;
+        let made = long(py, progress, |progress| TraceReport::compute_while(&self.preset, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
@@ -187,8 +188,8 @@ impl Problem {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Document> {
         let losses = if areas { Losses::Twice } else { Losses::Once };
-        let made = long(py, progress, |go_on| {
-            UnloadReport::compute_with(&self.preset, losses, admissibility, go_on)
+        let made = long(py, progress, |progress| {
+            UnloadReport::compute_with(&self.preset, losses, admissibility, progress)
         })?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
@@ -196,15 +197,13 @@ impl Problem {
     /// The loop of loading and unloading.
     fn cycle(&self, py: Python<'_>, areas: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
         let areas = if areas { Areas::Yes } else { Areas::No };
-        let made = long(py, progress, |go_on| CycleReport::compute(&self.preset, areas, go_on))?;
+        let made = long(py, progress, |progress| CycleReport::compute(&self.preset, areas, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
     /// The law of stability over the contact radius.
     fn stability(&self, py: Python<'_>, samples: usize, progress: Option<Py<PyAny>>) -> PyResult<Document> {
-        let made = long(py, progress, |go_on| {
-            StabilityReport::compute(&self.preset, samples, &mut |share| go_on(share))
-        })?;
+        let made = long(py, progress, |progress| StabilityReport::compute(&self.preset, samples, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
@@ -228,8 +227,8 @@ impl Problem {
             (None, _) => Ordinate::Control,
         };
         // What a map has done says nothing of what is left.
-        let made = long(py, progress, |go_on| {
-            MapReport::compute(&self.preset, x, &y, [columns, rows], &|| go_on(0.0))
+        let made = long(py, progress, |progress| {
+            MapReport::compute(&self.preset, x, &y, [columns, rows], progress)
         })?;
         made.map(Document::new).map_err(|error| errors::of_map(py, &error))
     }
@@ -252,7 +251,7 @@ impl Problem {
         if let Some(wrong) = radii.iter().find(|r| !(**r >= 0.0 && r.is_finite())) {
             return Err(errors::of_state(py, &format!("r = {wrong} is out of range: radii are not below 0")));
         }
-        let state = long(py, None, |go_on| State::of(&self.preset, s, &radii, go_on))?;
+        let state = long(py, None, |progress| State::of(&self.preset, s, &radii, progress))?;
         let state = state.map_err(|error| errors::of_case(py, &error))?;
         let Some(state) = state else {
             let sentence =
@@ -307,15 +306,14 @@ impl State {
         preset: &Preset,
         s: f64,
         radii: &[f64],
-        go_on: &dyn Fn(f64) -> bool,
+        progress: &dyn Progress,
     ) -> Result<Option<Self>, CaseError> {
-        let case = Case::prepare(preset, &mut |share| go_on(share))?;
+        let case = Case::prepare(preset, progress)?;
         let units = case.units();
         let s = s / units.length;
         // Far out it takes long: here it can be stopped.
         let farthest = radii.iter().fold(s, |most, r| most.max(r / units.length));
-        let mut asked = || go_on(1.0);
-        match case.table.up_to_while(farthest, 0, &mut asked) {
+        match case.table.up_to_while(farthest, 0, progress) {
             Err(TableError::Cancelled) => return Err(CaseError::Cancelled),
             // What is known of it is enough, or else there is no equilibrium.
             Err(TableError::TooFine(_)) | Ok(_) => {}

@@ -1,6 +1,7 @@
 //! A long computation: the interpreter's other threads run meanwhile, Ctrl-C ends it, and progress is told.
 
 use crate::errors;
+use pulloff_engine::progress::Progress;
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,6 +13,7 @@ pub const PAUSE: Duration = Duration::from_millis(25);
 /// What Python says to a computation: a signal has come, or its progress function has failed.
 pub struct Listener {
     progress: Option<Py<PyAny>>,
+    share: Cell<f64>,
     asked: Cell<Option<Instant>>,
     said: RefCell<Option<PyErr>>,
 }
@@ -19,32 +21,7 @@ pub struct Listener {
 impl Listener {
     /// One that tells `progress`, where there is one, the share that is done.
     pub fn new(progress: Option<Py<PyAny>>) -> Self {
-        Self { progress, asked: Cell::new(None), said: RefCell::new(None) }
-    }
-
-    /// Whether to go on, `share` being done. Python is asked no more often than is useful: the engine asks far more often.
-    pub fn go_on(&self, share: f64) -> bool {
-        if self.said.borrow().is_some() {
-            return false;
-        }
-        if self.asked.get().is_some_and(|asked| asked.elapsed() < PAUSE) {
-            return true;
-        }
-        self.asked.set(Some(Instant::now()));
-        let asked = Python::attach(|py| {
-            py.check_signals()?;
-            match &self.progress {
-                Some(progress) => progress.call1(py, (share,)).map(drop),
-                None => Ok(()),
-            }
-        });
-        match asked {
-            Ok(()) => true,
-            Err(error) => {
-                self.said.replace(Some(error));
-                false
-            }
-        }
+        Self { progress, share: Cell::new(0.0), asked: Cell::new(None), said: RefCell::new(None) }
     }
 
     /// The exception that ended it, if one did.
@@ -53,15 +30,46 @@ impl Listener {
     }
 }
 
+impl Progress for Listener {
+    fn report(&self, share: f64) {
+        self.share.set(share);
+    }
+
+    /// Python is asked no more often than is useful: the engine asks far more often.
+    fn stop(&self) -> bool {
+        if self.said.borrow().is_some() {
+            return true;
+        }
+        if self.asked.get().is_some_and(|asked| asked.elapsed() < PAUSE) {
+            return false;
+        }
+        self.asked.set(Some(Instant::now()));
+        let asked = Python::attach(|py| {
+            py.check_signals()?;
+            match &self.progress {
+                Some(progress) => progress.call1(py, (self.share.get(),)).map(drop),
+                None => Ok(()),
+            }
+        });
+        match asked {
+            Ok(()) => false,
+            Err(error) => {
+                self.said.replace(Some(error));
+                true
+            }
+        }
+    }
+}
+
 /// Computes without the interpreter's lock. An exception of `progress`, or of a signal, is raised; so is a panic.
 pub fn long<T: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
-    compute: impl FnOnce(&dyn Fn(f64) -> bool) -> T + Send,
+    compute: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> PyResult<T> {
     let (made, said) = py.detach(|| {
         let listener = Listener::new(progress);
-        let made = catch_unwind(AssertUnwindSafe(|| compute(&|share| listener.go_on(share))));
+        let made = catch_unwind(AssertUnwindSafe(|| compute(&listener)));
         (made, listener.said())
     });
     if let Some(error) = said {

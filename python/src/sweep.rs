@@ -6,6 +6,7 @@ use crate::{errors, files};
 use numpy::PyArray1;
 use pulloff_engine::preset::read::read_in;
 use pulloff_engine::preset::{Preset, Value, shipped};
+use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::{Cell, Fault, Measured, QUANTITIES, Spec};
 use pulloff_engine::text::quote;
@@ -87,15 +88,15 @@ fn run(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<Measured>, Option<PyErr>)> {
     let (next, done, stopped) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
-    let go_on = || !stopped.load(Ordering::Relaxed);
+    let stop = || stopped.load(Ordering::Relaxed);
     let work = || {
         let mut own = Vec::new();
-        while go_on() {
+        while !stop() {
             let row = next.fetch_add(1, Ordering::Relaxed);
             if row >= spec.rows {
                 break;
             }
-            let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &go_on)))
+            let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &stop)))
                 .unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
             let Some(measured) = measured else { break };
             own.push((row, measured));
@@ -119,7 +120,8 @@ fn run(
             }
         }
         while !threads.iter().all(thread::ScopedJoinHandle::is_finished) {
-            if !listener.go_on(done.load(Ordering::Relaxed) as f64 / spec.rows as f64) {
+            listener.report(done.load(Ordering::Relaxed) as f64 / spec.rows as f64);
+            if listener.stop() {
                 stopped.store(true, Ordering::Relaxed);
             }
             // A short sweep does not wait a whole pause for its end.

@@ -2,9 +2,9 @@
 
 use super::console::{note, warn};
 use super::problem::Problem;
+use super::watch::Bar;
 use super::{Failure, output};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::schema::TURN_KEYS;
@@ -14,7 +14,6 @@ use pulloff_engine::report::cycle::COLUMNS;
 use pulloff_engine::report::{CycleReport, columns, cycle_table, json};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
 /// The arguments of `pulloff cycle`.
 #[derive(Debug, Args)]
@@ -105,14 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let units = case.units();
     let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
     let areas = if arguments.no_area { Areas::No } else { Areas::Yes };
-    let bar = bar();
-    let cycle = case.cycle(case.control, turn, areas, &|share| {
-        // A share of a hundred.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
-        true
-    });
-    bar.finish_and_clear();
+    let cycle = case.cycle(case.control, turn, areas, &Bar::begin(None));
     let report = CycleReport::new(&preset, &case, &cycle?);
     warn(&report.warnings);
     let text = match format {
@@ -129,14 +121,4 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Inadmissible(text.to_owned()));
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Shown on a terminal, once it takes longer than a moment.
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_secs(1));
-    bar
 }

@@ -5,25 +5,20 @@ mod table;
 use self::table::Table;
 use super::console::{note, warn};
 use super::measured::{attach, typed};
+use super::watch::{Bar, Stop};
 use super::{Failure, output, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
 use pulloff_engine::measured::branches::{Asked, Span};
 use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::report::fit::{FitReport, residuals};
 use pulloff_engine::report::json;
 use pulloff_engine::text::{quote, show_path};
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
@@ -115,14 +110,7 @@ enum Robust {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (files, loaded, options) = arguments.read()?;
-    let signal = Arc::new(AtomicUsize::new(0));
-    for number in [SIGINT, SIGTERM] {
-        // The second ends at once, as ever.
-        let caught = flag::register_conditional_shutdown(number, 1, Arc::default()).and_then(|_| {
-            flag::register_usize(number, Arc::clone(&signal), usize::try_from(number).unwrap_or(2))
-        });
-        caught.map_err(|cause| Failure::System { what: "cannot catch signals".to_owned(), cause })?;
-    }
+    let stop = Stop::catch()?;
     let mut table = match &arguments.table {
         Some(path) => Some(Table::open(path, &arguments.fingerprint(&loaded.preset))?),
         None => None,
@@ -135,7 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             note(Some(&format!("{shown}: is in the table already")));
             continue;
         }
-        let found = match one(path, &loaded, &options, &signal) {
+        let found = match one(path, &loaded, &options, &stop) {
             Ok(done) => done,
             // One bad file among many is told, and the others are fitted.
             Err(failure) if files.len() > 1 => {
@@ -162,7 +150,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         worst = worst.max(status(&report));
         reports.push(report);
-        if signal.load(Ordering::Relaxed) != 0 {
+        if stop.signal().is_some() {
             break;
         }
     }
@@ -172,16 +160,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (false, reports) => reports.iter().map(FitReport::text).collect::<Vec<_>>().join("\n"),
     };
     output::write(&text, None)?;
-    match (signal.load(Ordering::Relaxed), worst) {
-        (0, None | Some(0)) => Ok(ExitCode::SUCCESS),
-        (0, Some(3)) => Err(Failure::Inadmissible(
+    match (stop.signal(), worst) {
+        (None, None | Some(0)) => Ok(ExitCode::SUCCESS),
+        (None, Some(3)) => Err(Failure::Inadmissible(
             "the points do not determine all values; the result says which".to_owned(),
         )),
-        (0, Some(_)) => Err(Failure::Incomplete(
+        (None, Some(_)) => Err(Failure::Incomplete(
             "not every fit came to its end; the result has the best values so far".to_owned(),
         )),
-        (signal, _) => Err(Failure::Interrupted {
-            signal: u8::try_from(signal).unwrap_or(2),
+        (Some(signal), _) => Err(Failure::Interrupted {
+            signal,
             text: "stopped: the result has the best values so far".to_owned(),
         }),
     }
@@ -204,20 +192,13 @@ fn status(report: &FitReport) -> Option<u8> {
 }
 
 /// The fit to one file, or to the curve of the preset itself.
-fn one(path: &Path, loaded: &Loaded, options: &Options, signal: &AtomicUsize) -> Result<Fit, Failure> {
+fn one(path: &Path, loaded: &Loaded, options: &Options, stop: &Stop) -> Result<Fit, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
     let mut preset = loaded.preset.clone();
     if own(&preset) != Some(path.to_owned()) {
         attach(&mut preset, path)?;
     }
-    let bar = bar();
-    let fitted = fit_own(&preset, options, &mut |share| {
-        // A share of a hundred.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
-        signal.load(Ordering::Relaxed) == 0
-    });
-    bar.finish_and_clear();
+    let fitted = fit_own(&preset, options, &Bar::begin(Some(stop)));
     fitted.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
         error => Failure::Usage(named(&error)),
@@ -227,16 +208,6 @@ fn one(path: &Path, loaded: &Loaded, options: &Options, signal: &AtomicUsize) ->
 /// The file of the preset's own curve; one that comes with the program by its name.
 fn own(preset: &Preset) -> Option<PathBuf> {
     preset.data.source.as_ref().map(|source| source.path())
-}
-
-/// Shown on a terminal, once it takes longer than a moment.
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_secs(1));
-    bar
 }
 
 impl Arguments {

@@ -33,6 +33,7 @@ mod sweep_status;
 mod trace;
 mod unload;
 mod verify;
+mod watch;
 
 pub use failure::Failure;
 

@@ -8,7 +8,7 @@ use crate::explorer::fitting::FitWish;
 use crate::explorer::maps::{MapAxes, MapWish};
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::reach::no_spring;
-use crate::explorer::{Axes, CurveData, Overlays, View};
+use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::measured::Points;
 use crate::figure::range::RangeError;
 use crate::figure::{Figure, Range, Sign, Subject};
@@ -20,6 +20,7 @@ use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::{Preset, Value, data};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::report::CycleReport;
@@ -134,8 +135,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let data = arguments.data_file(Some(&loaded))?;
     let mut preset = loaded.preset;
     arguments.lay_points(&mut preset)?;
-    let curve = CurveData::compute(&preset, |_| true)?;
-    let curve = Arc::new(curve.checked(&mut || true).unwrap_or(curve));
+    let curve = CurveData::compute(&preset, &Staged::unwatched())?;
+    let curve = Arc::new(curve.checked(&Unwatched).unwrap_or(curve));
     warn(&curve.base.warnings);
     let view = arguments.view.0;
     if let Some(why) = no_spring(&preset).filter(|_| view == View::ForcePosition) {
@@ -152,10 +153,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None
     };
     let cycle =
-        if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &|_| true)?) } else { None };
+        if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &Unwatched)?) } else { None };
     warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
     let wish = || MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
-    let found = (view == View::Map).then(|| wish().run(&|| true)).flatten();
+    let found = (view == View::Map).then(|| wish().run(&Unwatched)).flatten();
     let map = found.as_ref().map(|map| map.report());
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };

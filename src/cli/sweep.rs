@@ -1,6 +1,7 @@
 //! `pulloff sweep`: many problems into one file, and shards of it joined.
 
 use super::sweep_status::Reporter;
+use super::watch::Stop;
 use super::{Failure, output};
 use crate::store::stream;
 use crate::sweep::{
@@ -13,15 +14,11 @@ use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::Design;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::text::{quote, show_name, show_path};
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::{available_parallelism, sleep};
 use std::time::{Duration, Instant};
 
@@ -178,36 +175,12 @@ fn quantities() -> String {
     text
 }
 
-/// The signals that stop a sweep: the first keeps what is done, the second ends at once.
-struct Stop {
-    signal: Arc<AtomicUsize>,
-}
-
-impl Stop {
-    fn catch() -> io::Result<Self> {
-        let signal = Arc::new(AtomicUsize::new(0));
-        let again = Arc::new(AtomicBool::new(false));
-        for (number, value) in [(SIGINT, 2), (SIGTERM, 15)] {
-            // Before the flag is set, so that it acts on the next one.
-            flag::register_conditional_shutdown(number, 128 + value, Arc::clone(&again))?;
-            flag::register(number, Arc::clone(&again))?;
-            flag::register_usize(number, Arc::clone(&signal), usize::try_from(value).unwrap_or(1))?;
-        }
-        Ok(Self { signal })
-    }
-
-    fn signal(&self) -> Option<u8> {
-        u8::try_from(self.signal.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
-    }
-}
-
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
         output::csv_only(&self.output)?;
         let spec = spec::load(&super::problem::store(), &self.spec)?;
         let results = self.open(&spec)?;
-        let cannot_catch = |cause| Failure::System { what: "cannot catch signals".to_owned(), cause };
-        let stop = Stop::catch().map_err(cannot_catch)?;
+        let stop = Stop::catch()?;
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let jobs = self.jobs.map_or_else(cores, usize::from);
         let [before, of] = [results.rows, self.shard.len(spec.rows)];
@@ -215,9 +188,8 @@ impl Sweep {
         let mut status = Reporter::begin(self.status.as_deref(), files, self.shard, [before, of])?;
         let bar = bar(of, before);
         let begun = Instant::now();
-        let go_on = || stop.signal().is_none();
         let means = Means { jobs, row_limit: self.row_limit };
-        let summary = compute(&spec, self.shard, results, means, &go_on, |rows, faults| {
+        let summary = compute(&spec, self.shard, results, means, &stop, |rows, faults| {
             status.tell(rows, faults);
             bar.set_position(rows);
             if faults > 0 {

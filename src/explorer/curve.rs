@@ -6,13 +6,14 @@
 //!
 //! Which states are admissible takes longer than both, and is added to a curve that is on the screen already.
 
-use super::progress::Progress;
+use super::progress::{Stage, Staged};
 use super::setting::{Setting, same_curve};
 use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Control, Groups};
-use pulloff_engine::quasistatic::overlap::{overlaps_while, passed_while};
+use pulloff_engine::progress::Progress;
+use pulloff_engine::quasistatic::overlap::{overlaps, passed};
 use pulloff_engine::quasistatic::{
     Admissibility, Curve, Detail, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
 };
@@ -86,16 +87,14 @@ pub struct CurveData {
 }
 
 impl ProblemCurve {
-    /// Computes the curve of `preset`. `go_on` hears of the progress and says whether to go on.
-    pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &mut |share| go_on(Progress::Basis(share)))?;
-        let mut asked = 0;
-        let mut curve = case.curve(|| {
-            asked += 1;
-            go_on(Progress::Curve(asked))
-        })?;
+    /// Computes the curve of `preset`.
+    pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, progress)?;
+        progress.enter(Stage::Curve(1));
+        let mut curve = case.curve(progress)?;
+        progress.enter(Stage::Limits);
         for control in SHOWN {
-            if !go_on(Progress::Limits) {
+            if progress.stop() {
                 return Err(CaseError::Cancelled);
             }
             curve.hold(control);
@@ -140,18 +139,12 @@ impl ProblemCurve {
 
 impl CurveData {
     /// Computes the curve of `preset` and what belongs to its control.
-    pub fn compute(preset: &Preset, mut go_on: impl FnMut(Progress) -> bool) -> Result<Self, CaseError> {
-        Self::under(Arc::new(ProblemCurve::compute(preset, &mut go_on)?), preset, go_on)
+    pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
+        Self::under(Arc::new(ProblemCurve::compute(preset, progress)?), preset, progress)
     }
 
     /// The curve `base` under the control of `preset`, whose problem must be the same: no equilibrium is computed again.
-    ///
-    /// `go_on` is asked between events.
-    pub fn under(
-        base: Arc<ProblemCurve>,
-        preset: &Preset,
-        mut go_on: impl FnMut(Progress) -> bool,
-    ) -> Result<Self, CaseError> {
+    pub fn under(base: Arc<ProblemCurve>, preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
         let mut curve = base.curve.clone();
         let units = *base.case.units();
         let control = preset.path.control.in_units(units.stiffness);
@@ -174,12 +167,8 @@ impl CurveData {
                 (limit.control, shown(&Sample { contact_radius, approach, force, slopes }))
             })
             .collect();
-        let mut asked = 0;
-        let next = || {
-            asked += 1;
-            go_on(Progress::Events(asked - 1))
-        };
-        let unloading = match case.unload_while(&curve, control, Losses::Twice, next) {
+        progress.enter(Stage::Events(0));
+        let unloading = match case.unload_while(&curve, control, Losses::Twice, progress) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };
@@ -187,7 +176,14 @@ impl CurveData {
         let start = unloading.as_ref().map_or(0.0, |path| path.start.contact_radius);
         let outward = if start > curve.outermost() * (1.0 + 1e-12) {
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
-            Curve::new(case.reduced.clone(), basis, table, [start, curve.outermost()], Detail::Drawn, || true)
+            Curve::new(
+                case.reduced.clone(),
+                basis,
+                table,
+                [start, curve.outermost()],
+                Detail::Drawn,
+                progress,
+            )
         } else {
             None
         };
@@ -214,21 +210,21 @@ impl CurveData {
         self.base.inadmissible.is_some() && path
     }
 
-    /// The same curve with the inadmissible states of it and of its path; `None` if `go_on` said no.
+    /// The same curve with the inadmissible states of it and of its path; `None` if `progress` said stop.
     #[must_use]
-    pub fn checked(&self, go_on: &mut dyn FnMut() -> bool) -> Option<Self> {
+    pub fn checked(&self, progress: &dyn Progress) -> Option<Self> {
         let mut base = Arc::clone(&self.base);
         if base.inadmissible.is_none() {
-            let overlaps = overlaps_while(&base.curve, go_on)?;
+            let overlaps = overlaps(&base.curve, progress)?;
             let reports = OverlapReport::all(&overlaps, base.case.units());
             let parts = overlaps.iter().zip(reports).map(|(overlap, report)| base.part(overlap, report));
             base = Arc::new(ProblemCurve { inadmissible: Some(parts.collect()), ..(*base).clone() });
         }
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
-            let passed = passed_while(&base.curve, &unloading.pieces, go_on)?;
+            let passed = passed(&base.curve, &unloading.pieces, progress)?;
             let mut checked = unchecked.clone().checked(&self.case, unloading, &passed);
-            checked.warnings.extend(self.case.unsettled(unloading));
+            checked.warnings.extend(self.case.unsettled(unloading, progress));
             report = Some(checked);
         }
         Some(Self { base, report, ..self.clone() })

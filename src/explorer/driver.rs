@@ -16,7 +16,7 @@ use super::model::Model;
 use super::node::NodeKind;
 use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
-use super::progress::{Pace, Progress};
+use super::progress::{Pace, Staged, for_good};
 use super::saves::Saves;
 use super::studies::{StudyWish, threads};
 use super::update::answer;
@@ -27,6 +27,8 @@ use crate::mend::Reason;
 use crate::store::Store;
 use pulloff_engine::case::CaseError;
 use pulloff_engine::preset::Preset;
+use pulloff_engine::progress::{Progress, Unwatched};
+use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -59,16 +61,18 @@ impl Inline {
     /// Does one effect; it is over when this returns, so there is nothing to stop.
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
-            Effect::Curve(wish) => compute(&wish, |_| true),
-            Effect::Check(check) => check.run(|| true),
-            Effect::Loop(wish) => {
-                wish.is_shown.then(|| wish.run(&|| true)).flatten().map(|found| Reply::Loop(Arc::new(found)))
-            }
-            Effect::Map(wish) => wish.run(&|| true).map(|found| Reply::Map(Arc::new(found))),
-            Effect::Fit(wish) => Some(Reply::Fitted { id: wish.id, result: wish.fit(&mut |_| true) }),
+            Effect::Curve(wish) => compute(&wish, &Staged::unwatched()),
+            Effect::Check(check) => check.run(&Unwatched),
+            Effect::Loop(wish) => wish
+                .is_shown
+                .then(|| wish.run(&Unwatched))
+                .flatten()
+                .map(|found| Reply::Loop(Arc::new(found))),
+            Effect::Map(wish) => wish.run(&Unwatched).map(|found| Reply::Map(Arc::new(found))),
+            Effect::Fit(wish) => Some(Reply::Fitted { id: wish.id, result: wish.fit(&Unwatched) }),
             Effect::Distances(wish) => Some(Reply::Distances(Arc::new(wish.distances()))),
             Effect::Study(wish) => {
-                let found = wish.run(threads(), &|| true, &mut |_| {});
+                let found = wish.run(threads(), &Unwatched, &mut |_| {});
                 found.map(|found| Reply::Study(Arc::new(found)))
             }
             Effect::Profile(ask) => Some(Reply::Profile(Arc::new(Inside::compute(&ask)))),
@@ -85,21 +89,21 @@ impl Inline {
             | Effect::StopFit(_)
             | Effect::StopPins
             | Effect::Pace(_) => None,
-            Effect::Pin(number, preset) => Some(pinned(number, &preset, || true)),
+            Effect::Pin(number, preset) => Some(pinned(number, &preset, &Staged::unwatched())),
             Effect::File(job) => Some(Reply::File(Box::new(files::run(&self.store, *job)))),
         }
     }
 }
 
-fn pinned(number: usize, preset: &Preset, go_on: impl Fn() -> bool) -> Reply {
-    Reply::Pinned(number, CurveData::compute(preset, |_| go_on()).ok().map(Arc::new))
+fn pinned(number: usize, preset: &Preset, progress: &Staged<'_>) -> Reply {
+    Reply::Pinned(number, CurveData::compute(preset, progress).ok().map(Arc::new))
 }
 
 impl Check {
-    fn run(&self, go_on: impl Fn() -> bool) -> Option<Reply> {
-        let curve = Arc::new(self.curve.checked(&mut || go_on())?);
+    fn run(&self, progress: &dyn Progress) -> Option<Reply> {
+        let curve = Arc::new(self.curve.checked(progress)?);
         let snaps_from = if self.with_onset {
-            Some(Arc::new(SnapsFrom::find(&self.curve.setting.preset, &go_on)?))
+            Some(Arc::new(SnapsFrom::find(&self.curve.setting.preset, progress)?))
         } else {
             None
         };
@@ -107,10 +111,10 @@ impl Check {
     }
 }
 
-fn compute(wish: &Wish, go_on: impl FnMut(Progress) -> bool) -> Option<Reply> {
+fn compute(wish: &Wish, progress: &Staged<'_>) -> Option<Reply> {
     let result = match &wish.base {
-        Some(base) => CurveData::under(Arc::clone(base), &wish.preset, go_on),
-        None => CurveData::compute(&wish.preset, go_on),
+        Some(base) => CurveData::under(Arc::clone(base), &wish.preset, progress),
+        None => CurveData::compute(&wish.preset, progress),
     };
     match result {
         Err(CaseError::Cancelled) => None,
@@ -220,13 +224,13 @@ impl Workers {
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
-                let is_wanted = || times.load(Ordering::Acquire) == asked;
-                if !is_wanted() {
+                let is_given_up = || times.load(Ordering::Acquire) != asked;
+                if is_given_up() {
                     continue;
                 }
-                let answer = pinned(number, &preset, is_wanted);
+                let answer = pinned(number, &preset, &Staged::new(&|_| is_given_up()));
                 // If cancelled meanwhile, another pin may have this number now.
-                if is_wanted() {
+                if !is_given_up() {
                     send(answer);
                 }
             }
@@ -301,9 +305,9 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
             }
             Task::Check(check) => {
                 // Ends at once when another curve is wanted.
-                let is_wanted =
-                    || !slot.waiting.load(Ordering::Acquire) && given_up.load(Ordering::Acquire) < check.id;
-                if let Some(answer) = check.run(is_wanted) {
+                let stop =
+                    || slot.waiting.load(Ordering::Acquire) || given_up.load(Ordering::Acquire) >= check.id;
+                if let Some(answer) = check.run(&stop) {
                     reply(answer);
                 }
                 continue;
@@ -313,16 +317,16 @@ fn curves(slot: &Slot<Task>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
         let known = last.take_if(|base| wish.base.is_none() && base.is_of(&wish.preset));
         wish.base = wish.base.or(known);
         let begun = Instant::now();
-        let mut pace = Pace::begin();
+        let pace = RefCell::new(Pace::begin());
         let id = wish.id;
-        let go_on = |progress| {
-            if pace.is_due(progress) {
-                reply(Reply::Progress { id, progress });
+        let outdated = for_good(|| slot.waiting.load(Ordering::Acquire) && begun.elapsed() <= PATIENCE);
+        let stop = |stage| {
+            if pace.borrow_mut().is_due(stage) {
+                reply(Reply::Stage { id, stage });
             }
-            let newest = !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
-            newest && given_up.load(Ordering::Acquire) < id
+            outdated() || given_up.load(Ordering::Acquire) >= id
         };
-        if let Some(answer) = compute(&wish, go_on) {
+        if let Some(answer) = compute(&wish, &Staged::new(&stop)) {
             if let Reply::Curve { result: Ok(curve), .. } = &answer {
                 last = Some(Arc::clone(&curve.base));
             }
@@ -341,8 +345,8 @@ fn loop_lane(slot: &Slot<Box<LoopWish>>, reply: &dyn Fn(Reply)) {
     loop {
         let wish = slot.take();
         let begun = Instant::now();
-        let go_on = || !slot.waiting.load(Ordering::Acquire) || begun.elapsed() > PATIENCE;
-        if let Some(found) = wish.run(&go_on) {
+        let stop = for_good(|| slot.waiting.load(Ordering::Acquire) && begun.elapsed() <= PATIENCE);
+        if let Some(found) = wish.run(&stop) {
             reply(Reply::Loop(Arc::new(found)));
         }
     }
@@ -351,10 +355,34 @@ fn loop_lane(slot: &Slot<Box<LoopWish>>, reply: &dyn Fn(Reply)) {
 fn map_lane(slot: &Slot<Box<MapWish>>, reply: &dyn Fn(Reply)) {
     loop {
         let wish = slot.take();
-        let go_on = || !slot.waiting.load(Ordering::Acquire);
-        if let Some(found) = wish.run(&go_on) {
+        let stop = || slot.waiting.load(Ordering::Acquire);
+        if let Some(found) = wish.run(&stop) {
             reply(Reply::Map(Arc::new(found)));
         }
+    }
+}
+
+/// Watches a fit.
+struct Fitted<'a> {
+    id: u64,
+    told: Cell<u8>,
+    stopped: &'a AtomicU64,
+    reply: &'a dyn Fn(Reply),
+}
+
+impl Progress for Fitted<'_> {
+    fn report(&self, share: f64) {
+        // A share of a hundred; every fifth is enough for who waits.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
+        if percent >= self.told.get() + 5 {
+            self.told.set(percent);
+            (self.reply)(Reply::Fitting { id: self.id, percent });
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.stopped.load(Ordering::Acquire) >= self.id
     }
 }
 
@@ -362,17 +390,7 @@ fn fit_lane(slot: &Slot<Box<FitWish>>, stopped: &AtomicU64, reply: &dyn Fn(Reply
     loop {
         let wish = slot.take();
         let id = wish.id;
-        let mut told = 0;
-        let result = wish.fit(&mut |share| {
-            // A share of a hundred; every fifth is enough for who waits.
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
-            if percent >= told + 5 {
-                told = percent;
-                reply(Reply::Fitting { id, percent });
-            }
-            stopped.load(Ordering::Acquire) < id
-        });
+        let result = wish.fit(&Fitted { id, told: Cell::new(0), stopped, reply });
         reply(Reply::Fitted { id, result });
     }
 }
@@ -386,9 +404,9 @@ fn distance_lane(slot: &Slot<Box<FitWish>>, reply: &dyn Fn(Reply)) {
 fn study_lane(slot: &Slot<Box<StudyWish>>, reply: &dyn Fn(Reply)) {
     loop {
         let wish = slot.take();
-        let go_on = || !slot.waiting.load(Ordering::Acquire);
+        let stop = || slot.waiting.load(Ordering::Acquire);
         let mut told = |data| reply(Reply::Study(Arc::new(data)));
-        if let Some(found) = wish.run(threads(), &go_on, &mut told) {
+        if let Some(found) = wish.run(threads(), &stop, &mut told) {
             reply(Reply::Study(Arc::new(found)));
         }
     }

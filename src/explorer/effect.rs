@@ -7,7 +7,7 @@ use super::loops::{LoopData, LoopWish};
 use super::maps::{MapData, MapWish};
 use super::onset::SnapsFrom;
 use super::profile::{Ask, Inside};
-use super::progress::Progress;
+use super::progress::Stage;
 use super::studies::{StudyData, StudyWish};
 use super::walk::{Made, Outcome, Request};
 use crate::mend::Reason;
@@ -75,9 +75,9 @@ pub enum Reply {
         id: u64,
         result: Result<Arc<CurveData>, Reason>,
     },
-    Progress {
+    Stage {
         id: u64,
-        progress: Progress,
+        stage: Stage,
     },
     /// The same curve with what is not admissible on it, and where snaps begin if that was asked.
     Checked {

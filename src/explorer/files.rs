@@ -12,6 +12,7 @@ use crate::print::Format;
 use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::{changes, differences};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::unload::EventReport;
 use pulloff_engine::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
@@ -221,7 +222,7 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
 }
 
 /// The text of a document; of a script its lines alone.
-fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
+fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::Error>> {
     let walked = |curve: &CurveData, points: &[WalkRow], events: &[EventReport]| {
         json(&Walked {
             schema: SCHEMA,
@@ -238,7 +239,8 @@ fn text(content: &Content, as_json: bool) -> Result<String, rows::RowsError> {
             let (drawn, of) = (&curve.base.curve, &curve.base.curve.equilibrium);
             let points: Vec<_> =
                 drawn.samples.iter().filter_map(|at| of.explicit(at.contact_radius)).collect();
-            let report = TraceReport::new(&curve.setting.preset, &curve.case, drawn, &points, drawn.stop);
+            let (preset, case) = (&curve.setting.preset, &curve.case);
+            let report = TraceReport::new(preset, case, drawn, &points, drawn.stop, &Unwatched)?;
             if as_json { json(&report)? } else { report.csv()? }
         }
         Content::Walk(curve, walk) => {

@@ -8,6 +8,7 @@ use pulloff_engine::fit::run::{Residual, residuals_own};
 use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
+use pulloff_engine::progress::Progress;
 use std::sync::Arc;
 
 /// A fit, or residuals, that are wanted.
@@ -36,11 +37,11 @@ pub struct Distances {
 }
 
 impl FitWish {
-    /// Fits the free keys; `go_on` is told the share that is done.
-    pub fn fit(&self, go_on: &mut dyn FnMut(f64) -> bool) -> Result<Arc<Fit>, Reason> {
+    /// Fits the free keys.
+    pub fn fit(&self, progress: &dyn Progress) -> Result<Arc<Fit>, Reason> {
         let free = self.preset.data.free().map(str::to_owned).collect();
         let options = Options { free, ..Options::default() };
-        fit_own(&self.preset, &options, go_on).map(Arc::new).map_err(|error| {
+        fit_own(&self.preset, &options, progress).map(Arc::new).map_err(|error| {
             let can_be_mended = !matches!(error, FitError::NoStart | FitError::Cancelled);
             Reason { text: format!("not fitted: {error}"), can_be_mended }
         })

@@ -8,6 +8,7 @@ use super::node::Node;
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::{Preset, Value};
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::walk::{At, Emit, Walk, WalkEnd, WalkFailure, edges};
 use pulloff_engine::quasistatic::{Curve, Detail, State};
 
@@ -62,7 +63,7 @@ impl Before {
     /// The contacts when this share of the change to `preset` is made.
     fn part(&self, preset: &Preset, share: f64, from: &Contacts, state: &State) -> Option<Contacts> {
         let case = Case::new(&between(&self.preset, preset, share)?).ok()?;
-        let curve = case.curve_in(Detail::Borders, || true).ok()?;
+        let curve = case.curve_in(Detail::Borders, &Unwatched).ok()?;
         let mut found = None;
         let end = solved(&case, &curve, from, state, &mut |reached| {
             let contacts = edges::contacts(&curve.equilibrium.scales, &reached.point);

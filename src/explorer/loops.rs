@@ -8,6 +8,7 @@ use super::setting::same_curve;
 use crate::mend::Reason;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::admissible::falls;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::report::CycleReport;
@@ -37,15 +38,15 @@ pub struct LoopData {
 }
 
 impl LoopWish {
-    /// Computes it; `None` when `go_on`, which is asked before each step, said no.
+    /// Computes it; `None` when `progress` said stop.
     #[must_use]
-    pub fn run(&self, go_on: &dyn Fn() -> bool) -> Option<LoopData> {
+    pub fn run(&self, progress: &dyn Progress) -> Option<LoopData> {
         let base = &self.curve.case;
         let units = base.units();
         let turn = self.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
-        let report = match case.cycle(case.control, None, Areas::No, &|_| go_on()) {
+        let report = match case.cycle(case.control, None, Areas::No, progress) {
             Err(CaseError::Cancelled) => return None,
             Err(error) => Err(Reason::of("", &error)),
             Ok(cycle) => Ok(CycleReport::new(&self.preset, &case, &cycle)),

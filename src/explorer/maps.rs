@@ -6,6 +6,7 @@ use crate::mend::Reason;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Parameter, Preset};
+use pulloff_engine::progress::Progress;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::{MapError, Ordinate};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
@@ -157,12 +158,12 @@ pub struct MapData {
 }
 
 impl MapWish {
-    /// Computes it; `None` when `go_on`, which is asked often, said no.
+    /// Computes it; `None` when `progress` said stop.
     #[must_use]
-    pub fn run(&self, go_on: &dyn Fn() -> bool) -> Option<MapData> {
+    pub fn run(&self, progress: &dyn Progress) -> Option<MapData> {
         let report = if self.preset.material.work_of_adhesion > 0.0 {
             match self.axes.ranges(&self.preset) {
-                Ok((x, y)) => match MapReport::compute(&self.preset, x, &y, CELLS, go_on) {
+                Ok((x, y)) => match MapReport::compute(&self.preset, x, &y, CELLS, progress) {
                     Err(MapError::Cancelled) => return None,
                     found => found.map_err(|error| Reason::of("", &error)),
                 },

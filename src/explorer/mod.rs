@@ -100,6 +100,6 @@ pub use history::History;
 pub use journal::Journal;
 pub use model::{Level, Model};
 pub use node::{Node, NodeKind};
-pub use progress::Progress;
+pub use progress::{Stage, Staged};
 pub use update::{answer, open, update};
 pub use view::{Axes, EventSource, Overlay, Overlays, Panel, View, Window};

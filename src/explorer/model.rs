@@ -12,7 +12,7 @@ use super::node::{Node, NodeKind};
 use super::onset::SnapsFrom;
 use super::pins::Pins;
 use super::profile::{Ask, Inside};
-use super::progress::Progress;
+use super::progress::Stage;
 use super::setting::same_curve;
 use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
@@ -135,7 +135,7 @@ pub struct Model {
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
     /// Progress of the curve being computed, once that takes long.
-    pub progress: Option<Progress>,
+    pub stage: Option<Stage>,
     /// The number under which the admissibility of the curve was asked for, while it is.
     pub checking: Option<Checking>,
     /// The loop of loading and unloading, where the gap has crests; it can be that of values before.
@@ -242,7 +242,7 @@ impl Model {
             curve_error: None,
             curve_wanted: 0,
             curve_shown: 0,
-            progress: None,
+            stage: None,
             checking: None,
             cycle: None,
             cycle_wanted: None,

@@ -2,6 +2,7 @@
 
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::stability::Onset;
 
 /// Where snaps begin for the adhesion, device and start of a preset.
@@ -13,13 +14,13 @@ pub struct SnapsFrom {
 }
 
 impl SnapsFrom {
-    /// Finds it; `None` when `go_on` said no.
+    /// Finds it; `None` when `progress` said stop.
     #[must_use]
-    pub fn find(preset: &Preset, go_on: &dyn Fn() -> bool) -> Option<Self> {
+    pub fn find(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
         // A start that some amplitude does not have is the curve's to tell.
-        let onset = Onset::of(preset, go_on).ok().flatten();
+        let onset = Onset::of(preset, progress).ok().flatten();
         let amplitude_over_wavelength = onset.map(|onset| onset.amplitude_over_wavelength);
-        go_on().then(|| Self { preset: preset.clone(), amplitude_over_wavelength })
+        (!progress.stop()).then(|| Self { preset: preset.clone(), amplitude_over_wavelength })
     }
 
     /// Whether it is that of `preset`, whose amplitude and basis may be others.

@@ -182,6 +182,7 @@ fn named(differences: &[(Row, Value)], units: &UnitSystem) -> Option<String> {
 mod tests {
     use super::*;
     use crate::explorer::command::by_name;
+    use crate::explorer::progress::Staged;
     use crate::store::{read, shipped};
 
     fn preset(changes: &[(&str, &str)]) -> Preset {
@@ -225,7 +226,7 @@ mod tests {
     fn numbers_stay_and_free_ones_are_taken_again() {
         let curve = |amplitude: &str| {
             let preset = preset(&[("gap.amplitude", amplitude), ("path.end_contact_radius", "0.35")]);
-            Arc::new(CurveData::compute(&preset, |_| true).unwrap())
+            Arc::new(CurveData::compute(&preset, &Staged::unwatched()).unwrap())
         };
         let mut pins = Pins::default();
         let first = curve("0.001");

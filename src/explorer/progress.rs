@@ -1,21 +1,23 @@
 //! How far a curve that is computed has come.
 
+use pulloff_engine::progress::Progress;
+use std::cell::Cell;
 use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
 /// What a curve is at; it passes these in order, without those that are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Progress {
+pub enum Stage {
     /// The basis is built: the share done, from 0 to 1.
     Basis(f64),
-    /// The equilibria are computed: so many so far.
+    /// The equilibria are computed: the number of this one, from 1.
     Curve(usize),
     Limits,
     /// Its unloading is followed: the events found.
     Events(usize),
 }
 
-impl Progress {
+impl Stage {
     /// In words, short.
     pub fn text(self) -> String {
         // Never 100 %: a part is complete only when the next has begun.
@@ -28,11 +30,61 @@ impl Progress {
     }
 }
 
+/// Tells the stages of a curve, one for each question of the engine.
+pub struct Staged<'a> {
+    stage: Cell<Stage>,
+    stop: &'a dyn Fn(Stage) -> bool,
+}
+
+impl<'a> Staged<'a> {
+    /// Tells them to `stop`, which says whether to end the computation.
+    pub fn new(stop: &'a dyn Fn(Stage) -> bool) -> Self {
+        Self { stage: Cell::new(Stage::Basis(0.0)), stop }
+    }
+
+    /// Tells nobody, and goes on to the end.
+    pub fn unwatched() -> Self {
+        Self::new(&|_| false)
+    }
+
+    /// Begins a stage.
+    pub fn enter(&self, stage: Stage) {
+        self.stage.set(stage);
+    }
+}
+
+impl Progress for Staged<'_> {
+    fn report(&self, share: f64) {
+        if let Stage::Basis(_) = self.stage.get() {
+            self.stage.set(Stage::Basis(share));
+        }
+    }
+
+    fn stop(&self) -> bool {
+        let stage = self.stage.get();
+        self.stage.set(match stage {
+            Stage::Curve(number) => Stage::Curve(number + 1),
+            Stage::Events(found) => Stage::Events(found + 1),
+            stage => stage,
+        });
+        (self.stop)(stage)
+    }
+}
+
+/// What says stop from the first time on that `stop` does.
+pub fn for_good(stop: impl Fn() -> bool) -> impl Fn() -> bool {
+    let stopped = Cell::new(false);
+    move || {
+        stopped.set(stopped.get() || stop());
+        stopped.get()
+    }
+}
+
 /// When a computation is told of: not while it is short, and seldom enough to be read.
 #[derive(Debug)]
 pub struct Pace {
     begun: Instant,
-    told: Option<(Instant, Progress)>,
+    told: Option<(Instant, Stage)>,
 }
 
 /// Shorter computations report nothing.
@@ -46,14 +98,14 @@ impl Pace {
         Self { begun: Instant::now(), told: None }
     }
 
-    /// Whether `progress` is to be told now; another part of the computation may be a long one, so it is told at once.
-    pub fn is_due(&mut self, progress: Progress) -> bool {
+    /// Whether `stage` is to be told now; another part of the computation may be a long one, so it is told at once.
+    pub fn is_due(&mut self, stage: Stage) -> bool {
         let is_due = match self.told {
             None => self.begun.elapsed() >= SHORT,
-            Some((at, last)) => at.elapsed() >= BETWEEN || discriminant(&last) != discriminant(&progress),
+            Some((at, last)) => at.elapsed() >= BETWEEN || discriminant(&last) != discriminant(&stage),
         };
         if is_due {
-            self.told = Some((Instant::now(), progress));
+            self.told = Some((Instant::now(), stage));
         }
         is_due
     }
@@ -65,30 +117,33 @@ mod tests {
     use crate::explorer::CurveData;
     use crate::store::{read, shipped};
     use pulloff_engine::preset::Value;
+    use std::cell::RefCell;
 
     #[test]
     fn a_curve_passes_its_parts_in_order_and_counts_every_point() {
         let mut preset = read("t", shipped::find("wavy-sphere").unwrap().text).unwrap();
         preset.set("basis.kind", "rings".into()).unwrap();
         preset.set("basis.rings", Value::Integer(137)).unwrap();
-        let mut told = Vec::new();
-        let curve = CurveData::compute(&preset, |progress| {
-            told.push(progress);
-            true
-        });
+        let heard = RefCell::new(Vec::new());
+        let hear = |stage| {
+            heard.borrow_mut().push(stage);
+            false
+        };
+        let curve = CurveData::compute(&preset, &Staged::new(&hear));
+        let told = heard.into_inner();
         assert!(!curve.unwrap().points.is_empty());
-        let part = |progress: &Progress| match progress {
-            Progress::Basis(_) => 0,
-            Progress::Curve(_) => 1,
-            Progress::Limits => 2,
-            Progress::Events(_) => 3,
+        let part = |stage: &Stage| match stage {
+            Stage::Basis(_) => 0,
+            Stage::Curve(_) => 1,
+            Stage::Limits => 2,
+            Stage::Events(_) => 3,
         };
         assert!(told.is_sorted_by_key(part), "{told:?}");
-        let counted: Vec<_> = told.iter().filter(|progress| part(progress) == 1).copied().collect();
-        let expected: Vec<_> = (1..=counted.len()).map(Progress::Curve).collect();
+        let counted: Vec<_> = told.iter().filter(|stage| part(stage) == 1).copied().collect();
+        let expected: Vec<_> = (1..=counted.len()).map(Stage::Curve).collect();
         assert!(counted == expected && !counted.is_empty(), "{counted:?}");
-        assert!(told.iter().any(|progress| part(progress) == 0), "the rings are built in blocks");
-        assert!(told.contains(&Progress::Limits) && told.contains(&Progress::Events(5)));
-        assert_eq!(Progress::Basis(0.999).text(), "basis 99 %");
+        assert!(told.iter().any(|stage| part(stage) == 0), "the rings are built in blocks");
+        assert!(told.contains(&Stage::Limits) && told.contains(&Stage::Events(5)));
+        assert_eq!(Stage::Basis(0.999).text(), "basis 99 %");
     }
 }

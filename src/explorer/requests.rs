@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = model.number();
     model.curve_wanted = id;
-    (model.progress, model.curve_error) = (None, None);
+    (model.stage, model.curve_error) = (None, None);
     // The curve does not depend on the control: under another one it is reused.
     let known = model.curve.as_ref().map(|curve| &curve.base).filter(|base| base.is_of(&model.preset));
     let base = known.map(Arc::clone);

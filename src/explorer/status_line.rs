@@ -24,8 +24,8 @@ pub(super) fn of_before() -> String {
 }
 
 fn progress(model: &Model) -> String {
-    let Some(progress) = model.progress else { return String::new() };
-    format!(": {}; {} gives up", progress.text(), Id::Cancel.named())
+    let Some(stage) = model.stage else { return String::new() };
+    format!(": {}; {} gives up", stage.text(), Id::Cancel.named())
 }
 
 impl Model {

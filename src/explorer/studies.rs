@@ -5,6 +5,7 @@
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Preset, Row, Value};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::measure::measure;
 use pulloff_engine::sweep::{Cell, Column, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -133,15 +134,15 @@ pub fn threads() -> usize {
 }
 
 impl StudyWish {
-    /// What becomes of the value at `index`; `None` when `go_on` said no.
-    fn outcome(&self, index: usize, go_on: &dyn Fn() -> bool) -> Option<Outcome> {
+    /// What becomes of the value at `index`; `None` when `progress` said stop.
+    fn outcome(&self, index: usize, progress: &dyn Progress) -> Option<Outcome> {
         let missing = |fault: Fault| Outcome::Missing(fault.to_string());
         let mut preset = self.preset.clone();
         let value = self.values.get(index).cloned()?;
         if let Err(invalid) = preset.set(&self.key, value) {
             return Some(missing(Fault::of_value(&invalid)));
         }
-        let measured = match catch_unwind(AssertUnwindSafe(|| measure(&preset, &[self.column], go_on))) {
+        let measured = match catch_unwind(AssertUnwindSafe(|| measure(&preset, &[self.column], progress))) {
             Ok(measured) => measured?,
             Err(payload) => return Some(missing(Fault::of_panic(payload.as_ref()))),
         };
@@ -152,13 +153,13 @@ impl StudyWish {
         })
     }
 
-    /// Computes it on so many threads, and tells what is done now and then; `None` when `go_on`, which is asked often,
-    /// said no.
+    /// Computes it on so many threads, and tells what is done now and then; `None` when `progress` said
+    /// stop.
     #[must_use]
     pub fn run(
         &self,
         threads: usize,
-        go_on: &(dyn Fn() -> bool + Sync),
+        progress: &(dyn Progress + Sync),
         told: &mut dyn FnMut(StudyData),
     ) -> Option<StudyData> {
         let count = self.values.len();
@@ -171,10 +172,10 @@ impl StudyWish {
                 scope.spawn(move || {
                     loop {
                         let index = next.fetch_add(1, Ordering::Relaxed);
-                        if index >= count || !go_on() {
+                        if index >= count || progress.stop() {
                             break;
                         }
-                        let Some(outcome) = self.outcome(index, &|| go_on()) else { break };
+                        let Some(outcome) = self.outcome(index, progress) else { break };
                         // Fails only when nobody waits for it any more.
                         let _ = send.send((index, outcome));
                     }
@@ -193,7 +194,7 @@ impl StudyWish {
                 }
             }
         });
-        go_on().then_some(data).filter(|data| data.done() == count)
+        (!progress.stop()).then_some(data).filter(|data| data.done() == count)
     }
 }
 
@@ -237,6 +238,7 @@ impl StudyWish {
 mod tests {
     use super::*;
     use crate::store::{read, shipped};
+    use pulloff_engine::progress::Unwatched;
 
     fn preset(changes: &[(&str, &str)]) -> Preset {
         let mut preset = read("wavy-sphere", shipped::find("wavy-sphere").unwrap().text).unwrap();
@@ -286,14 +288,14 @@ mod tests {
         let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
         let column = Column::named("pull_off_force").unwrap();
         let wish = StudyWish { id: 1, preset: preset.clone(), key: key.clone(), column, values };
-        let [one, three] = [1, 3].map(|threads| wish.run(threads, &|| true, &mut |_| {}).unwrap());
+        let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         assert_eq!(one.outcomes, three.outcomes);
         assert_eq!(one.done(), one.outcomes.len());
-        let own = measure(&preset, &[column], &|| true).unwrap();
+        let own = measure(&preset, &[column], &Unwatched).unwrap();
         let (at, x) = one.nearest(0.0025).unwrap();
         assert_eq!(x.to_bits(), 0.0025_f64.to_bits());
         assert_eq!(one.outcomes[at], Outcome::Found(own.cells[0].unwrap()));
-        assert!(wish.run(2, &|| false, &mut |_| {}).is_none());
+        assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
         // Its value may move within the range, and nothing else.
         let mut moved = preset.clone();
         moved.set(&key, 0.003.into()).unwrap();

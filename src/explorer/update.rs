@@ -181,9 +181,9 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result).unwrap_or_default(),
-        Reply::Progress { id, progress } => {
+        Reply::Stage { id, stage } => {
             if id == model.curve_wanted && model.is_computing() {
-                model.progress = Some(progress);
+                model.stage = Some(stage);
             }
             return Vec::new();
         }

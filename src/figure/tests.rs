@@ -2,11 +2,12 @@
 
 use super::reading::What;
 use super::*;
-use crate::explorer::{Axes, CurveData, Model};
+use crate::explorer::{Axes, CurveData, Model, Staged};
 use crate::explorer::{Command, Id, Inline, Overlay, open, update};
 use crate::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::UnitSystem;
@@ -203,8 +204,8 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
 fn looped(preset: &str, changes: &[&str]) -> (CycleReport, CurveData) {
     let store = Store::at("/nowhere", &[]);
     let preset = store.load(&store.resolve(preset).unwrap(), changes).unwrap().preset;
-    let report = CycleReport::compute(&preset, Areas::No, &|_| true).unwrap();
-    (report, CurveData::compute(&preset, |_| true).unwrap())
+    let report = CycleReport::compute(&preset, Areas::No, &Unwatched).unwrap();
+    (report, CurveData::compute(&preset, &Staged::unwatched()).unwrap())
 }
 
 fn enclosed(outline: &[(f64, f64)]) -> f64 {

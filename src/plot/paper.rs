@@ -11,13 +11,14 @@
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
 
 use crate::explorer::curve::CurvePoint;
-use crate::explorer::{Axes, CurveData, Overlays, View};
+use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::curves::place;
 use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Scale, Sign, Subject};
 use crate::store::{read_with, shipped};
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::{Preset, ReadError};
 use pulloff_engine::problem::Control;
+use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Profile;
 use pulloff_engine::quasistatic::admissible::Judge;
 use pulloff_engine::report::number::significant;
@@ -307,7 +308,7 @@ fn errors() -> Result<Sheet, PaperError> {
         let problem = sphere(work_of_adhesion).reduced();
         let mut found = Vec::new();
         for rings in RINGS {
-            let basis = Rings::shared_with(rings, Grading::Uniform, &mut |_| true)?;
+            let basis = Rings::shared_with(rings, Grading::Uniform, &pulloff_engine::progress::Unwatched)?;
             let start = 3.0 * radius;
             let solved =
                 solve(&*basis, &problem, Control::Displacement, APPROACH, start, NewtonSettings::default());
@@ -364,6 +365,6 @@ fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperErro
 }
 
 fn checked(preset: &Preset) -> Result<CurveData, PaperError> {
-    let data = CurveData::compute(preset, |_| true)?;
-    Ok(data.checked(&mut || true).unwrap_or(data))
+    let data = CurveData::compute(preset, &Staged::unwatched())?;
+    Ok(data.checked(&Unwatched).unwrap_or(data))
 }

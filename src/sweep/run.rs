@@ -6,6 +6,7 @@
 use super::output::{Faults, Output, OutputError};
 use super::record;
 use super::shard::Shard;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::{Fault, Spec};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use std::collections::BTreeMap;
@@ -49,14 +50,14 @@ pub struct Means {
 
 /// Computes the rows of a part that `output` does not have.
 ///
-/// `go_on` is asked often, by every thread; when it says no, what is done is kept. `written` is told how many rows there
+/// `progress` is asked often, by every thread; when it says stop, what is done is kept. `written` is told how many rows there
 /// are and how many of them have faults, several times a second.
 pub fn run(
     spec: &Spec,
     shard: Shard,
     mut output: Output,
     means: Means,
-    go_on: &(dyn Fn() -> bool + Sync),
+    progress: &(dyn Progress + Sync),
     mut written: impl FnMut(u64, u64),
 ) -> Result<Summary, OutputError> {
     let of = shard.len(spec.rows);
@@ -66,9 +67,10 @@ pub fn run(
         let row = shard.row(index);
         let begun = Instant::now();
         let is_late = || means.row_limit.is_some_and(|limit| begun.elapsed() > limit);
-        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| go_on() && !is_late())));
+        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| progress.stop() || is_late())));
         let measured = measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
-        let late = || means.row_limit.filter(|_| go_on()).map(|limit| spec.lost(Fault::of_limit(limit)));
+        let late =
+            || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
         let measured = measured.or_else(late)?;
         let reason = measured.fault.as_ref().map(|fault| fault.reason);
         Some((record::record(spec, row, &measured), reason))
@@ -78,7 +80,7 @@ pub fn run(
         means.jobs,
         WINDOW,
         &compute,
-        go_on,
+        progress,
         |item: Option<(String, Option<&'static str>)>| {
             let result = match item {
                 Some((line, reason)) => {
@@ -127,13 +129,13 @@ impl Window {
 }
 
 /// Computes all `indices` on `jobs` threads and hands the results over in order; nothing now and then, while there is
-/// none. Ends early where `go_on` or a computation (with `None`) says no, or `write` fails: all before that is written.
+/// none. Ends early where `progress` or a computation (with `None`) says stop, or `write` fails: all before that is written.
 fn in_order<T: Send>(
     indices: Range<u64>,
     jobs: usize,
     window: u64,
     compute: &(impl Fn(u64) -> Option<T> + Sync),
-    go_on: &(dyn Fn() -> bool + Sync),
+    progress: &(dyn Progress + Sync),
     mut write: impl FnMut(Option<T>) -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).thread_name(|n| format!("sweep-{n}"));
@@ -145,7 +147,7 @@ fn in_order<T: Send>(
     std::thread::scope(|scope| {
         scope.spawn(move || {
             // Taken one by one and in order, whichever thread is free.
-            let admitted = indices.take_while(|index| go_on() && window.admits(*index));
+            let admitted = indices.take_while(|index| !progress.stop() && window.admits(*index));
             pool.install(|| {
                 admitted.par_bridge().for_each_with(sender, |sender, index| match compute(index) {
                     // The writer is there until the last sender is gone, or has closed the window.
@@ -181,6 +183,7 @@ fn in_order<T: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulloff_engine::progress::Unwatched;
     use std::sync::atomic::{AtomicU64, Ordering};
 
     /// What was written of `0..rows`, each computed after its own pause.
@@ -196,7 +199,7 @@ mod tests {
             (index < last).then_some(index)
         };
         let mut all = Vec::new();
-        in_order(0..rows, 4, window, &compute, &|| true, |item| {
+        in_order(0..rows, 4, window, &compute, &Unwatched, |item| {
             if let Some(item) = item {
                 all.push(item);
                 done.store(item + 1, Ordering::SeqCst);
@@ -219,9 +222,9 @@ mod tests {
     fn what_is_before_the_end_is_written() {
         assert!(written(500, 16, 100).into_iter().eq(0..100));
         let count = AtomicU64::new(0);
-        let go_on = || count.fetch_add(1, Ordering::SeqCst) < 50;
+        let stop = || count.fetch_add(1, Ordering::SeqCst) >= 50;
         let mut all = Vec::new();
-        in_order(10..500, 2, 100, &Some, &go_on, |item| {
+        in_order(10..500, 2, 100, &Some, &stop, |item| {
             all.extend(item);
             Ok(())
         })
@@ -233,7 +236,7 @@ mod tests {
     fn a_failed_write_ends_all() {
         let failed = || OutputError::Threads("no".to_owned());
         let mut all = Vec::new();
-        let result = in_order(0..1000, 4, 10, &Some, &|| true, |item| {
+        let result = in_order(0..1000, 4, 10, &Some, &Unwatched, |item| {
             all.extend(item);
             if all.len() == 30 { Err(failed()) } else { Ok(()) }
         });

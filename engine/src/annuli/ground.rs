@@ -6,6 +6,7 @@
 use crate::disc::{Panels, Table, TableError};
 use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
+use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
@@ -124,9 +125,9 @@ impl Ground {
     ///
     /// # Errors
     /// [`TableError`].
-    pub fn new(table: Arc<Table>, reach: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Self, TableError> {
+    pub fn new(table: Arc<Table>, reach: f64, progress: &dyn Progress) -> Result<Self, TableError> {
         let gap = Arc::clone(table.gap());
-        let panels = table.up_to_while(reach, 0, go_on)?;
+        let panels = table.up_to_while(reach, 0, progress)?;
         let reach = panels.reach();
         let breaks = gap.breaks_up_to(reach);
         let entire = match gap.form() {

@@ -11,6 +11,7 @@ use super::rule::MOST_POINTS;
 use crate::disc::outside;
 use crate::elementary::{atan2, cbrt, ln, log10};
 use crate::gap::Gap;
+use crate::progress::Unwatched;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 use std::sync::Arc;
 use wide::f64x4;
@@ -480,7 +481,7 @@ impl Ground {
     /// # Errors
     /// [`TableError`](crate::disc::TableError).
     pub fn of(gap: Arc<dyn Gap>, reach: f64) -> Result<Self, crate::disc::TableError> {
-        let table = Arc::new(crate::disc::Table::new(gap, reach, &mut || true)?);
-        Self::new(table, reach, &mut || true)
+        let table = Arc::new(crate::disc::Table::new(gap, reach, &Unwatched)?);
+        Self::new(table, reach, &Unwatched)
     }
 }

@@ -6,6 +6,7 @@
 
 use super::solution::Solution;
 use crate::problem::Reduced;
+use crate::progress::Progress;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -69,25 +70,25 @@ pub trait Basis: Debug + Send + Sync {
 
     /// The equilibria at `radii`, one after the other, up to the first radius that has none.
     ///
-    /// What is beyond `order` need not be there: it may be not a number. Shorter than `radii` there, and where `go_on`,
+    /// What is beyond `order` need not be there: it may be not a number. Shorter than `radii` there, and where `progress`,
     /// asked before each radius, says no. Many radii at once are answered faster than one by one.
     fn equilibria(
         &self,
         problem: &Reduced,
         radii: &[f64],
         order: Order,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Vec<Evaluation>;
 
     /// The equilibria over all radii from `from` or further in to `to`, or as far as the gap is known.
     ///
-    /// `None` where there are none, or `go_on` said no.
+    /// `None` where there are none, or `progress` said stop.
     fn solution(
         &self,
         problem: &Reduced,
         from: f64,
         to: f64,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<Arc<dyn Solution>>;
 
     /// The contact pressure as (r, p) pairs from the axis outward, compression positive, at points that make a picture:

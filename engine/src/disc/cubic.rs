@@ -20,6 +20,7 @@
 
 use crate::elementary::{atan2, cos, sin};
 use crate::gap::Piece;
+use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::array;
 use std::f64::consts::PI;
@@ -72,21 +73,17 @@ pub fn nodes() -> [f64; NODES] {
     array::from_fn(|j| cos(PI * (2 * j + 1) as f64 / (4 * NODES) as f64).powi(2))
 }
 
-/// g and dg/dy, y = √(a − lo), at the [`nodes`] of every piece of `pieces[from..]`; `None` when `go_on` said no, which is
+/// g and dg/dy, y = √(a − lo), at the [`nodes`] of every piece of `pieces[from..]`; `None` when `progress` said stop, which is
 /// asked now and then.
 ///
 /// The pieces begin at the axis, each where the one before ends, and h' does not jump between them: a jump would need a
 /// term in dg/dy. h' on the axis may have any value.
-pub fn transform(
-    pieces: &[Piece],
-    from: usize,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<Vec<[[f64; NODES]; 2]>> {
+pub fn transform(pieces: &[Piece], from: usize, progress: &dyn Progress) -> Option<Vec<[[f64; NODES]; 2]>> {
     let sources = Sources::new(pieces);
     let nodes = nodes();
     let mut panels = Vec::with_capacity(pieces.len().saturating_sub(from));
     for (i, piece) in pieces.iter().enumerate().skip(from) {
-        if (i - from).is_multiple_of(PANELS_PER_QUESTION) && !go_on() {
+        if (i - from).is_multiple_of(PANELS_PER_QUESTION) && progress.stop() {
             return None;
         }
         let y = nodes.map(|x| x * piece.width().sqrt());
@@ -321,6 +318,8 @@ impl<'a> Sources<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::Unwatched;
+    use std::cell::Cell;
     use std::f64::consts::FRAC_PI_2;
 
     /// Uneven knots: the widths of neighbours differ by up to `ratio`.
@@ -381,7 +380,7 @@ mod tests {
     }
 
     fn transformed(pieces: &[Piece]) -> Vec<[[f64; NODES]; 2]> {
-        transform(pieces, 0, &mut || true).unwrap()
+        transform(pieces, 0, &Unwatched).unwrap()
     }
 
     #[test]
@@ -446,22 +445,22 @@ mod tests {
     fn later_panels_are_the_same_alone() {
         let mut random = fastrand::Rng::with_seed(3);
         let pieces = rough(&knots(100, 10.0, &mut random), &mut random);
-        let tail = transform(&pieces, 63, &mut || true).unwrap();
+        let tail = transform(&pieces, 63, &Unwatched).unwrap();
         assert_eq!(tail, transformed(&pieces)[63..]);
-        assert_eq!(transform(&pieces, 100, &mut || true), Some(Vec::new()));
-        assert_eq!(transform(&[], 0, &mut || true), Some(Vec::new()));
+        assert_eq!(transform(&pieces, 100, &Unwatched), Some(Vec::new()));
+        assert_eq!(transform(&[], 0, &Unwatched), Some(Vec::new()));
     }
 
     #[test]
     fn it_stops_when_it_is_no_longer_wanted() {
         let mut random = fastrand::Rng::with_seed(4);
         let pieces = rough(&knots(200, 1.0, &mut random), &mut random);
-        let mut asked = 0;
-        let mut go_on = || {
-            asked += 1;
-            asked < 3
+        let asked = Cell::new(0);
+        let until = || {
+            asked.set(asked.get() + 1);
+            asked.get() == 3
         };
-        assert_eq!(transform(&pieces, 0, &mut go_on), None);
-        assert_eq!(asked, 3);
+        assert_eq!(transform(&pieces, 0, &until), None);
+        assert_eq!(asked.get(), 3);
     }
 }

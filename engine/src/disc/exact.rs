@@ -15,6 +15,7 @@ use super::table::{Table, TableError};
 use crate::elementary::sin;
 use crate::gap::Gap;
 use crate::problem::Reduced;
+use crate::progress::{Progress, Unwatched};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
@@ -52,7 +53,7 @@ impl Exact {
     /// # Errors
     /// [`TableError`].
     pub fn of(problem: &Reduced, reach: f64) -> Result<Self, TableError> {
-        Ok(Self::new(Arc::new(Table::new(Arc::clone(&problem.gap), reach, &mut || true)?), reach))
+        Ok(Self::new(Arc::new(Table::new(Arc::clone(&problem.gap), reach, &Unwatched)?), reach))
     }
 
     /// The table.
@@ -138,7 +139,7 @@ impl Basis for Exact {
         problem: &Reduced,
         radii: &[f64],
         order: Order,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Vec<Evaluation> {
         let mut found = Vec::with_capacity(radii.len());
         let farthest = radii.iter().fold(0.0_f64, |most, s| most.max(*s));
@@ -152,7 +153,7 @@ impl Basis for Exact {
             s > span.lo && s <= span.hi
         };
         while let Some((&s, others)) = rest.split_first() {
-            if !known(s) || !go_on() {
+            if !known(s) || progress.stop() {
                 break;
             }
             if !on(place.panel, s) {
@@ -162,9 +163,6 @@ impl Basis for Exact {
                 .first_chunk::<8>()
                 .filter(|eight| order == Order::State && eight.iter().all(|s| on(place.panel, *s)));
             if let Some(eight) = eight {
-                if !(1..8).all(|_| go_on()) {
-                    break;
-                }
                 let [values, areas] = panels.eight(place.panel, eight);
                 let roots = eight.map(|s| (TAU * gamma * s).sqrt());
                 for i in 0..8 {
@@ -186,16 +184,16 @@ impl Basis for Exact {
         problem: &Reduced,
         _from: f64,
         to: f64,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<Arc<dyn Solution>> {
         let gamma = problem.work_of_adhesion;
         let to = to.max(self.reach);
-        let mut panels = self.table.up_to_while(to, 0, go_on).ok()?;
+        let mut panels = self.table.up_to_while(to, 0, progress).ok()?;
         for fineness in 1..TIMES_FINER {
             if ExactSolution::begins_unstable(&panels, gamma) || !panels.smallest().is_normal() {
                 break;
             }
-            panels = self.table.up_to_while(to, fineness, go_on).ok()?;
+            panels = self.table.up_to_while(to, fineness, progress).ok()?;
         }
         (panels.reach() > 0.0).then(|| Arc::new(ExactSolution::new(panels, gamma)) as Arc<dyn Solution>)
     }
@@ -310,7 +308,7 @@ mod tests {
     fn slopes_and_tendencies_are_those_of_the_evaluation() {
         let problem = wavy(0.004);
         let basis = Exact::of(&problem, 0.5).unwrap();
-        let solution = basis.solution(&problem, 0.01, 0.5, &mut || true).unwrap();
+        let solution = basis.solution(&problem, 0.01, 0.5, &Unwatched).unwrap();
         for i in 1..100 {
             let s = 0.005 * f64::from(i);
             let place = solution.place(s).unwrap();
@@ -360,7 +358,7 @@ mod tests {
         for gamma in [1e-9, 1e-20, 1e-60] {
             let problem = sphere(gamma);
             let basis = Exact::of(&problem, 0.5).unwrap();
-            let solution = basis.solution(&problem, 0.1, 0.5, &mut || true).unwrap();
+            let solution = basis.solution(&problem, 0.1, 0.5, &Unwatched).unwrap();
             let limits = crate::quasistatic::Monotone::of(&*solution, Control::Force).limits;
             let exact = (1.125 * PI * gamma).cbrt();
             assert_eq!(limits.len(), 1, "{gamma}");

@@ -11,6 +11,7 @@ use super::span::Place;
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
 use crate::problem::{Control, Reduced};
+use crate::progress::Progress;
 
 /// Equilibria on a panel.
 const NODES: usize = 20;
@@ -46,12 +47,12 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// The equilibria of `basis` from the radius `from` to `to`; `go_on` is asked between radii.
+    /// The equilibria of `basis` from the radius `from` to `to`; `progress` is asked between radii.
     pub fn new(
         basis: &dyn Basis,
         problem: &Reduced,
         [from, to]: [f64; 2],
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<Self> {
         let wave = problem.gap.feature_length().map_or(f64::INFINITY, |wave| 0.5 * wave);
         let width = wave.max((to - from) / PANELS);
@@ -68,30 +69,26 @@ impl Sampled {
         borders.reverse();
         let mut panels = Vec::new();
         for pair in borders.windows(2) {
-            panel(basis, problem, [pair[0], pair[1]], HALVINGS, go_on, &mut panels)?;
+            panel(basis, problem, [pair[0], pair[1]], HALVINGS, progress, &mut panels)?;
         }
         (!panels.is_empty()).then_some(Self { panels })
     }
 }
 
-/// Adds the panels from `lo` to `hi`; `None` when `go_on` said no.
+/// Adds the panels from `lo` to `hi`; `None` when `progress` said stop.
 fn panel(
     basis: &dyn Basis,
     problem: &Reduced,
     [lo, hi]: [f64; 2],
     depth: usize,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
     panels: &mut Vec<Panel>,
 ) -> Option<()> {
     let span = Span { lo, hi, variable: Variable::Root { base: 0.0 } };
     let rule = Rule::of(NODES);
     let radii: Vec<f64> = rule.nodes.iter().map(|x| span.radius(*x)).collect();
-    let mut wanted = true;
-    let found = basis.equilibria(problem, &radii, Order::Slopes, &mut || {
-        wanted = wanted && go_on();
-        wanted
-    });
-    if !wanted {
+    let found = basis.equilibria(problem, &radii, Order::Slopes, progress);
+    if found.len() < NODES && progress.stop() {
         return None;
     }
     let whole = found.len() == NODES && found.iter().all(|e| e.approach.is_finite() && e.force.is_finite());
@@ -126,8 +123,8 @@ fn panel(
         return Some(());
     }
     let middle = 0.25 * (lo.sqrt() + hi.sqrt()).powi(2);
-    panel(basis, problem, [lo, middle], depth - 1, go_on, panels)?;
-    panel(basis, problem, [middle, hi], depth - 1, go_on, panels)
+    panel(basis, problem, [lo, middle], depth - 1, progress, panels)?;
+    panel(basis, problem, [middle, hi], depth - 1, progress, panels)
 }
 
 impl Solution for Sampled {

@@ -19,6 +19,7 @@ use super::{cubic, outside, waves};
 use crate::elementary::{exp2, ln, log2, log10, pow};
 use crate::gap::{Form, Gap, Piece, Wave};
 use crate::gap::{panels::Refused, panels::Span, panels::Variable, panels::divide};
+use crate::progress::{Progress, Unwatched};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -101,10 +102,10 @@ impl Table {
     ///
     /// # Errors
     /// [`TableError`].
-    pub fn new(gap: Arc<dyn Gap>, reach: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Self, TableError> {
+    pub fn new(gap: Arc<dyn Gap>, reach: f64, progress: &dyn Progress) -> Result<Self, TableError> {
         let form = gap.form();
         let table = Self { gap, form, stages: Mutex::default() };
-        table.up_to_while(reach, 0, go_on)?;
+        table.up_to_while(reach, 0, progress)?;
         Ok(table)
     }
 
@@ -117,7 +118,7 @@ impl Table {
         key: &K,
         gap: &Arc<dyn Gap>,
         reach: f64,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Arc<Self>, TableError> {
         let lock = || store.lock().unwrap_or_else(PoisonError::into_inner);
         {
@@ -127,12 +128,12 @@ impl Table {
                 let table = Arc::clone(&found.1);
                 kept.push(found);
                 drop(kept);
-                table.up_to_while(reach, 0, go_on)?;
+                table.up_to_while(reach, 0, progress)?;
                 return Ok(table);
             }
         }
         // Not under the lock: another gap must not wait for this one.
-        let table = Arc::new(Self::new(Arc::clone(gap), reach, go_on)?);
+        let table = Arc::new(Self::new(Arc::clone(gap), reach, progress)?);
         let mut kept = lock();
         if kept.len() >= KEPT {
             kept.remove(0);
@@ -167,10 +168,10 @@ impl Table {
     /// # Errors
     /// [`TableError::TooFine`].
     pub fn up_to(&self, reach: f64) -> Result<Arc<Panels>, TableError> {
-        self.up_to_while(reach, 0, &mut || true)
+        self.up_to_while(reach, 0, &Unwatched)
     }
 
-    /// The panels up to `reach`, or a little further; each step in `fineness` begins them a thousandth as far out. `go_on` is asked
+    /// The panels up to `reach`, or a little further; each step in `fineness` begins them a thousandth as far out. `progress` is asked
     /// now and then.
     ///
     /// # Errors
@@ -179,7 +180,7 @@ impl Table {
         &self,
         reach: f64,
         fineness: i32,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Arc<Panels>, TableError> {
         let end = self.end();
         let whole = reach >= end || matches!(self.form, Form::Cubic(_));
@@ -199,18 +200,13 @@ impl Table {
         };
         let smallest = SMALLEST * FINER.powi(fineness) * reach;
         let mut panels = Panels { list: Vec::new(), law, smallest, digits: OnceLock::new() };
-        self.fill(&mut panels, reach, go_on)?;
+        self.fill(&mut panels, reach, progress)?;
         let panels = Arc::new(panels);
         lock().insert(stage, Arc::clone(&panels));
         Ok(panels)
     }
 
-    fn fill(
-        &self,
-        panels: &mut Panels,
-        reach: f64,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(), TableError> {
+    fn fill(&self, panels: &mut Panels, reach: f64, progress: &dyn Progress) -> Result<(), TableError> {
         match &self.form {
             Form::Power { exponent, .. } => {
                 let spans = Law::spans(*exponent, reach, panels.smallest);
@@ -218,7 +214,7 @@ impl Table {
             }
             Form::Cubic(pieces) => {
                 let pieces = &parted(pieces, panels.smallest);
-                let samples = cubic::transform(pieces, 0, go_on).ok_or(TableError::Cancelled)?;
+                let samples = cubic::transform(pieces, 0, progress).ok_or(TableError::Cancelled)?;
                 let rule = Rule::of(cubic::NODES);
                 for (piece, [value, by_variable]) in pieces.iter().zip(samples) {
                     let span =
@@ -252,7 +248,7 @@ impl Table {
                 let sampled = Sources::new(&*self.gap, &spans, &breaks);
                 let rule = Rule::of(sources::NODES);
                 for span in spans {
-                    if !go_on() {
+                    if progress.stop() {
                         return Err(TableError::Cancelled);
                     }
                     let [mut value, mut slope] = [[0.0; sources::NODES]; 2];
@@ -407,7 +403,7 @@ mod tests {
     }
 
     fn made(gap: &Arc<dyn Gap>, reach: f64) -> Table {
-        Table::new(Arc::clone(gap), reach, &mut || true).unwrap()
+        Table::new(Arc::clone(gap), reach, &Unwatched).unwrap()
     }
 
     /// ∫₀^{π/2} f(a sin θ) dθ by Gauss's rule on many even pieces, broken at `breaks`.

@@ -5,6 +5,7 @@ use super::problem::{Parameter, Problem, Target};
 use super::solve::{HUBER, Solved};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::Value;
+use crate::progress::Progress;
 
 /// The rise of χ² at the ends of a 95 % interval of one value: the square of 1.96.
 const RISE: f64 = 3.841_458_820_694_124;
@@ -51,18 +52,18 @@ pub fn profile(
     error: f64,
     j: usize,
     robust: bool,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Option<[f64; 2]> {
     const TIMES: usize = 12;
     let u = &solved.minimum.parameters;
     let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
     let scale = if robust { solved.scale * stretch(problem, solved) } else { rms(problem, solved) };
-    let mut end = |side: f64| {
+    let end = |side: f64| {
         let mut others = without(u, j);
         // √Δχ² over the distance is nearly a straight line.
-        let mut root = |distance: f64, others: &mut Vec<f64>| {
+        let root = |distance: f64, others: &mut Vec<f64>| {
             let held = problem.holding(j, u[j] + side * distance)?;
-            let found = minimize(&held, others, &settings, go_on)?;
+            let found = minimize(&held, others, &settings, progress)?;
             others.clone_from(&found.parameters);
             Some((2.0 * (found.cost - solved.minimum.cost)).max(0.0).sqrt() / scale)
         };
@@ -116,7 +117,7 @@ pub fn bootstrap(
     solved: &Solved,
     robust: bool,
     (count, seed): (usize, u64),
-    go_on: &mut dyn FnMut(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Option<(usize, Vec<Bootstrapped>)> {
     let per = problem.per_point();
     let first: Vec<f64> = solved.minimum.at.residuals.iter().step_by(per).copied().collect();
@@ -126,7 +127,8 @@ pub fn bootstrap(
     let mut drawn = problem.clone();
     let mut found: Vec<Vec<f64>> = Vec::new();
     for i in 0..count {
-        if !go_on(i as f64 / count as f64) {
+        progress.report(i as f64 / count as f64);
+        if progress.stop() {
             break;
         }
         let mut counts = vec![0.0; per * n];
@@ -139,7 +141,10 @@ pub fn bootstrap(
             }
         }
         drawn.counts = Some(counts);
-        let fit = minimize(&drawn, &solved.minimum.parameters, &settings, &mut || true);
+        let fit = minimize(&drawn, &solved.minimum.parameters, &settings, progress);
+        if progress.stop() {
+            break;
+        }
         found.extend(fit.map(|fit| fit.parameters));
     }
     if found.len() < 10 {

@@ -10,6 +10,7 @@ use crate::measured::{Abscissa, Segment};
 use crate::preset::{Preset, Value};
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups};
+use crate::progress::Progress;
 use crate::units::number::significant;
 use crate::units::{UnitSystem, number::short};
 
@@ -215,7 +216,7 @@ pub fn of_spring(
     problem: &Problem,
     solved: &Solved,
     robust: bool,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Option<String> {
     const KEY: &str = "path.control.stiffness";
     let Control::Stiffness(k) = problem.preset.path.control else { return None };
@@ -226,7 +227,7 @@ pub fn of_spring(
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
         let mut other = problem.clone();
         other.preset.set(KEY, Value::Number(factor * k)).ok()?;
-        let found = solve(&other, &solved.minimum.parameters, robust, 40, go_on);
+        let found = solve(&other, &solved.minimum.parameters, robust, 40, progress);
         let words = match found {
             None => format!("{words}: no fit"),
             Some(found) => {

@@ -9,6 +9,7 @@
 //! D. W. Marquardt (1963); the damping: H. B. Nielsen, IMM-REP-1999-05. `levenberg-marquardt` 0.15 is of another nalgebra than
 //! ours, and has neither weights nor a way to be stopped.
 
+use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
 /// Residuals at some parameters, with their derivatives by column.
@@ -149,12 +150,12 @@ impl Factored {
     }
 }
 
-/// Minimizes from `start`, as long as `go_on` answers yes before each round; `None` where there is nothing at the start.
+/// Minimizes from `start`, as long as `progress` answers yes before each round; `None` where there is nothing at the start.
 pub fn minimize(
     problem: &dyn LeastSquares,
     start: &[f64],
     settings: &Settings,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Option<Minimum> {
     /// The first damping, its smallest change and the largest that is tried.
     const FIRST: f64 = 1e-3;
@@ -176,7 +177,7 @@ pub fn minimize(
     let end =
         |u: Vec<f64>, at, cost, ending, rounds| Some(Minimum { parameters: u, at, cost, ending, rounds });
     for round in 0..settings.rounds {
-        if !go_on() {
+        if progress.stop() {
             return end(u, at, best, Ending::Cancelled, round);
         }
         let factored = Factored::of(&at, counts, c);

@@ -2,6 +2,7 @@
 //! <https://itl.nist.gov/div898/strd/nls/nls_main.shtml>.
 
 use super::*;
+use crate::progress::{Unwatched, until};
 
 /// A model y(x; b) with its data; derivatives by central differences.
 struct Set {
@@ -33,7 +34,7 @@ impl LeastSquares for Set {
 fn check(set: &Set, starts: [&[f64]; 2], certified: &[f64], sum: f64) {
     for start in starts {
         let settings = Settings { rounds: 1000, tolerance: 1e-11, resolution: 1e-12, ..Settings::default() };
-        let found = minimize(set, start, &settings, &mut || true).unwrap();
+        let found = minimize(set, start, &settings, &Unwatched).unwrap();
         assert_eq!(found.ending, Ending::Converged);
         for (ours, theirs) in found.parameters.iter().zip(certified) {
             assert!((ours / theirs - 1.0).abs() < 1e-6, "{:?} {certified:?}", found.parameters);
@@ -97,7 +98,7 @@ fn huber_passes_over_an_outlier_and_counts_are_repetitions() {
     y[7] = 40.0;
     let of = |huber| {
         let settings = Settings { huber, ..Settings::default() };
-        minimize(&line(y.clone()), &[1.0, 1.0], &settings, &mut || true).unwrap().parameters
+        minimize(&line(y.clone()), &[1.0, 1.0], &settings, &Unwatched).unwrap().parameters
     };
     let (plain, robust) = (of(f64::INFINITY), of(0.015));
     assert!((plain[0] - 2.0).abs() > 1.0 && (robust[0] - 2.0).abs() < 0.01, "{plain:?} {robust:?}");
@@ -111,11 +112,6 @@ fn it_can_be_stopped_and_keeps_what_it_has() {
         model: |x, b| b[0] * (b[1] * x).exp(),
     };
     let start = set.residuals(&[5.0, 0.3]).unwrap().norm_squared();
-    let mut rounds = 3;
-    let found = minimize(&set, &[5.0, 0.3], &Settings::default(), &mut || {
-        rounds -= 1;
-        rounds >= 0
-    });
-    let found = found.unwrap();
+    let found = minimize(&set, &[5.0, 0.3], &Settings::default(), &until(3)).unwrap();
     assert!(found.ending == Ending::Cancelled && found.rounds == 3 && 2.0 * found.cost < start);
 }

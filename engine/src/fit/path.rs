@@ -11,7 +11,8 @@ use crate::elementary::hypot;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced, Units};
-use crate::quasistatic::overlap::passed_while;
+use crate::progress::Unwatched;
+use crate::quasistatic::overlap::passed;
 use crate::quasistatic::{Curve, Detail, Sample};
 use std::sync::Arc;
 
@@ -104,7 +105,7 @@ impl Path {
             (Abscissa::Position, Control::Stiffness(k)) => 1.0 / k,
             _ => 0.0,
         };
-        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &mut |_| true).ok()?;
+        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
         let x_of = |delta: f64, force: f64, s: f64| {
             let (delta, force) = (delta * units.length, force * units.force);
             if abscissa == Abscissa::Radius { s * units.length } else { delta + compliance * force }
@@ -115,7 +116,7 @@ impl Path {
         };
         let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
         let innermost = INNERMOST * outermost;
-        let mut curve = Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, || true)?;
+        let mut curve = Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, &Unwatched)?;
         let held = control.in_units(units.stiffness);
         curve.hold(held);
         // A rising stretch outside a falling one, or one of either: a curve without snaps.
@@ -167,7 +168,7 @@ impl Path {
             Piece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
             _ => None,
         });
-        let found = passed_while(&self.curve, &arcs.collect::<Vec<_>>(), &mut || true)?;
+        let found = passed(&self.curve, &arcs.collect::<Vec<_>>(), &Unwatched)?;
         found.iter().map(|overlap| overlap.to * self.units.length).reduce(f64::min)
     }
 

@@ -14,6 +14,7 @@ use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Asked, Noise, Points, Segment};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
+use crate::progress::{Part, Progress};
 use nalgebra::DVector;
 
 /// Rounds of the last fit.
@@ -81,15 +82,11 @@ pub struct Fit {
 ///
 /// # Errors
 /// [`FitError`].
-pub fn fit_own(
-    preset: &Preset,
-    options: &Options,
-    go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Fit, FitError> {
+pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
     let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
     let points = source.points(&reading).map_err(FitError::Data)?;
     let asked = Asked { segment: preset.data.segment, ..options.asked };
-    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, go_on)?;
+    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
     let read = source.measured(&reading.columns).map_err(FitError::Data)?;
     found.notes.splice(0..0, read.notes.iter().cloned());
     Ok(found)
@@ -117,8 +114,8 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
 }
 
-/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`; `go_on` is told the share that is done, and stops it by
-/// answering no: the best so far is what there is then.
+/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`. Where
+/// `progress` says stop, the best so far is what there is.
 ///
 /// # Errors
 /// [`FitError`].
@@ -126,7 +123,7 @@ pub fn fit(
     preset: &Preset,
     points: &Points,
     options: &Options,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
     if options.free.is_empty() {
         return Err(FitError::NothingFree);
@@ -134,17 +131,13 @@ pub fn fit(
     let branches = points.branches(&options.asked)?;
     let mut notes = branches.notes.clone();
     let mut problem = posed(preset, &branches, options, &mut notes)?;
-    let mut wanted = true;
-    let mut told = |share: f64| {
-        wanted = wanted && go_on(share);
-        wanted
-    };
     // Without a free part the residuals say how well the force is known.
     let from_residuals = branches.baseline.is_none() && options.asked.sigma[1].is_none();
     let least = from_residuals.then_some(FLOOR * branches.ranges[1]);
-    let mut found = |problem: &mut Problem| -> Result<_, FitError> {
-        let (u, starts) = start(problem, options.scan, options.robust, &mut told).ok_or(FitError::NoStart)?;
-        Ok((starts, last(problem, &u, options.robust, least, &mut || told(0.85))?))
+    let found = |problem: &mut Problem| -> Result<_, FitError> {
+        let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
+            .ok_or(FitError::NoStart)?;
+        Ok((starts, last(problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?))
     };
     let (mut starts, mut solved) = found(&mut problem)?;
     if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
@@ -161,10 +154,12 @@ pub fn fit(
     let what = determined(&problem, &solved.minimum.at, u, solved.scale, options.robust);
     let mut fitted = values(&problem, u, what.errors.as_ref());
     let bootstrapped = match &what.errors {
-        Some(errors) => intervals(&problem, &solved, options, errors, &mut fitted, &mut told),
+        Some(errors) => {
+            intervals(&problem, &solved, options, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
+        }
         None => None,
     };
-    notes.extend(of_spring(&problem, &solved, options.robust, &mut || told(0.95)));
+    notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
     let real = problem.real(&solved.minimum.at.residuals);
     let scale = if from_residuals { solved.scale } else { 1.0 };
@@ -183,7 +178,7 @@ pub fn fit(
         dropped: [branches.list.iter().map(|branch| branch.dropped).sum(), branches.left_out],
         condition: what.condition,
         direction: what.direction,
-        ending: if wanted { solved.minimum.ending } else { Ending::Cancelled },
+        ending: if progress.stop() { Ending::Cancelled } else { solved.minimum.ending },
         starts,
         snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
         noise: Noise { sigma: problem.sigma, ..branches.noise },
@@ -204,15 +199,15 @@ fn last(
     u: &[f64],
     robust: bool,
     least: Option<f64>,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Result<Solved, FitError> {
     /// Fits by which σ of the residuals has settled.
     const TIMES: usize = 2;
-    let mut solved = solve(problem, u, robust, ROUNDS, go_on).ok_or(FitError::NoStart)?;
+    let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     for _ in 0..if least.is_some() { TIMES } else { 0 } {
         problem.sigma[1] = (problem.sigma[1] * solved.scale).max(least.unwrap_or(0.0));
         let u = &solved.minimum.parameters;
-        solved = solve(problem, u, robust, ROUNDS, go_on).ok_or(FitError::NoStart)?;
+        solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     }
     Ok(solved)
 }
@@ -224,15 +219,14 @@ fn intervals(
     options: &Options,
     errors: &DVector<f64>,
     fitted: &mut [Fitted],
-    told: &mut dyn FnMut(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Option<[usize; 2]> {
     if options.profile {
         for (j, fitted) in fitted.iter_mut().enumerate() {
-            fitted.profile = profile(problem, solved, errors[j], j, options.robust, &mut || told(0.9));
+            fitted.profile = profile(problem, solved, errors[j], j, options.robust, progress);
         }
     }
-    let (count, found) =
-        bootstrap(problem, solved, options.robust, options.bootstrap?, &mut |share| told(0.9 + 0.1 * share))?;
+    let (count, found) = bootstrap(problem, solved, options.robust, options.bootstrap?, progress)?;
     for (fitted, found) in fitted.iter_mut().zip(found) {
         fitted.bootstrap = Some(found);
     }

@@ -3,6 +3,7 @@
 use super::least_squares::{Ending, Minimum, Settings, minimize};
 use super::problem::Problem;
 use crate::measured::branches::median;
+use crate::progress::Progress;
 use nalgebra::DVector;
 
 /// Residuals beyond so many times their scale count linearly.
@@ -42,7 +43,7 @@ pub fn solve(
     start: &[f64],
     robust: bool,
     rounds: usize,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Option<Solved> {
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
@@ -61,7 +62,7 @@ pub fn solve(
             nothing: 0.5 * (NOTHING * scale).powi(2),
             ..Settings::default()
         };
-        let minimum = minimize(problem, &u, &settings, go_on)?;
+        let minimum = minimize(problem, &u, &settings, progress)?;
         left = left.saturating_sub(minimum.rounds);
         let next = problem.scale(&minimum.at.residuals);
         let same = (next / scale - 1.0).abs() <= SAME;

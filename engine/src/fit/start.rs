@@ -10,6 +10,7 @@ use crate::elementary::ln;
 use crate::gap::Gap;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
+use crate::progress::Progress;
 
 /// Values of E*, and the decades they span.
 const MODULI: usize = 31;
@@ -151,12 +152,12 @@ impl Problem {
     }
 }
 
-/// The best start and those that were run; `go_on` is told the share that is done.
+/// The best start and those that were run; `progress` is told the share that is done.
 pub fn start(
     problem: &Problem,
     scan: bool,
     robust: bool,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Option<(Vec<f64>, Vec<Tried>)> {
     let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
     let attached = problem.data.iter().filter(|datum| !datum.free);
@@ -165,7 +166,8 @@ pub fn start(
     let count = candidates.len() as f64;
     let mut ranked: Vec<(f64, Vec<f64>)> = Vec::new();
     for (i, u) in candidates.into_iter().enumerate() {
-        if !go_on(0.5 * i as f64 / count) {
+        progress.report(0.6 * i as f64 / count);
+        if progress.stop() {
             break;
         }
         let at = problem.instrument_at(&u);
@@ -183,8 +185,7 @@ pub fn start(
         by_distance(&mut ranked, POOL);
         let nearest = ranked.first().map_or(0.0, |(distance, _)| *distance);
         for (distance, u) in ranked.iter_mut().filter(|(distance, _)| *distance <= NEAR * nearest) {
-            let led =
-                solve(&compared, u, robust, FEW_ROUNDS, &mut || go_on(0.5)).map(|led| led.minimum.parameters);
+            let led = solve(&compared, u, robust, FEW_ROUNDS, progress).map(|led| led.minimum.parameters);
             if let Some((closer, led)) = led.and_then(|led| Some((compared.distance(&led)?, led)))
                 && closer < *distance
             {
@@ -197,8 +198,8 @@ pub fn start(
     let mut tried = Vec::new();
     let count = ranked.len() as f64;
     for (i, (before, u)) in ranked.into_iter().enumerate() {
-        let share = 0.5 + 0.3 * i as f64 / count;
-        let solved = solve(&run, &u, robust, ROUNDS, &mut || go_on(share));
+        progress.report(0.6 + 0.4 * i as f64 / count);
+        let solved = solve(&run, &u, robust, ROUNDS, progress);
         let end = solved.map_or((before, u), |Solved { minimum, .. }| {
             let distance = run.distance(&minimum.parameters).unwrap_or(before);
             (distance, minimum.parameters)

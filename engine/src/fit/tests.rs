@@ -6,6 +6,7 @@ use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::branches::Asked;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::{Preset, read};
+use crate::progress::{Unwatched, until};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const E: &str = "material.effective_modulus";
@@ -109,7 +110,7 @@ const SPHERE: &str = "shape='sphere'\nradius_of_curvature=2.0";
 
 pub(super) fn run(preset: &Preset, points: &Points, free: &[&str]) -> Fit {
     let free = free.iter().map(|key| (*key).to_owned()).collect();
-    fit(preset, points, &Options { free, ..Options::default() }, &mut |_| true).unwrap()
+    fit(preset, points, &Options { free, ..Options::default() }, &Unwatched).unwrap()
 }
 
 pub(super) fn close(fit: &Fit, truth: &[f64], within: f64) {
@@ -229,7 +230,7 @@ fn coverage(seeds: std::ops::Range<u64>, outliers: bool) -> [[f64; 2]; 2] {
     let options = Options { free, scan: outliers, ..Options::default() };
     let mut found = [[0.0; 2]; 2];
     for seed in seeds {
-        let fit = fit(&start, &noisy(seed, outliers), &options, &mut |_| true).unwrap();
+        let fit = fit(&start, &noisy(seed, outliers), &options, &Unwatched).unwrap();
         for (j, truth) in [1.0, 0.02].into_iter().enumerate() {
             let off = (fit.parameters[j].value - truth) / fit.parameters[j].standard_error.unwrap();
             found[j][0] += f64::from(u8::from(off.abs() <= 1.96)) / count;
@@ -292,7 +293,7 @@ fn order_and_units_change_nothing() {
     let asked = Asked { sigma: [Some(sigma[0]), Some(sigma[1]), None], ..Asked::default() };
     let free = free.map(str::to_owned).to_vec();
     let options = Options { free, asked, ..Options::default() };
-    same(&fit(&start, &order(&mixed), &options, &mut |_| true).unwrap());
+    same(&fit(&start, &order(&mixed), &options, &Unwatched).unwrap());
     // Lengths in 1e-3 and forces in 1e-6 of before: E* stays, γ is a thousandth.
     let scaled = Points {
         x: points.x.iter().map(|x| 1e-3 * x).collect(),
@@ -320,7 +321,7 @@ fn two_works_of_adhesion_are_no_quasi_static_loop() {
     points.force.iter_mut().for_each(|p| *p += 5e-4 * normal.next());
     let free = vec![E.to_owned(), W.to_owned()];
     let options = Options { free, separate: true, ..Options::default() };
-    let fit = fit(&preset(SPHERE, 1.5, 0.02, ""), &points, &options, &mut |_| true).unwrap();
+    let fit = fit(&preset(SPHERE, 1.5, 0.02, ""), &points, &options, &Unwatched).unwrap();
     let keys: Vec<&str> = fit.parameters.iter().map(|fitted| fitted.key.as_str()).collect();
     assert_eq!(keys[1..3], [format!("{W}.approach"), format!("{W}.retraction")]);
     close(&fit, &[1.3, 0.01, 0.03], 0.02);
@@ -344,7 +345,7 @@ fn profile_and_bootstrap_agree_with_the_errors_and_the_best_so_far_is_kept() {
     let free = vec![E.to_owned(), W.to_owned()];
     let options = Options { free, profile: true, bootstrap: Some((60, 1)), ..Options::default() };
     let points = noisy(3, false);
-    let found = fit(&start, &points, &options, &mut |_| true).unwrap();
+    let found = fit(&start, &points, &options, &Unwatched).unwrap();
     for fitted in &found.parameters[..2] {
         let error = fitted.standard_error.unwrap();
         let [lo, hi] = fitted.profile.unwrap();
@@ -357,12 +358,8 @@ fn profile_and_bootstrap_agree_with_the_errors_and_the_best_so_far_is_kept() {
         let bootstrap = fitted.bootstrap.unwrap();
         assert!((0.6..1.6).contains(&(bootstrap.error / error)), "{} {error}", bootstrap.error);
     }
-    let again = fit(&start, &points, &options, &mut |_| true).unwrap();
+    let again = fit(&start, &points, &options, &Unwatched).unwrap();
     assert_eq!(found.parameters, again.parameters);
-    let mut calls = 0;
-    let stopped = fit(&start, &points, &options, &mut |_| {
-        calls += 1;
-        calls < 40
-    });
+    let stopped = fit(&start, &points, &options, &until(39));
     assert_eq!(stopped.unwrap().ending, Ending::Cancelled);
 }

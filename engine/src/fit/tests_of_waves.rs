@@ -6,6 +6,7 @@ use crate::case::Case;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::Preset;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::cycle::{Areas, CycleState, Direction, Turn};
 
 const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
@@ -26,7 +27,7 @@ fn a_wavy_sphere_is_found_through_its_snaps() {
 /// Our own unloading of a preset under fixed grips, evenly by the approach, with a free part.
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();
-    let curve = case.curve(|| true).unwrap();
+    let curve = case.curve(&Unwatched).unwrap();
     let unloading = case.unload(&curve, Control::Displacement).unwrap();
     let stable = |delta: f64| {
         unloading.pieces.iter().find_map(|[outer, inner]| {
@@ -54,7 +55,7 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
 fn looped(preset: &Preset, top: f64, n: usize) -> Points {
     let control = preset.path.control;
     let case = Case::new(preset).unwrap();
-    let cycle = case.cycle(control, Some(Turn::Control(top)), Areas::No, &|_| true).unwrap();
+    let cycle = case.cycle(control, Some(Turn::Control(top)), Areas::No, &Unwatched).unwrap();
     assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
     let radii = |same: &[CycleState]| {
         let of = same.iter().map(|state| state.contact_radius);
@@ -116,9 +117,9 @@ fn a_loop_on_waves_is_found_by_its_own_ways_up_and_back() {
     let asked = crate::measured::Asked { segment: Some(Segment::Approach), ..Default::default() };
     let free = vec![E.to_owned(), W.to_owned()];
     let alone = Options { free: free.clone(), asked, ..Options::default() };
-    close(&fit(&preset(WAVES, 0.4, 0.01, ""), &points, &alone, &mut |_| true).unwrap(), &[1.0, 0.004], 1e-8);
+    close(&fit(&preset(WAVES, 0.4, 0.01, ""), &points, &alone, &Unwatched).unwrap(), &[1.0, 0.004], 1e-8);
     let apart = Options { free, separate: true, ..Options::default() };
-    let found = fit(&preset(WAVES, 3.0, 0.0013, ""), &points, &apart, &mut |_| true).unwrap();
+    let found = fit(&preset(WAVES, 3.0, 0.0013, ""), &points, &apart, &Unwatched).unwrap();
     close(&found, &[1.0, 0.004, 0.004], 1e-8);
     assert!(found.warnings.iter().all(|warning| !warning.contains("quasi-static")));
 }
@@ -137,7 +138,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     let truth = preset(WAVES, 1.0, 1e-4, "");
     let case = Case::new(&truth).unwrap();
     let turn = Some(Turn::Approach(0.105));
-    let cycle = case.cycle(Control::Displacement, turn, Areas::No, &|_| true).unwrap();
+    let cycle = case.cycle(Control::Displacement, turn, Areas::No, &Unwatched).unwrap();
     assert!(cycle.states.iter().any(|state| state.contacts.len() > 1));
     let mut points = Points {
         abscissa: Abscissa::Approach,
@@ -172,7 +173,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     close(&found, &[1.0, 1e-4], 1e-6);
     let asked = crate::measured::Asked { segment: Some(Segment::Approach), ..Default::default() };
     let options = Options { free: vec![E.to_owned()], asked, scan: false, ..Options::default() };
-    let refused = fit(&truth, &points, &options, &mut |_| true).unwrap_err().to_string();
+    let refused = fit(&truth, &points, &options, &Unwatched).unwrap_err().to_string();
     assert!(refused.contains("rings of contact") && refused.contains("a crest outside touches"), "{refused}");
 }
 
@@ -186,10 +187,10 @@ fn the_retraction_alone_is_found_from_three_times_off_with_its_offset_and_its_am
     let free = [E, W, "data.offset"].map(str::to_owned).to_vec();
     let options = Options { free, asked, ..Options::default() };
     let start = preset(WAVES, 3.0, 0.0013, "");
-    let found = fit(&start, &points, &options, &mut |_| true).unwrap();
+    let found = fit(&start, &points, &options, &Unwatched).unwrap();
     close(&found, &[1.0, 0.004, 0.03], 1e-8);
     let free = [E, W, "data.offset", "A"].map(str::to_owned).to_vec();
-    let found = fit(&start, &points, &Options { free, ..Options::default() }, &mut |_| true).unwrap();
+    let found = fit(&start, &points, &Options { free, ..Options::default() }, &Unwatched).unwrap();
     assert_eq!(found.ending, super::least_squares::Ending::Converged);
     close(&found, &[1.0, 0.004, 0.03, 0.0025], 1e-8);
 }

@@ -26,6 +26,7 @@ use crate::elementary::{pow, sin};
 use crate::gap::wave_index;
 use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
+use crate::progress::{Progress, Unwatched};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -111,7 +112,7 @@ impl Judge {
 
     /// The admissibility of the state (s, δ), and the nearest crest whether it touches or not.
     pub fn judge(&self, s: f64, delta: f64) -> Admissibility {
-        let found = self.verdict(s, delta);
+        let found = self.verdict(s, delta, &Unwatched);
         let nearest = match (found.nearest, self.nearest_crest(s, delta)) {
             (Some(a), Some(b)) => Some(if b.gap < a.gap { b } else { a }),
             (a, b) => a.or(b),
@@ -119,12 +120,13 @@ impl Judge {
         Admissibility { nearest, ..found }
     }
 
-    /// The same with a crest only where one overlaps: all that is needed of many states.
-    pub fn verdict(&self, s: f64, delta: f64) -> Admissibility {
+    /// The same with a crest only where one overlaps: all that is needed of many states. Where `progress` says stop, nothing is
+    /// known of the gap outside.
+    pub fn verdict(&self, s: f64, delta: f64, progress: &dyn Progress) -> Admissibility {
         let (end, known_to) = self.search_end(s, delta);
         let overlap = -ROUNDING * (delta.abs() + self.opening(s));
         let searched = if end > s {
-            let panels = self.table.up_to(end).ok();
+            let panels = self.table.up_to_while(end, 0, progress).ok();
             panels.map(|panels| outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap))
         } else {
             None
@@ -310,6 +312,7 @@ mod tests {
     use crate::disc::{Basis, Exact};
     use crate::gap::Shape;
     use crate::problem::Problem;
+    use crate::progress::Unwatched;
     use crate::ritz::Rings;
     use crate::theory;
     use crate::theory::quadrature::integrate;
@@ -323,7 +326,7 @@ mod tests {
 
     /// The judge of `problem`, and the exact basis of its gap.
     fn exact(problem: &Reduced) -> (Judge, Exact) {
-        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         (Judge::new(problem, &table), Exact::new(table, 0.5))
     }
 

@@ -7,6 +7,7 @@ use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Units};
+use crate::progress::{Progress, Unwatched};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -155,16 +156,16 @@ fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Pl
 impl Curve {
     /// The curve from the contact radius `from` down to `to`.
     ///
-    /// `None` when there is no equilibrium at `from`, or `go_on` said no.
+    /// `None` when there is no equilibrium at `from`, or `progress` said stop.
     pub fn new(
         problem: Reduced,
         basis: Arc<dyn Basis>,
         table: Arc<Table>,
         [from, to]: [f64; 2],
         detail: Detail,
-        mut go_on: impl FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<Self> {
-        let solution = basis.solution(&problem, to, from, &mut go_on)?;
+        let solution = basis.solution(&problem, to, from, progress)?;
         let sample = |at: Local| {
             let Local { contact_radius, approach, force, .. } = at;
             Sample { contact_radius, approach, force, slopes: at.stability() }
@@ -200,8 +201,8 @@ impl Curve {
 
     /// The same with a table of the gap of its own.
     pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
-        let table = Table::new(Arc::clone(&problem.gap), from, &mut || true).ok()?;
-        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, || true)
+        let table = Table::new(Arc::clone(&problem.gap), from, &Unwatched).ok()?;
+        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, &Unwatched)
     }
 
     /// The largest contact radius of the curve.
@@ -222,7 +223,7 @@ impl Curve {
             return false;
         }
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
-        let Some(solution) = basis.solution(problem, self.innermost(), to, &mut || true) else {
+        let Some(solution) = basis.solution(problem, self.innermost(), to, &Unwatched) else {
             return false;
         };
         let further = solution.reach() > self.solution.reach();
@@ -303,7 +304,7 @@ impl Curve {
     pub fn traced(
         &self,
         adjust: impl FnOnce(&mut Settings),
-        mut go_on: impl FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<(Branch, CurveStop)> {
         let mut settings = settings(&self.equilibrium);
         adjust(&mut settings);
@@ -321,15 +322,12 @@ impl Curve {
                 let near = |point: &Point| (point.y() - last.y()).norm() <= CORNER_STEP;
                 corner && branch.points.last().is_some_and(near)
             };
-            let mut wanted = true;
             let aim = End { unknown: unknown::CONTACT_RADIUS, value };
             let (mut piece, stop) =
-                Tracer::new(&self.equilibrium, settings.clone()).trace(start, aim, |branch| {
-                    wanted = wanted && go_on();
-                    wanted && !is_near(branch)
-                });
+                Tracer::new(&self.equilibrium, settings.clone())
+                    .trace(start, aim, |branch| !progress.stop() && !is_near(branch));
             branch.work += piece.work;
-            let landed = wanted && stop != Stop::End && is_near(&piece);
+            let landed = !progress.stop() && stop != Stop::End && is_near(&piece);
             if landed {
                 let point = last.clone();
                 piece.points.push(match piece.points.last() {

@@ -314,13 +314,14 @@ mod tests {
     use super::*;
     use crate::case::Case;
     use crate::fixtures;
+    use crate::progress::Unwatched;
     use crate::quasistatic::Curve;
 
     /// Fig. 9 in the exact basis, whose energy has the digits that second differences need.
     fn swept() -> Curve {
         let mut preset = fixtures::preset("fig-9");
         preset.set("basis.kind", "exact".into()).unwrap();
-        Case::new(&preset).unwrap().curve(|| true).unwrap()
+        Case::new(&preset).unwrap().curve(&Unwatched).unwrap()
     }
 
     /// `U_ss`, `U_sδ` and `U_δδ` by central differences.

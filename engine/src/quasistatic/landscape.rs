@@ -25,6 +25,7 @@ use super::monotone::Monotone;
 use crate::disc::{Evaluation, Order, Solution};
 use crate::elementary::ln;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 
 /// Samples of a landscape at least: a short range is drawn with as many steps as this.
 const SAMPLES: f64 = 100.0;
@@ -234,7 +235,7 @@ impl Held<'_> {
         }
         nodes.extend(grid.last());
         let Equilibrium { problem, basis, .. } = self.equilibrium;
-        let evaluations = basis.equilibria(problem, &nodes, Order::State, &mut || true);
+        let evaluations = basis.equilibria(problem, &nodes, Order::State, &Unwatched);
         if evaluations.len() < nodes.len() {
             return None;
         }
@@ -278,12 +279,12 @@ mod tests {
     }
 
     fn curve(problem: &Reduced, rings: Option<usize>) -> Curve {
-        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let basis: Arc<dyn Basis> = match rings {
             Some(rings) => Rings::shared(rings).unwrap(),
             None => Arc::new(Exact::new(Arc::clone(&table), 0.5)),
         };
-        Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, || true).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, &Unwatched).unwrap()
     }
 
     /// The radii at which `control` takes `value` on the curve, descending, with their stability.

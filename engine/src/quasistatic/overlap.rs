@@ -13,6 +13,7 @@ use super::admissible::{Admissibility, Crest, Judge};
 use super::curve::Curve;
 use super::monotone::Monotone;
 use crate::problem::Control;
+use crate::progress::Progress;
 use std::sync::Arc;
 
 /// An end is located when its bracket is this small relative to it.
@@ -36,32 +37,24 @@ impl Overlap {
     }
 }
 
-/// The states of `curve` that are not admissible, from its start inward.
-pub fn overlaps(curve: &Curve) -> Vec<Overlap> {
-    overlaps_while(curve, &mut || true).unwrap_or_default()
-}
-
-/// The same; `go_on` is asked before each state, `None` when it said no.
-pub fn overlaps_while(curve: &Curve, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Overlap>> {
-    passed_while(curve, &[[curve.outermost(), curve.innermost()]], go_on)
+/// The states of `curve` that are not admissible, from its start inward. `progress` is asked before each state, `None` when it said
+/// stop.
+pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Option<Vec<Overlap>> {
+    passed(curve, &[[curve.outermost(), curve.innermost()]], progress)
 }
 
 /// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
 /// what a path passes, see [`Unloading::pieces`](super::Unloading::pieces).
 ///
-/// `go_on` is asked before each state, `None` when it said no.
-pub fn passed_while(
-    curve: &Curve,
-    pieces: &[[f64; 2]],
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<Vec<Overlap>> {
+/// `progress` is asked before each state, `None` when it said stop.
+pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Option<Vec<Overlap>> {
     let mut curve = curve.clone();
     curve.reach(pieces.iter().map(|[from, _]| *from).fold(0.0, f64::max));
     let mut search = Search {
         judge: curve.equilibrium.judge(),
         stretches: curve.monotone(Control::Displacement),
         curve: &curve,
-        go_on,
+        progress,
         found: Vec::new(),
         open: None,
     };
@@ -85,7 +78,7 @@ struct Search<'a> {
     curve: &'a Curve,
     judge: Judge,
     stretches: Arc<Monotone>,
-    go_on: &'a mut dyn FnMut() -> bool,
+    progress: &'a dyn Progress,
     found: Vec<Overlap>,
     /// The fault of the interval that is still open.
     open: Option<Cause>,
@@ -94,11 +87,13 @@ struct Search<'a> {
 impl Search<'_> {
     /// The state of radius `s`; `None` when it is no longer wanted.
     fn state(&mut self, s: f64) -> Option<Admissibility> {
-        if !(self.go_on)() {
+        if self.progress.stop() {
             return None;
         }
         let place = self.curve.solution.place(s)?;
-        Some(self.judge.verdict(s, self.curve.solution.at(place).approach))
+        let verdict = self.judge.verdict(s, self.curve.solution.at(place).approach, self.progress);
+        // The first needs the table far out, which may take long.
+        (!self.progress.stop()).then_some(verdict)
     }
 
     /// One piece, from `from` inward to `to`.
@@ -196,6 +191,7 @@ mod tests {
     use crate::disc::{Exact, Table};
     use crate::gap::Shape;
     use crate::problem::{Problem, Reduced};
+    use crate::progress::{Unwatched, until};
     use crate::quasistatic::Detail;
     use crate::quasistatic::unload::unload;
     use std::f64::consts::TAU;
@@ -207,9 +203,9 @@ mod tests {
     }
 
     fn curve(problem: &Reduced, to: f64) -> Curve {
-        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let basis = Arc::new(Exact::new(Arc::clone(&table), 0.5));
-        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, || true).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, &Unwatched).unwrap()
     }
 
     fn holds(curve: &Curve, s: f64) -> bool {
@@ -222,7 +218,7 @@ mod tests {
     fn a_curve_says_where_it_is_inadmissible_and_at_which_crest() {
         let problem = wavy(0.0025, 0.05, 1e-4);
         let curve = curve(&problem, 0.04);
-        let found = overlaps(&curve);
+        let found = overlaps(&curve, &Unwatched).unwrap();
         // One below each crest from the tenth to the second: the edge is between it and the last trough.
         let crests: Vec<u64> = found.iter().filter_map(|overlap| overlap.crest?.wave).collect();
         assert_eq!(crests, [10, 9, 8, 7, 6, 5, 4, 3, 2]);
@@ -234,20 +230,20 @@ mod tests {
         }
         // Every state of the figures of the paper is possible.
         let problem = wavy(0.0025, 0.05, 0.025 / TAU);
-        assert_eq!(overlaps(&super::tests::curve(&problem, 0.02)), []);
+        assert_eq!(overlaps(&super::tests::curve(&problem, 0.02), &Unwatched).unwrap(), []);
     }
 
     #[test]
     fn a_path_passes_what_is_on_its_stable_pieces_alone() {
         let problem = wavy(0.0025, 0.05, 1e-4);
         let whole = curve(&problem, 0.04);
-        let on_curve = overlaps(&whole);
+        let on_curve = overlaps(&whole, &Unwatched).unwrap();
         for control in [Control::Displacement, Control::Force] {
             let path = unload(&whole, control).unwrap();
-            let passed = passed_while(&whole, &path.pieces, &mut || true).unwrap();
+            let met = passed(&whole, &path.pieces, &Unwatched).unwrap();
             let on_path = |s: f64| path.pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
-            for overlap in &passed {
+            for overlap in &met {
                 assert!(on_path(overlap.from) && on_path(overlap.to), "{overlap:?}");
                 // An end is one of the curve's, or that of a piece: a limit point or a landing.
                 for s in [overlap.from, overlap.to] {
@@ -256,15 +252,10 @@ mod tests {
                 }
             }
             let unseen = on_curve.iter().filter(|o| on_path(0.5 * (o.from + o.to)));
-            assert!(unseen.clone().all(|o| passed.iter().any(|p| p.contains(0.5 * (o.from + o.to)))));
+            assert!(unseen.clone().all(|o| met.iter().any(|p| p.contains(0.5 * (o.from + o.to)))));
             // No more than asked for is looked at.
-            let mut left = 3;
-            let mut go_on = || {
-                left -= 1;
-                left >= 0
-            };
-            assert_eq!(passed_while(&whole, &path.pieces, &mut go_on), None);
+            assert_eq!(passed(&whole, &path.pieces, &until(3)), None);
         }
-        assert_eq!(overlaps_while(&whole, &mut || false), None);
+        assert_eq!(overlaps(&whole, &|| true), None);
     }
 }

@@ -15,6 +15,7 @@ use crate::disc::{Basis, Table};
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
 use crate::problem::Reduced;
+use crate::progress::Unwatched;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -93,7 +94,7 @@ impl Profile {
         let outermost = contacts.outermost();
         let outer = radii(outermost, problem.gap.feature_length());
         let reach = outer.last().copied().unwrap_or(outermost);
-        let ground = Ground::new(Arc::clone(table), reach, &mut || true).ok()?;
+        let ground = Ground::new(Arc::clone(table), reach, &Unwatched).ok()?;
         let state = ground.state(contacts, Wanted::Values).ok()?;
         let around = Around::new(&ground, &state, delta);
         let count =
@@ -172,7 +173,7 @@ mod tests {
     }
 
     fn exact(problem: &Reduced) -> (Exact, Judge) {
-        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let judge = Judge::new(problem, &table);
         (Exact::new(table, 0.5), judge)
     }
@@ -207,8 +208,8 @@ mod tests {
     #[test]
     fn of_rings_it_bears_their_force_and_touches_at_their_edges() {
         let problem = problem(0.0025, 1e-4);
-        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &mut || true).unwrap());
-        let ground = Ground::new(Arc::clone(&table), 0.5, &mut || true).unwrap();
+        let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
+        let ground = Ground::new(Arc::clone(&table), 0.5, &Unwatched).unwrap();
         // A state of the loop with a disc and one ring.
         let contacts = Contacts { disc: 0.064, rings: vec![[0.0879, 0.1061]] };
         let delta = 0.0066;

@@ -5,6 +5,7 @@ use crate::disc::Basis;
 use crate::elementary::cbrt;
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Start, Units};
+use crate::progress::Progress;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -123,7 +124,7 @@ pub fn contact_radius(
     problem: &Reduced,
     basis: &dyn Basis,
     start: Start,
-    go_on: &mut dyn FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Result<f64, StartError> {
     let (control, value, name) = match start {
         Start::ContactRadius(s) => {
@@ -141,7 +142,7 @@ pub fn contact_radius(
     let from = 1e-3 * unit.min(most);
     let mut reach = (2.0 * unit).min(most);
     loop {
-        let solution = basis.solution(problem, from, reach, go_on);
+        let solution = basis.solution(problem, from, reach, progress);
         if let Some(solution) = &solution {
             let monotone = Monotone::of(&**solution, control);
             let stretches = &monotone.stretches;

@@ -9,6 +9,7 @@ use super::landscape;
 use super::monotone::weighted;
 use crate::disc::{Local, Place};
 use crate::problem::{Control, Units};
+use crate::progress::{Progress, Unwatched};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -213,18 +214,18 @@ impl Unloading {
 /// # Errors
 /// [`UnloadError`] when the start is unstable and no stable state lies outward.
 pub fn unload(curve: &Curve, control: Control) -> Result<Unloading, UnloadError> {
-    unload_while(curve, control, Losses::Twice, || true)
+    unload_while(curve, control, Losses::Twice, &Unwatched)
 }
 
-/// As [`unload`], with these losses; `go_on` is asked before each event.
+/// As [`unload`], with these losses; `progress` is asked before each event.
 ///
 /// # Errors
-/// [`UnloadError::Cancelled`] when `go_on` said no, and as [`unload`].
+/// [`UnloadError::Cancelled`] when `progress` said stop, and as [`unload`].
 pub fn unload_while(
     curve: &Curve,
     control: Control,
     losses: Losses,
-    mut go_on: impl FnMut() -> bool,
+    progress: &dyn Progress,
 ) -> Result<Unloading, UnloadError> {
     let (from, to) = (curve.outermost(), curve.innermost());
     let mut longer = None;
@@ -239,7 +240,7 @@ pub fn unload_while(
     let descent = descend(&*curve.solution, &curve.monotone(control), here, to);
     let mut events = Vec::with_capacity(descent.jumps.len());
     for jump in &descent.jumps {
-        if !go_on() {
+        if progress.stop() {
             return Err(UnloadError::Cancelled);
         }
         let landing = jump.landing.map(|landing| landing.place);

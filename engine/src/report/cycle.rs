@@ -8,6 +8,7 @@ use crate::case::{Case, CaseError};
 use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::{Control, Reduced, Units};
+use crate::progress::{Part, Progress};
 use crate::quasistatic::cycle::{Areas, Cycle, CycleState, Event, Passed, Totals, Turn, TurnReached};
 use serde::Serialize;
 
@@ -167,10 +168,10 @@ impl CycleReport {
     /// The loop of `preset`.
     ///
     /// # Errors
-    /// [`CaseError`] when it cannot be computed, and when `go_on` said no.
-    pub fn compute(preset: &Preset, areas: Areas, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &mut |_| go_on(0.0))?;
-        let cycle = case.cycle(case.control, None, areas, go_on)?;
+    /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
+    pub fn compute(preset: &Preset, areas: Areas, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
+        let cycle = case.cycle(case.control, None, areas, &Part::new(progress, [0.1, 1.0]))?;
         Ok(Self::new(preset, &case, &cycle))
     }
 

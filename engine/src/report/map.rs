@@ -6,6 +6,7 @@ use super::rows::{RowsError, Table};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
+use crate::progress::{Part, Progress};
 use crate::stability::{Axis, Counts, Family, FamilyError, Folds, Map, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
 
@@ -162,9 +163,9 @@ impl MapReport {
         x: Axis,
         y: &Ordinate,
         cells: [u32; 2],
-        go_on: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Result<Self, MapError> {
-        let case = Case::prepare(preset, &mut |_| go_on())?;
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
         let mut report = Self {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
@@ -186,7 +187,7 @@ impl MapReport {
         if preset.basis != BasisSpec::Exact {
             report.notes.push(EXACT.to_owned());
         }
-        let found = Onset::of(preset, go_on)?;
+        let found = Onset::of(preset, progress)?;
         report.onset = found.map(|onset| OnsetReport {
             amplitude_over_wavelength: onset.amplitude_over_wavelength,
             control: preset.path.control,
@@ -194,18 +195,18 @@ impl MapReport {
         if let Ordinate::Key(axis) = y {
             report.y = AxisReport::of(axis);
             let family = Family::new(preset, vec![x, axis.clone()])?;
-            let mut map = family.map(go_on)?;
-            family.mark_changes(&mut map, go_on);
-            let counts = family.counts(cells, go_on).ok_or(MapError::Cancelled)?;
+            let mut map = family.map(progress)?;
+            family.mark_changes(&mut map, progress);
+            let counts = family.counts(cells, progress).ok_or(MapError::Cancelled)?;
             report.rows_of_map(&family, &map);
             report.counts = Some(CountsReport::of(&family, counts));
             report.notes.extend(map.notes);
         } else {
             let family = Family::new(preset, vec![x])?;
-            let folds = family.folds(go_on)?;
+            let folds = family.folds(progress)?;
             report.rows_of_folds(&family, &folds, y);
         }
-        if go_on() { Ok(report) } else { Err(MapError::Cancelled) }
+        if progress.stop() { Err(MapError::Cancelled) } else { Ok(report) }
     }
 
     /// The points under the names of their columns.

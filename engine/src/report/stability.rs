@@ -7,6 +7,7 @@ use super::rows::{RowsError, Table};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
+use crate::progress::Progress;
 use crate::stability::Law;
 use serde::Serialize;
 
@@ -61,14 +62,10 @@ impl StabilityReport {
     /// The law of `preset` at `samples` radii of equal distance, at least 2, and at its cusps and corners.
     ///
     /// # Errors
-    /// [`CaseError`] when the preset cannot be made ready, or `go_on` said no.
-    pub fn compute(
-        preset: &Preset,
-        samples: usize,
-        go_on: &mut dyn FnMut(f64) -> bool,
-    ) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, go_on)?;
-        let panels = case.panels(&mut || go_on(1.0))?;
+    /// [`CaseError`] when the preset cannot be made ready, or `progress` said stop.
+    pub fn compute(preset: &Preset, samples: usize, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, progress)?;
+        let panels = case.panels(progress)?;
         let units = case.units();
         let law = |control| Law { panels: panels.clone(), control };
         let own = law(case.control);

@@ -9,7 +9,8 @@ use super::unload::control_name;
 use crate::case::{Case, CaseError};
 use crate::preset::Preset;
 use crate::problem::Control;
-use crate::quasistatic::overlap::{overlaps, overlaps_while};
+use crate::progress::{Part, Progress, Unwatched};
+use crate::quasistatic::overlap::overlaps;
 use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
@@ -201,19 +202,18 @@ impl TraceReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
-        Self::compute_while(preset, &|_| true)
+        Self::compute_while(preset, &Unwatched)
     }
 
-    /// The same; `go_on` is told the share of the basis that is built, then 1, and asked often.
+    /// The same; `progress` is asked often.
     ///
     /// # Errors
-    /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn compute_while(preset: &Preset, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &mut |share| go_on(share))?;
-        let curve = case.curve(|| go_on(1.0))?;
-        let (branch, stop) = case.trace_while(&curve, || go_on(1.0))?;
-        let overlapping = overlaps_while(&curve, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
-        Ok(Self::with(preset, &case, &curve, &branch.points, stop, &overlapping))
+    /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.4]))?;
+        let curve = case.curve(&Part::new(progress, [0.4, 0.6]))?;
+        let (branch, stop) = case.trace_while(&curve, &Part::new(progress, [0.6, 0.8]))?;
+        Self::new(preset, &case, &curve, &branch.points, stop, &Part::new(progress, [0.8, 1.0]))
     }
 
     /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
@@ -236,27 +236,28 @@ impl TraceReport {
     }
 
     /// The document of a curve of `case`, its points `traced` along it by arc length.
-    pub fn new(preset: &Preset, case: &Case, curve: &Curve, traced: &[Point], stop: CurveStop) -> Self {
-        Self::with(preset, case, curve, traced, stop, &overlaps(curve))
-    }
-
-    /// The same where the inadmissible states are known already.
-    fn with(
+    ///
+    /// # Errors
+    /// [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn new(
         preset: &Preset,
         case: &Case,
         curve: &Curve,
         traced: &[Point],
         stop: CurveStop,
-        overlapping: &[Overlap],
-    ) -> Self {
+        progress: &dyn Progress,
+    ) -> Result<Self, CaseError> {
         let units = case.units();
         let equilibrium = &curve.equilibrium;
-        let inadmissible = OverlapReport::all(overlapping, units);
-        let points: Vec<PointReport> = traced
-            .iter()
-            .enumerate()
-            .map(|(step, point)| PointReport::new(case, equilibrium, step, point, overlapping))
-            .collect();
+        let overlapping = overlaps(curve, progress).ok_or(CaseError::Cancelled)?;
+        let inadmissible = OverlapReport::all(&overlapping, units);
+        let mut points = Vec::with_capacity(traced.len());
+        for (step, point) in traced.iter().enumerate() {
+            if progress.stop() {
+                return Err(CaseError::Cancelled);
+            }
+            points.push(PointReport::new(case, equilibrium, step, point, &overlapping));
+        }
         let limit_points: Vec<LimitReport> = case
             .controls()
             .into_iter()
@@ -274,7 +275,7 @@ impl TraceReport {
             let limits = limit_points.iter().map(|p| (p.approach, p.force));
             points.chain(limits).map(of).min_by(f64::total_cmp)
         };
-        Self {
+        Ok(Self {
             schema: SCHEMA,
             program_version: env!("CARGO_PKG_VERSION"),
             problem: ProblemReport::new(preset, case),
@@ -291,7 +292,7 @@ impl TraceReport {
             limit_points,
             inadmissible,
             points,
-        }
+        })
     }
 
     /// The points under the names of their columns.
@@ -317,37 +318,33 @@ impl TraceReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::until;
     use crate::report::UnloadReport;
     use crate::{Material, Shape, Start};
     use std::cell::Cell;
 
     /// A document that asks whether it is still wanted.
-    type Way<'a> = &'a dyn Fn(&dyn Fn(f64) -> bool) -> Option<CaseError>;
+    type Way<'a> = &'a dyn Fn(&dyn Progress) -> Option<CaseError>;
 
     #[test]
     fn a_document_that_is_no_longer_wanted_is_cancelled_at_every_question() {
         let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
         let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None };
         let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
-        let trace = |go_on: &dyn Fn(f64) -> bool| TraceReport::compute_while(&preset, go_on).err();
-        let unload = |go_on: &dyn Fn(f64) -> bool| UnloadReport::compute_while(&preset, go_on).err();
+        let trace = |progress: &dyn Progress| TraceReport::compute_while(&preset, progress).err();
+        let unload = |progress: &dyn Progress| UnloadReport::compute_while(&preset, progress).err();
         let ways: [Way<'_>; 2] = [&trace, &unload];
         for compute in ways {
-            let asked = Cell::new(0_u32);
-            let count = |_| {
+            let asked = Cell::new(0_usize);
+            let count = || {
                 asked.set(asked.get() + 1);
-                true
+                false
             };
             assert_eq!(compute(&count), None);
             let all = asked.get();
             assert!(all >= 5, "{all}");
             for number in 1..=all {
-                asked.set(0);
-                let until = |_| {
-                    asked.set(asked.get() + 1);
-                    asked.get() < number
-                };
-                assert_eq!(compute(&until), Some(CaseError::Cancelled), "{number} of {all}");
+                assert_eq!(compute(&until(number - 1)), Some(CaseError::Cancelled), "{number} of {all}");
             }
         }
     }

@@ -10,7 +10,8 @@ use crate::gap::Gap;
 use crate::gap::wave_index;
 use crate::preset::Preset;
 use crate::problem::{Control, Reduced};
-use crate::quasistatic::overlap::passed_while;
+use crate::progress::{Part, Progress, Unwatched};
+use crate::quasistatic::overlap::passed;
 use crate::quasistatic::{Detail, Event, EventKind, Losses, Overlap, State, Unloading};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -120,15 +121,15 @@ impl UnloadReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
-        Self::compute_while(preset, &|_| true)
+        Self::compute_while(preset, &Unwatched)
     }
 
-    /// The same; `go_on` is told the share of the basis that is built, then 1, and asked often.
+    /// The same; `progress` is asked often.
     ///
     /// # Errors
-    /// As [`UnloadReport::compute`], and [`CaseError::Cancelled`] when `go_on` said no.
-    pub fn compute_while(preset: &Preset, go_on: &dyn Fn(f64) -> bool) -> Result<Self, CaseError> {
-        Self::compute_with(preset, Losses::Twice, true, go_on)
+    /// As [`UnloadReport::compute`], and [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
+        Self::compute_with(preset, Losses::Twice, true, progress)
     }
 
     /// The same with these losses; without `admissibility` it is not known. Each of the two takes longer than all the rest.
@@ -139,19 +140,19 @@ impl UnloadReport {
         preset: &Preset,
         losses: Losses,
         admissibility: bool,
-        go_on: &dyn Fn(f64) -> bool,
+        progress: &dyn Progress,
     ) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &mut |share| go_on(share))?;
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.5]))?;
         let detail = if admissibility { Detail::Drawn } else { Detail::Borders };
-        let curve = case.curve_in(detail, || go_on(1.0))?;
-        let unloading = case.unload_while(&curve, case.control, losses, || go_on(1.0))?;
+        let curve = case.curve_in(detail, &Part::new(progress, [0.5, 0.7]))?;
+        let unloading = case.unload_while(&curve, case.control, losses, &Part::new(progress, [0.7, 0.8]))?;
         let mut report = Self::new(preset, &case, &unloading);
         if admissibility {
-            let passed =
-                passed_while(&curve, &unloading.pieces, &mut || go_on(1.0)).ok_or(CaseError::Cancelled)?;
+            let passed = passed(&curve, &unloading.pieces, &Part::new(progress, [0.8, 1.0]))
+                .ok_or(CaseError::Cancelled)?;
             report = report.checked(&case, &unloading, &passed);
         }
-        report.warnings.extend(case.unsettled(&unloading));
+        report.warnings.extend(case.unsettled(&unloading, progress));
         Ok(report)
     }
 
@@ -207,7 +208,7 @@ impl UnloadReport {
     }
 
     /// The same document with the inadmissible states that its path passes, reduced: those of
-    /// [`passed_while`] on the pieces of `unloading`.
+    /// [`passed`] on the pieces of `unloading`.
     #[must_use]
     pub fn checked(mut self, case: &Case, unloading: &Unloading, passed: &[Overlap]) -> Self {
         let holds = |state: &State| !passed.iter().any(|overlap| overlap.contains(state.contact_radius));

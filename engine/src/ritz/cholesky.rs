@@ -10,7 +10,7 @@
 //! and L x = b is solved the same way, `x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k])`, for many b at once. Nearly all the work is
 //! matrix products, and between blocks the factorization can be asked to stop.
 
-use super::parallel::Progress;
+use crate::progress::Progress;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::array;
 use wide::f64x4;
@@ -47,11 +47,12 @@ impl Factor {
     ///
     /// # Errors
     /// [`NoFactor`].
-    pub fn new(mut a: DMatrix<f64>, progress: Progress<'_>) -> Result<Self, NoFactor> {
+    pub fn new(mut a: DMatrix<f64>, progress: &dyn Progress) -> Result<Self, NoFactor> {
         let n = a.nrows();
         let mut inverses = Vec::with_capacity(n.div_ceil(BLOCK));
         for begin in (0..n).step_by(BLOCK) {
-            if !progress(begin as f64 / n as f64) {
+            progress.report(begin as f64 / n as f64);
+            if progress.stop() {
                 return Err(NoFactor::Cancelled);
             }
             let end = (begin + BLOCK).min(n);
@@ -150,6 +151,7 @@ fn sums(rows: [&[f64]; PANEL], known: &[f64x4]) -> [f64x4; PANEL] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::{Heard, Unwatched};
 
     /// A matrix of this size with condition about 1e3.
     fn example(n: usize) -> DMatrix<f64> {
@@ -160,7 +162,7 @@ mod tests {
     fn factor_and_solutions_are_those_of_the_matrix() {
         for n in [1, 5, BLOCK, BLOCK + 1, 200] {
             let a = example(n);
-            let factor = Factor::new(a.clone(), &mut |_| true).unwrap();
+            let factor = Factor::new(a.clone(), &Unwatched).unwrap();
             let lower = factor.lower.lower_triangle();
             let back = &lower * lower.transpose();
             assert!((back - &a).amax() < 1e-14, "{n}");
@@ -178,17 +180,15 @@ mod tests {
 
     #[test]
     fn it_stops_when_asked_and_refuses_what_is_not_positive_definite() {
-        let mut told = Vec::new();
-        let stopped = Factor::new(example(4 * BLOCK), &mut |share| {
-            told.push(share);
-            share < 0.5
-        });
+        let heard = Heard::until(0.5);
+        let stopped = Factor::new(example(4 * BLOCK), &heard);
         assert_eq!(stopped.unwrap_err(), NoFactor::Cancelled);
+        let told = heard.told.into_inner();
         assert_eq!(told, [0.0, 0.25, 0.5]);
         for bad in [-1.0, f64::NAN] {
             let mut a = example(100);
             a[(90, 90)] = bad;
-            assert_eq!(Factor::new(a, &mut |_| true).unwrap_err(), NoFactor::NotPositiveDefinite);
+            assert_eq!(Factor::new(a, &Unwatched).unwrap_err(), NoFactor::NotPositiveDefinite);
         }
     }
 }

@@ -9,7 +9,7 @@
 //! | [`mesh`] | how the rings are spaced |
 //! | [`outside`] | the displacement of the surface outside the contact |
 //! | [`newton`] | one equilibrium state at a prescribed approach, force or device position |
-//! | [`parallel`] | work on every core, and how far it has come |
+//! | [`parallel`] | work on every core |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
 //!
 //! [`Rings`] are a [`Basis`](crate::disc::Basis), which is all that the rest of the program knows of them. Everything here is in

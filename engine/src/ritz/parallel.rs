@@ -1,10 +1,7 @@
-//! Work in equal parts on every core, and how far a long one has come.
+//! Work in equal parts on every core.
 
 use std::num::NonZeroUsize;
 use std::thread;
-
-/// Told the share done of a long computation, from 0 to 1; answers whether it is still wanted.
-pub type Progress<'a> = &'a mut dyn FnMut(f64) -> bool;
 
 /// Parts that run at the same time.
 pub fn cores() -> usize {

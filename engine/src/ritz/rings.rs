@@ -23,12 +23,13 @@ use super::functional::Forms;
 use super::kernel::disc_interaction;
 use super::mesh::Grading;
 use super::outside;
-use super::parallel::{self, Progress};
+use super::parallel;
 use crate::disc::sampled::Sampled;
 use crate::disc::{Basis, Evaluation, Order, Solution};
 use crate::elementary::{exp2, log2, log10};
 use crate::gap::Gap;
 use crate::problem::Reduced;
+use crate::progress::{Part, Progress, Unwatched};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -90,7 +91,7 @@ impl Rings {
     /// # Errors
     /// When `rings` is out of range, or the matrix cannot be factored.
     pub fn shared(rings: usize) -> Result<Arc<Self>, RingsError> {
-        Self::shared_with(rings, Grading::Uniform, &mut |_| true)
+        Self::shared_with(rings, Grading::Uniform, &Unwatched)
     }
 
     /// N rings; computed once per mesh and then shared. `progress` is told how far it is.
@@ -100,7 +101,7 @@ impl Rings {
     pub fn shared_with(
         rings: usize,
         grading: Grading,
-        progress: Progress<'_>,
+        progress: &dyn Progress,
     ) -> Result<Arc<Self>, RingsError> {
         static CACHE: Mutex<Vec<Arc<Rings>>> = Mutex::new(Vec::new());
         {
@@ -126,18 +127,18 @@ impl Rings {
     ///
     /// # Errors
     /// [`RingsError::OutOfRange`] outside [`Grading::ring_range`], [`RingsError::NotPositiveDefinite`], and
-    /// [`RingsError::Cancelled`] when `progress` said no.
-    pub fn new(rings: usize, grading: Grading, progress: Progress<'_>) -> Result<Self, RingsError> {
+    /// [`RingsError::Cancelled`] when `progress` said stop.
+    pub fn new(rings: usize, grading: Grading, progress: &dyn Progress) -> Result<Self, RingsError> {
         /// The assembly's share of the work; with the N² of the one and N³ of the other it is about half.
         const ASSEMBLY: f64 = 0.5;
         if !grading.ring_range().contains(&rings) {
             return Err(RingsError::OutOfRange { rings, grading });
         }
         let (edges, radius) = grading.edges(rings);
-        let matrix = pressure_matrix(&edges, radius, &mut |share| progress(ASSEMBLY * share))
+        let matrix = pressure_matrix(&edges, radius, &Part::new(progress, [0.0, ASSEMBLY]))
             .ok_or(RingsError::Cancelled)?;
-        let factor = Factor::new(matrix, &mut |share| progress(ASSEMBLY + (1.0 - ASSEMBLY) * share))
-            .map_err(|failure| match failure {
+        let factor =
+            Factor::new(matrix, &Part::new(progress, [ASSEMBLY, 1.0])).map_err(|failure| match failure {
                 NoFactor::NotPositiveDefinite => RingsError::NotPositiveDefinite(rings),
                 NoFactor::Cancelled => RingsError::Cancelled,
             })?;
@@ -248,14 +249,15 @@ fn equilibrium_of(forms: &Forms, s: f64, gamma: f64) -> Option<Evaluation> {
 
 /// B̃ of the rings between `edges` on the disc of radius `radius`, for the unit disc: its lower triangle.
 ///
-/// `None` when `progress` said no.
-fn pressure_matrix(edges: &[f64], radius: f64, progress: Progress<'_>) -> Option<DMatrix<f64>> {
+/// `None` when `progress` said stop.
+fn pressure_matrix(edges: &[f64], radius: f64, progress: &dyn Progress) -> Option<DMatrix<f64>> {
     let rings = edges.len() - 1;
     let unit = radius.powi(-3);
     let mut matrix = DMatrix::zeros(rings, rings);
     let together = BLOCK * parallel::cores();
     for (round, columns) in matrix.as_mut_slice().chunks_mut(rings * together).enumerate() {
-        if !progress((round * together) as f64 / rings as f64) {
+        progress.report((round * together) as f64 / rings as f64);
+        if progress.stop() {
             return None;
         }
         let parts = columns.chunks_mut(rings * BLOCK).enumerate();
@@ -300,7 +302,7 @@ impl Basis for Rings {
         problem: &Reduced,
         radii: &[f64],
         order: Order,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Vec<Evaluation> {
         let solve = match order {
             Order::State => Self::solve_together::<2>,
@@ -311,7 +313,7 @@ impl Basis for Rings {
         let mut found = Vec::with_capacity(radii.len());
         for round in radii.chunks(TOGETHER * threads) {
             let complete = found.len() + round.len();
-            let wanted = round.iter().take_while(|_| go_on()).count();
+            let wanted = round.iter().take_while(|_| !progress.stop()).count();
             let mut answers = vec![None; wanted];
             // As many on one thread as on the other, also where the round is short.
             let share = wanted.div_ceil(threads).max(1);
@@ -334,13 +336,13 @@ impl Basis for Rings {
         problem: &Reduced,
         from: f64,
         to: f64,
-        go_on: &mut dyn FnMut() -> bool,
+        progress: &dyn Progress,
     ) -> Option<Arc<dyn Solution>> {
         // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
         // It reaches to a power of 2^(1/4), so that a radius has the same series however far the curve was asked for.
         let stage = exp2(0.25 * (4.0 * log2(to) - 1e-9).ceil()).max(to);
         let range = [INWARD_REACH * from, stage.min(problem.largest_contact().max(from))];
-        Some(Arc::new(Sampled::new(self, problem, range, go_on)?))
+        Some(Arc::new(Sampled::new(self, problem, range, progress)?))
     }
 
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
@@ -400,9 +402,10 @@ mod tests {
     use super::*;
     use crate::gap::Shape;
     use crate::problem::Problem;
+    use crate::progress::{Heard, until};
 
     fn rings(rings: usize, grading: Grading) -> Rings {
-        Rings::new(rings, grading, &mut |_| true).unwrap()
+        Rings::new(rings, grading, &Unwatched).unwrap()
     }
 
     #[test]
@@ -410,7 +413,7 @@ mod tests {
         for grading in Grading::ALL {
             for rings in [4, 37, 200, *Grading::Edge.ring_range().end()] {
                 let (edges, radius) = grading.edges(rings);
-                let b = pressure_matrix(&edges, radius, &mut |_| true).unwrap();
+                let b = pressure_matrix(&edges, radius, &Unwatched).unwrap();
                 assert!(b.lower_triangle() == b);
                 let sum = 2.0 * b.sum() - b.trace();
                 assert!((sum / (16.0 / 3.0) - 1.0).abs() < 1e-12, "{grading:?} {rings}: {sum}");
@@ -426,7 +429,7 @@ mod tests {
                         "{grading:?} {rings} {a} {c}"
                     );
                 }
-                assert!(Factor::new(b, &mut |_| true).is_ok(), "{grading:?} {rings}");
+                assert!(Factor::new(b, &Unwatched).is_ok(), "{grading:?} {rings}");
             }
         }
     }
@@ -437,7 +440,7 @@ mod tests {
         for (n, grading) in [(30, Grading::Uniform), (150, Grading::Edge)] {
             let basis = rings(n, grading);
             let radii: Vec<f64> = (0..150).map(|i| 0.4 - 0.002 * f64::from(i)).collect();
-            let all = basis.equilibria(&problem, &radii, Order::Curvature, &mut || true);
+            let all = basis.equilibria(&problem, &radii, Order::Curvature, &Unwatched);
             assert_eq!(all.len(), radii.len());
             for (one, &s) in all.iter().zip(&radii) {
                 let alone = basis.equilibrium(&problem, s).unwrap();
@@ -446,7 +449,7 @@ mod tests {
                 assert!((one.residual_second[2] / alone.residual_second[2] - 1.0).abs() < 1e-9);
             }
             // What is not asked for is missing, the rest is the same.
-            let of = |order| basis.equilibria(&problem, &radii, order, &mut || true);
+            let of = |order| basis.equilibria(&problem, &radii, order, &Unwatched);
             let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
             for ((state, slopes), full) in of(Order::State).iter().zip(&of(Order::Slopes)).zip(&all) {
                 same(state.approach, full.approach);
@@ -456,32 +459,25 @@ mod tests {
                 assert!(state.residual_gradient[1].is_nan() && slopes.residual_second[2].is_nan());
             }
             for wanted in [0, 1, 64, 70] {
-                let mut asked = 0;
-                let go_on = &mut || {
-                    asked += 1;
-                    asked <= wanted
-                };
-                assert_eq!(basis.equilibria(&problem, &radii, Order::State, go_on).len(), wanted);
+                let until = until(wanted);
+                assert_eq!(basis.equilibria(&problem, &radii, Order::State, &until).len(), wanted);
             }
             // A radius without an equilibrium ends them.
             let ended = [&radii[..40], &[f64::NAN], &radii[40..]].concat();
-            assert_eq!(basis.equilibria(&problem, &ended, Order::Slopes, &mut || true).len(), 40);
+            assert_eq!(basis.equilibria(&problem, &ended, Order::Slopes, &Unwatched).len(), 40);
         }
     }
 
     #[test]
     fn a_long_construction_tells_how_far_it_is_and_stops_when_asked() {
-        let mut told = Vec::new();
-        let mut record = |share| {
-            told.push(share);
-            true
-        };
-        Rings::new(400, Grading::Uniform, &mut record).unwrap();
+        let heard = Heard::until(1.0);
+        Rings::new(400, Grading::Uniform, &heard).unwrap();
+        let told = heard.told.into_inner();
         assert!(
             told.len() > 6 && told.is_sorted() && told[0] == 0.0 && told.iter().all(|share| *share < 1.0)
         );
         for stop in [0.0, 0.4, 0.7] {
-            let stopped = Rings::shared_with(333, Grading::Edge, &mut |share| share < stop);
+            let stopped = Rings::shared_with(333, Grading::Edge, &Heard::until(stop));
             assert_eq!(stopped.unwrap_err(), RingsError::Cancelled);
         }
     }
@@ -548,7 +544,7 @@ mod tests {
 
     #[test]
     fn the_number_of_rings_is_bounded() {
-        let shared = |n, grading| Rings::shared_with(n, grading, &mut |_| true);
+        let shared = |n, grading| Rings::shared_with(n, grading, &Unwatched);
         for (rings, grading) in
             [(3, Grading::Uniform), (2001, Grading::Uniform), (3, Grading::Edge), (401, Grading::Edge)]
         {

@@ -4,6 +4,7 @@
 use super::family::{At, Family, FamilyError};
 use super::law::Cusp;
 use crate::disc::Basis;
+use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::descent::{descend, stable_start};
 use crate::quasistatic::unload::{UnloadError, unload_while};
 use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
@@ -58,7 +59,7 @@ impl Family {
     fn try_passage(&self, at: At<'_>) -> Result<Option<Passage>, FamilyError> {
         let member = self.member(at)?;
         let (basis, problem, [end, start]) = member.ground(at)?;
-        let Some(solution) = basis.solution(&problem, end, start, &mut || true) else { return Ok(None) };
+        let Some(solution) = basis.solution(&problem, end, start, &Unwatched) else { return Ok(None) };
         let monotone = Monotone::of(&*solution, member.control);
         let radius = |place| solution.at(place).contact_radius;
         let (snaps, jumps) = if let Some(here) = stable_start(&*solution, &monotone, start) {
@@ -71,9 +72,10 @@ impl Family {
         } else {
             // The edge runs outward first: the path of the whole unloading knows how far.
             let table = Arc::clone(basis.table());
-            let curve = Curve::new(problem, Arc::new(basis), table, [start, end], Detail::Borders, || true);
+            let curve =
+                Curve::new(problem, Arc::new(basis), table, [start, end], Detail::Borders, &Unwatched);
             let Some(curve) = curve else { return Ok(None) };
-            match unload_while(&curve, member.control, Losses::Once, || true) {
+            match unload_while(&curve, member.control, Losses::Once, &Unwatched) {
                 Ok(path) => {
                     let snaps = path.events.iter().filter(|event| event.kind == EventKind::Snap);
                     let jumps: Vec<f64> = snaps.map(|event| event.before.contact_radius).collect();
@@ -94,14 +96,14 @@ impl Family {
     }
 
     /// The changes of the number of snaps along `axis`, the other number held at its share of `at`; looked for between
-    /// neighbours of `samples`, shares that ascend, and halved so many times. `go_on` is asked before each, and what was found before it said no is given.
+    /// neighbours of `samples`, shares that ascend, and halved so many times. `progress` is asked before each, and what was found until then is given.
     pub fn changes(
         &self,
         axis: usize,
         at: At<'_>,
         samples: &[f64],
         halvings: usize,
-        go_on: &dyn Fn() -> bool,
+        progress: &dyn Progress,
     ) -> Vec<Change> {
         let place = |share: f64| {
             let mut place = at.to_vec();
@@ -111,7 +113,7 @@ impl Family {
         let mut found = Vec::new();
         let mut before: Option<(f64, Passage)> = None;
         for share in samples {
-            if !go_on() {
+            if progress.stop() {
                 break;
             }
             let Some(here) = self.passage(&place(*share)) else {

@@ -11,6 +11,7 @@ use crate::disc::{Exact, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
+use crate::progress::Unwatched;
 use crate::quasistatic::start::{StartError, contact_radius};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -262,7 +263,7 @@ impl Family {
             return Ok(Arc::clone(table));
         }
         let gap = &made.reduced.gap;
-        let table = Table::shared(&self.kept, &made.preset.gap, gap, reach, &mut || true)?;
+        let table = Table::shared(&self.kept, &made.preset.gap, gap, reach, &Unwatched)?;
         Ok(Arc::clone(made.table.get_or_init(|| table)))
     }
 
@@ -284,7 +285,7 @@ impl Family {
         };
         let basis = Exact::new(self.table(made)?, self.reach(&made.preset));
         let reduced = Reduced { work_of_adhesion, ..reduced };
-        Ok(contact_radius(&reduced, &basis, wanted, &mut || true)?)
+        Ok(contact_radius(&reduced, &basis, wanted, &Unwatched)?)
     }
 
     /// How an axis enters.

@@ -15,6 +15,7 @@ use super::lines::Traced;
 use super::map::MapPoint;
 use super::weight::Weight;
 use crate::problem::Control;
+use crate::progress::Progress;
 
 /// Values of the number at which limit points are looked for where no curve follows from s.
 const COLUMNS: u32 = 24;
@@ -46,11 +47,11 @@ pub struct Folds {
 }
 
 impl Family {
-    /// The fold curves over the only axis. `go_on` is asked now and then; what is found until it says no is given.
+    /// The fold curves over the only axis. `progress` is asked now and then; what is found until it says stop is given.
     ///
     /// # Errors
     /// A gap cannot be tabulated, or a value is out of its range.
-    pub fn folds(&self, go_on: &dyn Fn() -> bool) -> Result<Folds, FamilyError> {
+    pub fn folds(&self, progress: &dyn Progress) -> Result<Folds, FamilyError> {
         let mut folds = Folds::default();
         if let Some(lines) = self.explicit_folds()? {
             for (points, cusps) in lines {
@@ -66,14 +67,14 @@ impl Family {
         } else {
             let of = Equations::new(self, Sort::Fold);
             let mut known: Vec<Traced> = Vec::new();
-            for y in self.fold_starts(&of, go_on) {
-                if !go_on() {
+            for y in self.fold_starts(&of, progress) {
+                if progress.stop() {
                     break;
                 }
                 if known.iter().any(|line| line.has(&y)) {
                     continue;
                 }
-                let Some(line) = of.line(&y, go_on) else { continue };
+                let Some(line) = of.line(&y, progress) else { continue };
                 let slope = |y: &Vec<f64>| {
                     of.locals(y)
                         .and_then(|locals| locals.first().map(|local| local.edge.slope))
@@ -94,7 +95,7 @@ impl Family {
         let mut samples: Vec<f64> = even(SAMPLES).into_iter().chain(beside).collect();
         samples.retain(|share| (0.0..=1.0).contains(share));
         samples.sort_by(f64::total_cmp);
-        for change in self.changes(0, &[0.0], &samples, EXACTLY, go_on) {
+        for change in self.changes(0, &[0.0], &samples, EXACTLY, progress) {
             if let Cause::Landing([outer, _]) = change.cause {
                 folds.landings.extend(self.point_at(&[change.share], outer));
             }
@@ -153,12 +154,12 @@ impl Family {
     }
 
     /// Limit points at evenly spaced values of the number.
-    fn fold_starts(&self, of: &Equations<'_>, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+    fn fold_starts(&self, of: &Equations<'_>, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let radii = self.sampled_radii();
         let mut starts = Vec::new();
         for share in even(COLUMNS) {
             let Ok(member) = self.member(&[share]) else { continue };
-            if !go_on() {
+            if progress.stop() {
                 break;
             }
             let off: Vec<Option<f64>> =

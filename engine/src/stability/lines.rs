@@ -2,6 +2,7 @@
 
 use super::equations::{Equations, Sort};
 use crate::continuation::{Bracket, Point, Tracer, Vector};
+use crate::progress::Progress;
 
 /// A line that comes back to within this of its start is closed.
 const CLOSED: f64 = 0.03;
@@ -45,7 +46,7 @@ impl Equations<'_> {
     }
 
     /// The line through the solution `y`, both ways from it.
-    pub fn line(&self, y: &[f64], go_on: &dyn Fn() -> bool) -> Option<Traced> {
+    pub fn line(&self, y: &[f64], progress: &dyn Progress) -> Option<Traced> {
         let n = y.len();
         let forward: Vec<f64> =
             (0..n).map(|k| if k + 1 == n { 1.0 } else { 0.37 / (k + 1) as f64 }).collect();
@@ -55,7 +56,7 @@ impl Equations<'_> {
             let mut points = vec![start];
             tracer.length = tracer.settings.first;
             let mut closed = false;
-            while points.len() < tracer.settings.points && go_on() {
+            while points.len() < tracer.settings.points && !progress.stop() {
                 let last = &points[points.len() - 1];
                 let Ok(next) = tracer.step(last) else { break };
                 let far = points.len() > 10;

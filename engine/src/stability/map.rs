@@ -7,6 +7,7 @@ use super::law::adhesion_of;
 use super::lines::Traced;
 use crate::elementary::hypot;
 use crate::gap::Gap;
+use crate::progress::Progress;
 use crate::quasistatic::monotone::weighted;
 
 /// Columns of the map in which cusps are looked for, and those in which landings are, with their samples.
@@ -69,11 +70,11 @@ pub struct Counts {
 }
 
 impl Family {
-    /// The lines of the map of both axes. `go_on` is asked now and then; what is found until it says no is given.
+    /// The lines of the map of both axes. `progress` is asked now and then; what is found until it says stop is given.
     ///
     /// # Errors
     /// The gap cannot be tabulated somewhere, or a value is out of its range.
-    pub fn map(&self, go_on: &dyn Fn() -> bool) -> Result<Map, FamilyError> {
+    pub fn map(&self, progress: &dyn Progress) -> Result<Map, FamilyError> {
         let mut map = Map::default();
         if let Some(lines) = self.explicit_cusps()? {
             for (points, tips) in lines {
@@ -84,13 +85,13 @@ impl Family {
             }
         } else {
             let cusps = Equations::new(self, Sort::Cusp);
-            self.follow(&cusps, self.cusp_starts(go_on), &mut map, go_on);
+            self.follow(&cusps, self.cusp_starts(progress), &mut map, progress);
         }
         let landings = Equations::new(self, Sort::Landing);
-        self.follow(&landings, self.landing_starts(go_on), &mut map, go_on);
+        self.follow(&landings, self.landing_starts(progress), &mut map, progress);
         if self.has_fixed_start() {
             let starts = Equations::new(self, Sort::Start);
-            self.follow(&starts, self.start_starts(go_on), &mut map, go_on);
+            self.follow(&starts, self.start_starts(progress), &mut map, progress);
         }
         map.lines.retain(|line| line.points.len() > 1);
         let corners = self.member(&[0.5; 2]).and_then(|member| member.law(&[0.5; 2]));
@@ -111,16 +112,16 @@ impl Family {
     }
 
     /// Traces the lines through `starts` that are on none yet.
-    fn follow(&self, of: &Equations<'_>, starts: Vec<Vec<f64>>, map: &mut Map, go_on: &dyn Fn() -> bool) {
+    fn follow(&self, of: &Equations<'_>, starts: Vec<Vec<f64>>, map: &mut Map, progress: &dyn Progress) {
         let mut known: Vec<Traced> = Vec::new();
         for y in starts {
-            if !go_on() {
+            if progress.stop() {
                 return;
             }
             if known.iter().any(|line| line.has(&y)) {
                 continue;
             }
-            let Some(line) = of.line(&y, go_on) else { continue };
+            let Some(line) = of.line(&y, progress) else { continue };
             let point = |y: &Vec<f64>| {
                 let (radii, shares) = y.split_at(of.radii());
                 let s = radii.first().map_or(self.radii[1], |s| s * of.unit);
@@ -160,14 +161,14 @@ impl Family {
     }
 
     /// Points on lines of cusps.
-    fn cusp_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+    fn cusp_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Cusp);
         if let (Some(adhesion), Some(factor)) = (self.adhesion(), self.adhesion_factor()) {
             // Along the adhesion every cusp of the law is one of the map.
             let other = 1 - adhesion;
             let mut starts = Vec::new();
             for share in even(CUSP_COLUMNS) {
-                if !go_on() {
+                if progress.stop() {
                     break;
                 }
                 let mut at = [0.5; 2];
@@ -188,7 +189,7 @@ impl Family {
             let row = shares.iter().map(|x| {
                 let at = [*x, *y];
                 let root = self.member(&at).map_or(f64::NAN, |member| member.root);
-                let cusps = if go_on() { self.cusps(&at) } else { Vec::new() };
+                let cusps = if progress.stop() { Vec::new() } else { self.cusps(&at) };
                 cusps.iter().map(|cusp| [cusp.contact_radius, cusp.value - root]).collect()
             });
             rows.push(row.collect());
@@ -225,7 +226,7 @@ impl Family {
     }
 
     /// Points on landing lines: where the number of snaps changes without a birth.
-    fn landing_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+    fn landing_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Landing);
         // Along the axis that keeps the gap, where one does: a table serves a whole column.
         let along = usize::from(self.keeps_gap(1) || !self.keeps_gap(0));
@@ -233,7 +234,7 @@ impl Family {
         for share in even(LANDING_COLUMNS) {
             let mut at = [share; 2];
             at[along] = 0.0;
-            for change in self.changes(along, &at, &even(LANDING_SAMPLES), NEARLY, go_on) {
+            for change in self.changes(along, &at, &even(LANDING_SAMPLES), NEARLY, progress) {
                 if let Cause::Landing([outer, inner]) = change.cause {
                     at[along] = change.share;
                     let y = [outer / of.unit, inner / of.unit, at[0], at[1]];
@@ -245,7 +246,7 @@ impl Family {
     }
 
     /// Points at which the start of the path is a limit point.
-    fn start_starts(&self, go_on: &dyn Fn() -> bool) -> Vec<Vec<f64>> {
+    fn start_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Start);
         let off = |at: At<'_>| {
             let member = self.member(at).ok()?;
@@ -255,7 +256,7 @@ impl Family {
         let mut starts = Vec::new();
         for along in [0, 1] {
             for held in &shares {
-                if !go_on() {
+                if progress.stop() {
                     return starts;
                 }
                 let place = |share: f64| {
@@ -276,7 +277,7 @@ impl Family {
     }
 
     /// Says of every line where the number of snaps changes across it.
-    pub fn mark_changes(&self, map: &mut Map, go_on: &dyn Fn() -> bool) {
+    pub fn mark_changes(&self, map: &mut Map, progress: &dyn Progress) {
         for line in &mut map.lines {
             let points = &line.points;
             let changes = (0..points.len()).map(|k| {
@@ -289,20 +290,20 @@ impl Family {
                         .map(|share| share.clamp(0.0, 1.0))
                 };
                 let snaps = |by| self.passage(&aside(by)).map(|passage| passage.snaps);
-                go_on() && snaps(-ASIDE) != snaps(ASIDE)
+                !progress.stop() && snaps(-ASIDE) != snaps(ASIDE)
             });
             line.changes = changes.collect();
         }
     }
 
-    /// The snaps on a grid of so many columns and rows, cell by cell; `None` when `go_on` said no.
-    pub fn counts(&self, [columns, rows]: [u32; 2], go_on: &dyn Fn() -> bool) -> Option<Counts> {
+    /// The snaps on a grid of so many columns and rows, cell by cell; `None` when `progress` said stop.
+    pub fn counts(&self, [columns, rows]: [u32; 2], progress: &dyn Progress) -> Option<Counts> {
         let shares = [even(columns), even(rows)];
         let mut cells = vec![vec![None; shares[0].len()]; shares[1].len()];
         // Column by column, so that a table serves a whole one.
         for (i, x) in shares[0].iter().enumerate() {
             for (j, y) in shares[1].iter().enumerate() {
-                if !go_on() {
+                if progress.stop() {
                     return None;
                 }
                 cells[j][i] = self.passage(&[*x, *y]).map(|passage| passage.snaps);

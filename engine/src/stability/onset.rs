@@ -5,6 +5,7 @@ use super::count::{Cause, EXACTLY};
 use super::family::{Family, FamilyError};
 use crate::elementary::pow;
 use crate::preset::Preset;
+use crate::progress::Progress;
 
 /// The group that is turned, and how far.
 const GROUP: &str = "groups.amplitude_over_wavelength";
@@ -31,7 +32,7 @@ impl Onset {
     ///
     /// # Errors
     /// The gap cannot be tabulated, or the path has no start.
-    pub fn of(preset: &Preset, go_on: &dyn Fn() -> bool) -> Result<Option<Self>, FamilyError> {
+    pub fn of(preset: &Preset, progress: &dyn Progress) -> Result<Option<Self>, FamilyError> {
         if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 {
             return Ok(None);
         }
@@ -48,9 +49,11 @@ impl Onset {
         samples.sort_by(f64::total_cmp);
         // As far as the first sample with a snap: the change lies before it.
         let snaps = |share: &f64| family.passage(&[*share]).is_some_and(|passage| passage.snaps > 0);
-        let Some(first) = samples.iter().position(|share| !go_on() || snaps(share)) else { return Ok(None) };
+        let Some(first) = samples.iter().position(|share| progress.stop() || snaps(share)) else {
+            return Ok(None);
+        };
         let from = first.saturating_sub(1);
-        let changes = family.changes(0, &[0.0], &samples[from..=first], EXACTLY, go_on);
+        let changes = family.changes(0, &[0.0], &samples[from..=first], EXACTLY, progress);
         let change = changes.into_iter().find(|change| change.snaps[0] == 0 && change.snaps[1] > 0);
         Ok(change.map(|change| Self {
             amplitude_over_wavelength: family.axes[0].value(change.share),

@@ -7,8 +7,9 @@ use super::stage::{Cell, CurveMinima, Fitting, Loop, PresetValues, StartState, U
 use crate::case::Case;
 use crate::preset::Preset;
 use crate::problem::Control;
+use crate::progress::Progress;
 use crate::quasistatic::cycle::Areas;
-use crate::quasistatic::overlap::passed_while;
+use crate::quasistatic::overlap::passed;
 use crate::quasistatic::{Losses, PathStop};
 use crate::units::Quantity as Unit;
 
@@ -30,21 +31,21 @@ struct Work<'a> {
     paths: Vec<(Control, Result<UnloadingPath, Fault>)>,
     loops: Vec<(Control, Result<Loop, Fault>)>,
     fitting: Option<Result<Fitting, Fault>>,
-    go_on: &'a dyn Fn() -> bool,
+    progress: &'a dyn Progress,
 }
 
-/// The `wanted` quantities of `preset`; `go_on` is asked now and then, `None` when it said no.
-pub fn measure(preset: &Preset, wanted: &[Column], go_on: &dyn Fn() -> bool) -> Option<Measured> {
+/// The `wanted` quantities of `preset`; `progress` is asked now and then, `None` when it said stop.
+pub fn measure(preset: &Preset, wanted: &[Column], progress: &dyn Progress) -> Option<Measured> {
     let ground = PresetValues::new(preset);
     let (paths, loops) = (Vec::new(), Vec::new());
-    let mut work = Work { preset, ground, start: None, line: None, paths, loops, fitting: None, go_on };
+    let mut work = Work { preset, ground, start: None, line: None, paths, loops, fitting: None, progress };
     let mut measured = Measured { cells: Vec::with_capacity(wanted.len()), fault: None };
     for column in wanted {
         let cell = work.cell(column).unwrap_or_else(|fault| {
             measured.fault.get_or_insert(fault);
             None
         });
-        if !go_on() {
+        if progress.stop() {
             return None;
         }
         measured.cells.push(cell.map(|cell| work.shown(cell, column.quantity)));
@@ -95,7 +96,7 @@ impl Work<'_> {
 
     fn start(&mut self) -> Result<&StartState, Fault> {
         let made = self.start.get_or_insert_with(|| {
-            let case = Case::prepare(self.preset, &mut |_| (self.go_on)()).map_err(|e| Fault::of_case(&e))?;
+            let case = Case::prepare(self.preset, self.progress).map_err(|e| Fault::of_case(&e))?;
             Ok(StartState { case })
         });
         made.as_ref().map_err(Clone::clone)
@@ -103,10 +104,10 @@ impl Work<'_> {
 
     fn line(&mut self) -> Result<&CurveMinima, Fault> {
         if self.line.is_none() {
-            let go_on = self.go_on;
+            let progress = self.progress;
             let made = self
                 .start()
-                .and_then(|start| CurveMinima::new(&start.case, go_on).map_err(|e| Fault::of_case(&e)));
+                .and_then(|start| CurveMinima::new(&start.case, progress).map_err(|e| Fault::of_case(&e)));
             self.line = Some(made);
         }
         match &self.line {
@@ -123,7 +124,7 @@ impl Work<'_> {
                 let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
                     return Err(Fault::incomplete("no curve"));
                 };
-                let unloading = start.case.unload_while(&line.curve, control, Losses::Once, self.go_on);
+                let unloading = start.case.unload_while(&line.curve, control, Losses::Once, self.progress);
                 Ok(UnloadingPath { unloading: unloading.map_err(|e| Fault::of_case(&e))? })
             });
             self.paths.push((control, made));
@@ -135,9 +136,9 @@ impl Work<'_> {
     fn whole(&mut self, control: Control) -> Result<&Loop, Fault> {
         let known = self.loops.iter().position(|(known, _)| *known == control);
         let at = known.unwrap_or_else(|| {
-            let go_on = self.go_on;
+            let progress = self.progress;
             let made = self.start().and_then(|start| {
-                let cycle = start.case.cycle(control, None, Areas::No, &|_| go_on());
+                let cycle = start.case.cycle(control, None, Areas::No, progress);
                 Ok(Loop { cycle: cycle.map_err(|e| Fault::of_case(&e))? })
             });
             self.loops.push((control, made));
@@ -147,14 +148,14 @@ impl Work<'_> {
     }
 
     fn fitting(&mut self) -> Result<&Fitting, Fault> {
-        let made = self.fitting.get_or_insert_with(|| Fitting::new(self.preset, self.go_on));
+        let made = self.fitting.get_or_insert_with(|| Fitting::new(self.preset, self.progress));
         made.as_ref().map_err(Clone::clone)
     }
 
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {
         let pieces = self.path(control)?.unloading.pieces.clone();
-        let go_on = self.go_on;
-        let passed = passed_while(&self.line()?.curve, &pieces, &mut || go_on());
+        let progress = self.progress;
+        let passed = passed(&self.line()?.curve, &pieces, progress);
         let length = |sum: f64, [from, to]: [f64; 2]| sum + (from - to);
         let whole = pieces.iter().copied().fold(0.0, length);
         let lost =

@@ -9,6 +9,7 @@ use super::quantity::{Column, USUAL};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::schema::CHOOSERS;
 use crate::preset::{Preset, Value};
+use crate::progress::Progress;
 use crate::text::{closest, quote};
 use std::borrow::Cow;
 use toml::Spanned;
@@ -114,11 +115,11 @@ impl Spec {
         Ok(preset)
     }
 
-    /// The quantities of a row; `None` when `go_on` said no. Whatever goes wrong is a fault of the row.
+    /// The quantities of a row; `None` when `progress` said stop. Whatever goes wrong is a fault of the row.
     #[must_use]
-    pub fn measure(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<Measured> {
+    pub fn measure(&self, row: u64, progress: &dyn Progress) -> Option<Measured> {
         match self.problem(row) {
-            Ok(preset) => measure(&preset, &self.columns, go_on),
+            Ok(preset) => measure(&preset, &self.columns, progress),
             Err(fault) => Some(self.lost(fault)),
         }
     }

@@ -9,6 +9,7 @@ use crate::fit::{Fit, Fitted, Options, fit_own};
 use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
+use crate::progress::Progress;
 use crate::quasistatic::cycle::{self, Cycle, CycleState};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
@@ -87,10 +88,10 @@ pub(super) struct Fitting {
 impl Fitting {
     /// The fit as `pulloff fit` makes it when nothing else is asked; one that did not come to its end, or whose values
     /// the points do not determine, is a fault.
-    pub(super) fn new(preset: &Preset, go_on: &dyn Fn() -> bool) -> Result<Self, Fault> {
+    pub(super) fn new(preset: &Preset, progress: &dyn Progress) -> Result<Self, Fault> {
         let free = preset.data.free().map(str::to_owned).collect();
         let options = Options { free, ..Options::default() };
-        let fit = fit_own(preset, &options, &mut |_| go_on()).map_err(|error| Fault::of_fit(&error))?;
+        let fit = fit_own(preset, &options, progress).map_err(|error| Fault::of_fit(&error))?;
         match &fit.direction {
             _ if fit.ending != Ending::Converged => Err(Fault::bad_fit("it did not converge")),
             Some(direction) => Err(Fault::bad_fit(direction)),
@@ -187,8 +188,8 @@ impl StartState {
 }
 
 impl CurveMinima {
-    pub(super) fn new(case: &Case, go_on: impl FnMut() -> bool) -> Result<Self, CaseError> {
-        let mut curve = case.curve_in(Detail::Borders, go_on)?;
+    pub(super) fn new(case: &Case, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let mut curve = case.curve_in(Detail::Borders, progress)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
             Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }

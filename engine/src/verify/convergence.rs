@@ -16,6 +16,7 @@ use super::settings::{Settings, VerifyError};
 use crate::disc::Basis;
 use crate::elementary::{ln, pow};
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::ritz::{Grading, NewtonSettings, Rings, solve};
 use crate::theory::jkr::Jkr;
 use crate::theory::root::halved;
@@ -95,7 +96,7 @@ fn group(study: &Study, finest: usize) -> Result<Group, VerifyError> {
     let problem = sphere(study.work_of_adhesion).reduced();
     let mut states = Vec::new();
     for rings in [finest / 4, finest / 2, finest] {
-        let basis = Rings::shared_with(rings, study.grading, &mut |_| true)?;
+        let basis = Rings::shared_with(rings, study.grading, &Unwatched)?;
         let control = Control::Displacement;
         let solved = solve(&*basis, &problem, control, APPROACH, 3.0 * radius, NewtonSettings::default());
         let state = solved.map(|solved| [solved.evaluation.contact_radius, solved.evaluation.force]);

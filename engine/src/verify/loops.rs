@@ -17,6 +17,7 @@ use crate::elementary::ln;
 use crate::gap::Shape;
 use crate::gap::shapes::{Harmonic, Harmonics};
 use crate::problem::{Control, Problem};
+use crate::progress::Unwatched;
 use crate::quasistatic::cycle::{Areas, Cycle, EVEN, Event, EventKind, Setting, Turn, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -205,10 +206,10 @@ fn run(work_of_adhesion: f64) -> Result<Option<Cycle>, VerifyError> {
     };
     let shape = Shape::WavySphere { radius_of_curvature, amplitude, wavelength };
     let reduced = Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced();
-    let table = Arc::new(Table::new(reduced.gap, fig_9().start, &mut || true)?);
+    let table = Arc::new(Table::new(reduced.gap, fig_9().start, &Unwatched)?);
     let (control, turn) = (Control::Displacement, Turn::Approach(TURN));
     let setting = Setting { control, turn, areas: Areas::Yes, mobility: EVEN };
-    Ok(cycle(&table, work_of_adhesion, &setting, &|_| true).ok())
+    Ok(cycle(&table, work_of_adhesion, &setting, &Unwatched).ok())
 }
 
 fn of_loop(known: &Known, found: Option<&Cycle>) -> Group {

@@ -6,6 +6,7 @@ use super::cases::Figure;
 use super::row::{Group, Row};
 use crate::disc::{Table, TableError};
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::stability::Law;
 use crate::stability::law::adhesion_of;
 use crate::theory::Exact;
@@ -27,7 +28,7 @@ const ROUNDS: usize = 80;
 /// The gap cannot be tabulated.
 pub fn group(figure: &Figure) -> Result<Group, TableError> {
     let problem = figure.problem.reduced();
-    let panels = Table::new(problem.gap.clone(), figure.start, &mut || true)?.up_to(figure.start)?;
+    let panels = Table::new(problem.gap.clone(), figure.start, &Unwatched)?.up_to(figure.start)?;
     let law = |control| Law { panels: panels.clone(), control };
     let exact = Exact::of(&figure.problem);
     let gamma = figure.problem.work_of_adhesion;

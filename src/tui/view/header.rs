@@ -59,7 +59,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         spans.push(Span::raw(format!("  rings {count}")));
     }
     if model.is_computing() {
-        let far = model.progress.map_or_else(String::new, |progress| format!(" {}", progress.text()));
+        let far = model.stage.map_or_else(String::new, |stage| format!(" {}", stage.text()));
         spans.push(Span::styled(format!("  computing{far}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     if model.curve.is_some() && !model.is_computing() && !model.shows_its_curve() {

@@ -190,7 +190,8 @@ impl Path<'_, '_> {
                 force: held.force,
             });
         }
-        if (self.go_on)(self.progress(held)) { Ok(()) } else { Err(CycleError::Cancelled) }
+        self.progress.report(self.share(held));
+        if self.progress.stop() { Err(CycleError::Cancelled) } else { Ok(()) }
     }
 
     /// Why no further step could be taken.
@@ -208,7 +209,7 @@ impl Path<'_, '_> {
     }
 
     /// How much of the loop is done, roughly.
-    fn progress(&self, held: &Held) -> f64 {
+    fn share(&self, held: &Held) -> f64 {
         let turn = self.setting.turn;
         let share = self.measure(held) / turn.value();
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };

@@ -8,6 +8,7 @@ use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::Control;
+use crate::progress::Progress;
 use nalgebra::DVector;
 use std::sync::Arc;
 
@@ -32,7 +33,7 @@ pub(super) enum End {
 pub(super) struct Path<'a, 'b> {
     pub balance: &'a Balance<'b>,
     pub setting: &'a Setting<'a>,
-    pub go_on: &'a dyn Fn(f64) -> bool,
+    pub progress: &'a dyn Progress,
     pub events: Vec<Event>,
     pub states: Vec<CycleState>,
     pub piece: usize,
@@ -58,7 +59,7 @@ pub fn cycle(
     table: &Arc<Table>,
     gamma: f64,
     setting: &Setting<'_>,
-    go_on: &dyn Fn(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Result<Cycle, CycleError> {
     let mut reach = match setting.turn {
         Turn::Radius(radius) => BEYOND * radius,
@@ -73,7 +74,7 @@ pub fn cycle(
         if !reach.is_finite() {
             return Err(CycleError::BadTurn(setting.turn.value()));
         }
-        let ground = Ground::new(Arc::clone(table), reach, &mut || go_on(0.0))?;
+        let ground = Ground::new(Arc::clone(table), reach, progress)?;
         let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
         let far_enough = match setting.turn {
             Turn::Approach(approach) => BEYOND * ground.can_touch_up_to(approach) <= ground.reach(),
@@ -83,7 +84,7 @@ pub fn cycle(
             reach = 1.5 * ground.reach();
             continue;
         }
-        match cycle_on(&ground, gamma, setting, go_on) {
+        match cycle_on(&ground, gamma, setting, progress) {
             Err(
                 CycleError::BeyondGap { .. }
                 | CycleError::RadiusBeyondGap { .. }
@@ -108,7 +109,7 @@ fn highest(cycle: &Cycle) -> f64 {
 
 /// The loop of a gap with the work of adhesion `gamma` (E* = 1), as far out as `ground` goes: a loop that comes to its end is an error.
 ///
-/// `go_on` is asked before each step with the share of the way that is done, 0 to 1, roughly.
+/// `progress` is asked before each step with the share of the way that is done, 0 to 1, roughly.
 ///
 /// # Errors
 /// [`CycleError`].
@@ -116,7 +117,7 @@ pub fn cycle_on(
     ground: &Ground,
     gamma: f64,
     setting: &Setting<'_>,
-    go_on: &dyn Fn(f64) -> bool,
+    progress: &dyn Progress,
 ) -> Result<Cycle, CycleError> {
     // Without adhesion all controls rise together, and the approach is the one that is stepped.
     let stepped = if gamma > 0.0 { setting.control } else { Control::Displacement };
@@ -124,7 +125,7 @@ pub fn cycle_on(
     let path = Path {
         balance: &balance,
         setting,
-        go_on,
+        progress,
         events: Vec::new(),
         states: Vec::new(),
         piece: 0,
@@ -136,9 +137,11 @@ pub fn cycle_on(
     path.whole()
 }
 
-/// The place of the least gap; the axis where it is one of several.
-pub fn first_crest(ground: &Ground) -> Option<Crest> {
+/// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
+pub fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
     const PER_WAVE: f64 = 40.0;
+    /// Radii at which the gap is looked at between two questions.
+    const TOGETHER: usize = 64;
     let reach = ground.reach();
     let steps = (reach * PER_WAVE / ground.wave).ceil().clamp(400.0, 100_000.0);
     let value = |r: f64| ground.gap.jet(r).value;
@@ -146,9 +149,16 @@ pub fn first_crest(ground: &Ground) -> Option<Crest> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let count = steps as usize;
     let grid = (0..=count).map(|k| reach * k as f64 / steps);
-    let radii = grid.chain(ground.breaks.iter().copied());
-    let (best, _) =
-        radii.map(|r| (r, value(r))).filter(|(_, h)| h.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let radii: Vec<f64> = grid.chain(ground.breaks.iter().copied()).collect();
+    let mut least: Option<(f64, f64)> = None;
+    for radii in radii.chunks(TOGETHER) {
+        if progress.stop() {
+            return None;
+        }
+        let found = radii.iter().map(|r| (*r, value(*r))).filter(|(_, h)| h.is_finite());
+        least = least.into_iter().chain(found).min_by(|a, b| a.1.total_cmp(&b.1));
+    }
+    let (best, _) = least?;
     if best <= 0.0 && !ground.is_dimpled() {
         return Some(Crest { radius: 0.0, gap: value(0.0) });
     }
@@ -217,7 +227,11 @@ impl Path<'_, '_> {
         {
             return Err(CycleError::RadiusBeyondGap { radius, known: ground.reach() });
         }
-        let crest = first_crest(ground).ok_or(CycleError::NeverTouches { searched: ground.reach() })?;
+        let Some(crest) = first_crest(ground, self.progress) else {
+            let searched = ground.reach();
+            let stopped = self.progress.stop();
+            return Err(if stopped { CycleError::Cancelled } else { CycleError::NeverTouches { searched } });
+        };
         let first = match setting.control {
             Control::Force => 0.0,
             Control::Displacement | Control::Stiffness(_) => crest.gap,

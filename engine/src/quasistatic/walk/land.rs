@@ -7,6 +7,7 @@ use super::walker::{At, Walk};
 use crate::annuli::{AnnuliError, Contacts, Ground};
 use crate::continuation::Vector;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::cycle::path::first_crest;
 use crate::quasistatic::cycle::{Balance, CycleError, CycleState, Direction, EVEN, Held, Passed, PassedKind};
 use crate::quasistatic::unload::{Event, EventKind};
@@ -201,7 +202,7 @@ impl Walk<'_> {
         for _ in 0..LONGER {
             let ground = self.ground(radius, 0.0)?;
             let whole = ground.reach() >= self.equilibrium().table.end() * (1.0 - 1e-9);
-            let crest = first_crest(&ground);
+            let crest = first_crest(&ground, &Unwatched);
             let Some(crest) = crest else {
                 if whole {
                     return Err(WalkFailure::NeverTouches);

@@ -2,6 +2,7 @@
 
 use crate::annuli::Ground;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::cycle::Balance;
 use crate::quasistatic::equilibrium::Equilibrium;
@@ -69,7 +70,7 @@ impl Walk<'_> {
         let table = &self.equilibrium().table;
         let mut reach = BEYOND * radius.max(self.range[0]);
         loop {
-            let ground = Ground::new(Arc::clone(table), reach, &mut || true);
+            let ground = Ground::new(Arc::clone(table), reach, &Unwatched);
             let ground = ground.map_err(|error| WalkFailure::Edges(error.to_string()))?;
             let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
             if whole || BEYOND * ground.can_touch_up_to(delta).max(radius) <= ground.reach() {

@@ -6,6 +6,7 @@ use crate::store::{Overwrite, Store};
 use crate::tui::copy::text;
 use crate::tui::overlay::Content;
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use pulloff_engine::progress::Unwatched;
 use ratatui::layout::{Position, Rect};
 
 const SIZE: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
@@ -368,7 +369,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     let spec = pulloff_engine::sweep::Spec::read(&load, "a.toml", &spec).unwrap();
     assert_eq!(spec.rows, 101);
     for row in [0, 17, 50, 100] {
-        let cells = spec.measure(row, &|| true).unwrap().cells;
+        let cells = spec.measure(row, &Unwatched).unwrap().cells;
         let found = cells[0].map(|cell| cell.to_string()).unwrap_or_default();
         let at = usize::try_from(row).unwrap();
         let Some(pulloff_engine::preset::Value::Number(x)) = spec.values(row).pop() else { panic!("{row}") };

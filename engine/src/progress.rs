@@ -1,0 +1,91 @@
+//! Who watches a long computation: it is told how far the computation is, and asked whether to end it.
+
+/// Watches a long computation.
+///
+/// Every function of this crate that may take long takes one. It asks [`Progress::stop`] at least every 50 ms, mostly far more
+/// often: an answer should be cheap. A function without a parameter that says whether to stop is a `Progress`, too.
+pub trait Progress {
+    /// Takes the share of the work that is done, from 0 to 1, roughly.
+    fn report(&self, share: f64) {
+        _ = share;
+    }
+
+    /// Whether to end, for the result is not wanted any more. Once yes, it must stay yes.
+    fn stop(&self) -> bool;
+}
+
+impl<F: Fn() -> bool> Progress for F {
+    fn stop(&self) -> bool {
+        self()
+    }
+}
+
+/// Nobody watches: the computation goes on to its end.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unwatched;
+
+impl Progress for Unwatched {
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// One part of a longer computation: its share is a share of that part.
+pub(crate) struct Part<'a> {
+    whole: &'a dyn Progress,
+    from: f64,
+    to: f64,
+}
+
+impl<'a> Part<'a> {
+    /// The part of `whole` between these two shares.
+    pub(crate) fn new(whole: &'a dyn Progress, [from, to]: [f64; 2]) -> Self {
+        whole.report(from);
+        Self { whole, from, to }
+    }
+}
+
+impl Progress for Part<'_> {
+    fn report(&self, share: f64) {
+        self.whole.report(self.from + (self.to - self.from) * share.clamp(0.0, 1.0));
+    }
+
+    fn stop(&self) -> bool {
+        self.whole.stop()
+    }
+}
+
+/// Keeps the shares that it is told, and stops from the share `stop` on: for tests.
+#[cfg(test)]
+pub(crate) struct Heard {
+    pub(crate) told: std::cell::RefCell<Vec<f64>>,
+    stop: f64,
+}
+
+#[cfg(test)]
+impl Heard {
+    pub(crate) fn until(stop: f64) -> Self {
+        Self { told: std::cell::RefCell::default(), stop }
+    }
+}
+
+#[cfg(test)]
+impl Progress for Heard {
+    fn report(&self, share: f64) {
+        self.told.borrow_mut().push(share);
+    }
+
+    fn stop(&self) -> bool {
+        self.told.borrow().last().is_some_and(|share| *share >= self.stop)
+    }
+}
+
+/// Says stop from the question with this number on, the first being 0: for tests.
+#[cfg(test)]
+pub(crate) fn until(questions: usize) -> impl Fn() -> bool {
+    let asked = std::cell::Cell::new(0);
+    move || {
+        asked.set(asked.get() + 1);
+        asked.get() > questions
+    }
+}

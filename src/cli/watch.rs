@@ -1,0 +1,81 @@
+//! What watches a long command: a bar on a terminal, and the signals that end it.
+
+use super::Failure;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pulloff_engine::progress::Progress;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+/// The signals that stop a command: the first lets it keep what is done, the second ends it at once.
+pub struct Stop {
+    signal: Arc<AtomicUsize>,
+}
+
+impl Stop {
+    /// Catches them from now on.
+    pub fn catch() -> Result<Self, Failure> {
+        let signal = Arc::new(AtomicUsize::new(0));
+        let again = Arc::new(AtomicBool::new(false));
+        let catch = |number: i32, value: usize| -> io::Result<()> {
+            // Before the flag is set, so that it acts on the next one.
+            flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&again))?;
+            flag::register(number, Arc::clone(&again))?;
+            flag::register_usize(number, Arc::clone(&signal), value).map(drop)
+        };
+        catch(SIGINT, 2)
+            .and_then(|()| catch(SIGTERM, 15))
+            .map_err(|cause| Failure::System { what: "cannot catch signals".to_owned(), cause })?;
+        Ok(Self { signal })
+    }
+
+    /// The signal that has come.
+    pub fn signal(&self) -> Option<u8> {
+        u8::try_from(self.signal.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
+    }
+}
+
+impl Progress for Stop {
+    fn stop(&self) -> bool {
+        self.signal().is_some()
+    }
+}
+
+/// The share that is done, shown on a terminal once the command takes longer than a moment.
+pub struct Bar<'a> {
+    bar: ProgressBar,
+    stop: Option<&'a Stop>,
+}
+
+impl<'a> Bar<'a> {
+    /// For a command that begins now. Without `stop` a signal ends the program, as ever.
+    pub fn begin(stop: Option<&'a Stop>) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_secs(1));
+        Self { bar, stop }
+    }
+}
+
+impl Progress for Bar<'_> {
+    fn report(&self, share: f64) {
+        // A share of a hundred.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        self.bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
+    }
+
+    fn stop(&self) -> bool {
+        self.stop.is_some_and(Progress::stop)
+    }
+}
+
+impl Drop for Bar<'_> {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
