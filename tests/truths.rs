@@ -190,7 +190,7 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
 fn verdict(case: &Case, s: f64) -> Admissibility {
     let curve = case.curve(&Unwatched).unwrap();
     let state = case.basis.equilibrium(&case.reduced, s / case.units().length).unwrap();
-    curve.equilibrium.judge().judge(state.contact_radius, state.approach)
+    curve.equilibrium.judge().judge(state.contact_radius, state.approach, &Unwatched)
 }
 
 #[test]
@@ -237,7 +237,7 @@ fn of_ninety_seven_radii_so_many_are_inadmissible() {
         let judge = curve.equilibrium.judge();
         let holds = |s: f64| {
             let state = case.basis.equilibrium(&case.reduced, s).unwrap();
-            judge.judge(s, state.approach).holds
+            judge.judge(s, state.approach, &Unwatched).holds
         };
         let found = (0..97).filter(|i| !holds(0.02 + 0.005 * f64::from(*i))).count();
         assert_eq!(found, count, "{amplitude} {wavelength} {gamma}");

@@ -82,7 +82,7 @@ fn cusps_in_the_amplitude_are_those_known_and_their_lines_pass_them() {
         let axes = vec![along, axis(ADHESION, [1e-3, 1.0], true)];
         let level = axes[1].share(adhesion);
         let family = Family::new(&preset, axes).unwrap();
-        let lines = family.explicit_cusps().unwrap().unwrap();
+        let lines = family.explicit_cusps(&Unwatched).unwrap().unwrap();
         for row in rows(&known[name]) {
             let [s, amplitude] = [0, 1].map(|k| row[k].as_f64().unwrap());
             let hit =
@@ -111,7 +111,7 @@ fn swallowtails_are_those_known() {
     };
     for (control, ratio) in [(Control::Displacement, 1.0), (Control::Force, 9.0)] {
         let family = family(control);
-        let lines = family.explicit_cusps().unwrap().unwrap();
+        let lines = family.explicit_cusps(&Unwatched).unwrap().unwrap();
         let tips: Vec<_> = lines.iter().flat_map(|(_, tips)| tips).collect();
         for row in rows(&data()["swallowtails"]) {
             let [s, amplitude, adhesion] = [0, 1, 2].map(|k| row[k].as_f64().unwrap());
@@ -324,7 +324,7 @@ fn on_both_sides_of_a_cusp_the_limit_points_differ_by_two() {
 fn far_from_the_axis_the_first_pairs_are_born_where_the_envelope_says() {
     let axes = vec![axis(AMPLITUDE, [0.0, 0.002], false), axis(ADHESION, [1e-3, 30.0], true)];
     let family = Family::new(&waves(Control::Displacement, 0.5, 0.05, 0.025), axes).unwrap();
-    let lines = family.explicit_cusps().unwrap().unwrap();
+    let lines = family.explicit_cusps(&Unwatched).unwrap().unwrap();
     let tips: Vec<_> = lines.iter().flat_map(|(_, tips)| tips).collect();
     for (s, [amplitude, adhesion]) in [(0.17, [3e-3, 1.1e-2]), (0.47, [5.5e-4, 1.5e-3])] {
         let tip = tips

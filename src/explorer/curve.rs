@@ -102,9 +102,9 @@ impl ProblemCurve {
         let start = curve.equilibrium.explicit(curve.outermost());
         Ok(Self {
             preset: preset.clone(),
-            start: start.as_ref().map(|point| curve.equilibrium.admissibility(point)),
+            start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
             inadmissible: None,
-            theory: Theory::of(&case, &curve),
+            theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Cancelled)?,
             groups: Groups::of(&case.problem, preset.range_of_action()),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: start.as_ref().map(|point| curve.equilibrium.stiffness(point)),

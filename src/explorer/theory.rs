@@ -2,6 +2,7 @@
 
 use pulloff_engine::case::Case;
 use pulloff_engine::gap::Shape;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Curve;
 use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::{KesariLew, Side};
@@ -46,8 +47,8 @@ pub struct Envelope {
 }
 
 impl Theory {
-    /// The theory of `case` from beyond its start to beyond its end.
-    pub fn of(case: &Case, curve: &Curve) -> Self {
+    /// The theory of `case` from beyond its start to beyond its end; `None` when `progress` said stop.
+    pub fn of(case: &Case, curve: &Curve, progress: &dyn Progress) -> Option<Self> {
         let units = case.units();
         let (start, end) = (case.start * units.length, case.end * units.length);
         let [from, to] = [BEYOND[0] * start, BEYOND[1] * end];
@@ -65,21 +66,22 @@ impl Theory {
         let inward = steps(0.0, end - to).map(|less| end - less).skip(1);
         let fine: Vec<f64> = steps(from, start).chain(own).chain(inward).chain([to]).collect();
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
-        Self {
-            smooth: jkr.map_or_else(Vec::new, |jkr| along(&jkr, &smooth)),
+        Some(Self {
+            smooth: jkr.map_or_else(|| Some(Vec::new()), |jkr| along(&jkr, &smooth, progress))?,
             smooth_name: jkr.as_ref().map_or("no radius", Disc::name),
-            exact: along(&*exact, &fine),
+            exact: along(&*exact, &fine, progress)?,
             exact_name: exact.name(),
             envelope: envelope(case, &smooth),
-        }
+        })
     }
 }
 
-fn along(disc: &dyn Disc, radii: &[f64]) -> Vec<Place> {
+/// The states of these radii; `None` when `progress` said stop.
+fn along(disc: &dyn Disc, radii: &[f64], progress: &dyn Progress) -> Option<Vec<Place>> {
     // Without its energy a state costs one transform of the gap.
     let place = |&s: &f64| {
         let state = disc.equilibrium(s, 0.0);
-        [state.approach, state.force, s]
+        (!progress.stop()).then_some([state.approach, state.force, s])
     };
     radii.iter().map(place).collect()
 }

@@ -18,6 +18,7 @@ use super::panels::{Panel, Panels};
 use super::span::Place;
 use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
 use crate::gap::panels::Variable;
+use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
 use std::num::NonZeroUsize;
@@ -286,8 +287,15 @@ pub struct Least {
 /// The smallest gap around the disc among the radii at which it can become negative first.
 ///
 /// Once the gap is below `overlap` only a few crests more are looked at, and without that no more than some hundred. The panels
-/// must reach to `end`.
-pub fn least_gap(panels: &Panels, s: f64, delta: f64, end: f64, overlap: f64) -> Least {
+/// must reach to `end`. Where `progress` says stop, it is given up.
+pub fn least_gap(
+    panels: &Panels,
+    s: f64,
+    delta: f64,
+    end: f64,
+    overlap: f64,
+    progress: &dyn Progress,
+) -> Least {
     let first = panels.place(s).panel;
     let mut work = 0;
     let pieces = below(panels, s, delta, end);
@@ -296,6 +304,9 @@ pub fn least_gap(panels: &Panels, s: f64, delta: f64, end: f64, overlap: f64) ->
     let mut least: Option<[f64; 2]> = None;
     let mut left = CRESTS;
     for run in pieces.chunk_by(|(a, before), (b, after)| b - a <= 1 && before[1] >= 1.0 && after[0] <= -1.0) {
+        if progress.stop() {
+            return Least { at: least, given_up: Some(s) };
+        }
         let here = if run.len() <= MANY {
             run.iter().map(on).min_by(smallest)
         } else {

@@ -15,6 +15,7 @@ use super::span::panel_of;
 use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
+use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
@@ -154,9 +155,11 @@ impl Target {
 }
 
 impl Sources {
-    /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`.
-    pub fn new(gap: &dyn Gap, spans: &[Span], breaks: &[f64]) -> Self {
-        let parts = spans.iter().map(|span| Source::new(gap, *span)).collect();
+    /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`; `None` when `progress`
+    /// said stop.
+    pub fn new(gap: &dyn Gap, spans: &[Span], breaks: &[f64], progress: &dyn Progress) -> Option<Self> {
+        let part = |span: &Span| (!progress.stop()).then(|| Source::new(gap, *span));
+        let parts = spans.iter().map(part).collect::<Option<_>>()?;
         let mut jumps = Vec::new();
         for &q in breaks {
             // A few units in the last place off: the break is known to the last bit, and on which side it lies is not.
@@ -167,7 +170,7 @@ impl Sources {
                 jumps.push([q, jump]);
             }
         }
-        Self { parts, jumps }
+        Some(Self { parts, jumps })
     }
 
     /// Whether h' jumps at `base`.

@@ -156,6 +156,9 @@ impl Table {
     /// Whether the curve has a corner at the contact radius `s`, to rounding: the slope of the gap jumps there.
     pub fn has_corner(&self, s: f64) -> bool {
         const ROUNDING: f64 = 1e-15;
+        if matches!(self.form, Form::Power { .. } | Form::Waves { .. }) {
+            return false;
+        }
         let Ok(panels) = self.up_to(s * (1.0 + 1e-9)) else { return false };
         let at = panels.place(s).panel;
         let near = panels.list().iter().skip(at).take(2);
@@ -229,7 +232,8 @@ impl Table {
             }
             Form::Waves { curvature, waves } if few(waves, reach) => {
                 let spans = wave_spans(waves, reach, panels.smallest)?;
-                let samples = waves::transform(*curvature, waves, &spans);
+                let samples =
+                    waves::transform(*curvature, waves, &spans, progress).ok_or(TableError::Cancelled)?;
                 let rule = Rule::of(waves::NODES);
                 for (span, [value, slope]) in spans.into_iter().zip(samples) {
                     panels.push(span, rule, &value, &slope, false);
@@ -245,7 +249,8 @@ impl Table {
                             .map_err(TableError::TooFine)?,
                     ),
                 };
-                let sampled = Sources::new(&*self.gap, &spans, &breaks);
+                let sampled =
+                    Sources::new(&*self.gap, &spans, &breaks, progress).ok_or(TableError::Cancelled)?;
                 let rule = Rule::of(sources::NODES);
                 for span in spans {
                     if progress.stop() {

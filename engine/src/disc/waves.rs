@@ -13,6 +13,7 @@ use super::chebyshev::Rule;
 use crate::elementary::{sin, sin_cos};
 use crate::gap::Wave;
 use crate::gap::panels::Span;
+use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
@@ -33,8 +34,13 @@ const MORE: f64 = 14.0;
 const GROUP: usize = 4;
 const KEPT: usize = 256;
 
-/// g and g' at the nodes of each of `spans`, which are panels in the radius itself.
-pub fn transform(curvature: f64, waves: &[Wave], spans: &[Span]) -> Vec<[[f64; NODES]; 2]> {
+/// g and g' at the nodes of each of `spans`, which are panels in the radius itself; `None` when `progress` said stop.
+pub fn transform(
+    curvature: f64,
+    waves: &[Wave],
+    spans: &[Span],
+    progress: &dyn Progress,
+) -> Option<Vec<[[f64; NODES]; 2]>> {
     let rule = Rule::of(NODES);
     let mut samples: Vec<[[f64; NODES]; 2]> = spans
         .iter()
@@ -43,12 +49,15 @@ pub fn transform(curvature: f64, waves: &[Wave], spans: &[Span]) -> Vec<[[f64; N
             [radii.map(|a| curvature * a * a), radii.map(|a| 2.0 * curvature * a)]
         })
         .collect();
-    let Some(farthest) = spans.last().map(|span| span.hi) else { return samples };
+    let Some(farthest) = spans.last().map(|span| span.hi) else { return Some(samples) };
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
     let theta = &*Angles::of(PER_RADIAN * steepest * farthest + MORE);
     for wave in waves {
         let mut shared: Option<(f64, Shared)> = None;
         for (span, samples) in spans.iter().zip(&mut samples) {
+            if progress.stop() {
+                return None;
+            }
             let [centre, half] = span.line();
             if shared.as_ref().is_none_or(|(width, _)| width.to_bits() != half.to_bits()) {
                 shared = Some((half, Shared::new(theta, wave.wavenumber * half)));
@@ -58,7 +67,7 @@ pub fn transform(curvature: f64, waves: &[Wave], spans: &[Span]) -> Vec<[[f64; N
             }
         }
     }
-    samples
+    Some(samples)
 }
 
 /// g, ∫₀ᵃ g, and g', g'', g''' at one radius, without a table.

@@ -26,7 +26,7 @@ use crate::elementary::{pow, sin};
 use crate::gap::wave_index;
 use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
-use crate::progress::{Progress, Unwatched};
+use crate::progress::Progress;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -111,9 +111,9 @@ impl Judge {
     }
 
     /// The admissibility of the state (s, δ), and the nearest crest whether it touches or not.
-    pub fn judge(&self, s: f64, delta: f64) -> Admissibility {
-        let found = self.verdict(s, delta, &Unwatched);
-        let nearest = match (found.nearest, self.nearest_crest(s, delta)) {
+    pub fn judge(&self, s: f64, delta: f64, progress: &dyn Progress) -> Admissibility {
+        let found = self.verdict(s, delta, progress);
+        let nearest = match (found.nearest, self.nearest_crest(s, delta, progress)) {
             (Some(a), Some(b)) => Some(if b.gap < a.gap { b } else { a }),
             (a, b) => a.or(b),
         };
@@ -127,7 +127,9 @@ impl Judge {
         let overlap = -ROUNDING * (delta.abs() + self.opening(s));
         let searched = if end > s {
             let panels = self.table.up_to_while(end, 0, progress).ok();
-            panels.map(|panels| outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap))
+            panels.map(|panels| {
+                outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap, progress)
+            })
         } else {
             None
         };
@@ -211,8 +213,9 @@ impl Judge {
         least.map(|(r, p)| (r, p, most))
     }
 
-    /// The minimum of the deformed gap outside that is smallest, near the edge; `None` where the gap only grows.
-    pub fn nearest_crest(&self, s: f64, delta: f64) -> Option<Crest> {
+    /// The minimum of the deformed gap outside that is smallest, near the edge; `None` where the gap only grows,
+    /// and where `progress` said stop.
+    pub fn nearest_crest(&self, s: f64, delta: f64, progress: &dyn Progress) -> Option<Crest> {
         let gap = &self.problem.gap;
         let mut radii = radii(s, gap.feature_length());
         // A measured gap ends, and is no number beyond.
@@ -224,10 +227,11 @@ impl Judge {
         radii.truncate(within);
         let panels = self.table.up_to(radii.last().copied()?).ok()?;
         radii.retain(|r| *r <= panels.reach());
-        let gaps = |radii: &[f64]| -> Vec<f64> {
-            radii.iter().map(|&r| outside::gap_from(&panels, s, delta, r)).collect()
+        let gaps = |radii: &[f64]| -> Option<Vec<f64>> {
+            let gap = |&r: &f64| (!progress.stop()).then(|| outside::gap_from(&panels, s, delta, r));
+            radii.iter().map(gap).collect()
         };
-        let w = if radii.len() < 3 { return None } else { gaps(&radii) };
+        let w = if radii.len() < 3 { return None } else { gaps(&radii)? };
         let minima = radii.windows(3).zip(w.windows(3)).filter(|(_, w)| w[1] <= w[0] && w[1] <= w[2]);
         let vertices = minima.map(|(r, w)| vertex([r[0], r[1], r[2]], [w[0], w[1], w[2]]));
         let (mut radius, mut least, mut width) = vertices.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -235,7 +239,7 @@ impl Judge {
         for _ in 0..2 {
             width *= 0.1;
             let near = [(radius - width).max(s), radius, (radius + width).min(panels.reach())];
-            let w = gaps(&near);
+            let w = gaps(&near)?;
             let [Some(&a), Some(&b), Some(&c)] = [w.first(), w.get(1), w.get(2)] else { return None };
             let (r, w, _) = vertex(near, [a, b, c]);
             (radius, least) = (r, w);
@@ -331,7 +335,7 @@ mod tests {
     }
 
     fn at(problem: &Reduced, judge: &Judge, basis: &dyn Basis, s: f64) -> Admissibility {
-        judge.judge(s, basis.equilibrium(problem, s).unwrap().approach)
+        judge.judge(s, basis.equilibrium(problem, s).unwrap().approach, &Unwatched)
     }
 
     /// The least gap from `s` to far outside among many radii, from the exact solution by quadrature.

@@ -25,6 +25,7 @@ use crate::disc::{Basis, Evaluation, Table};
 use crate::elementary::{exp2, log2};
 use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
+use crate::progress::Progress;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -211,10 +212,10 @@ impl Equilibrium {
         Judge::new(&self.problem, &self.table)
     }
 
-    /// Whether the state of a point is admissible.
-    pub fn admissibility(&self, point: &Point) -> Admissibility {
+    /// Whether the state of a point is admissible; where `progress` says stop, nothing is known of the gap outside.
+    pub fn admissibility(&self, point: &Point, progress: &dyn Progress) -> Admissibility {
         let [delta, _, s] = self.quantities(point.y());
-        self.judge().judge(s, delta)
+        self.judge().judge(s, delta, progress)
     }
 
     /// The slopes of the curve at a point.

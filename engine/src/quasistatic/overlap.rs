@@ -211,7 +211,7 @@ mod tests {
     fn holds(curve: &Curve, s: f64) -> bool {
         let equilibrium = &curve.equilibrium;
         let at = equilibrium.basis.equilibrium(&equilibrium.problem, s).unwrap();
-        equilibrium.judge().judge(s, at.approach).holds
+        equilibrium.judge().judge(s, at.approach, &Unwatched).holds
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl Profile {
         let outside = radii.iter().zip(gap).zip(deformed).filter(|(_, gap)| gap.is_finite());
         let outside =
             outside.map(|((&radius, undeformed), gap)| Outside { radius, gap, undeformed }).collect();
-        let nearest = judge.nearest_crest(s, delta);
+        let nearest = judge.nearest_crest(s, delta, &Unwatched);
         Self { contact_radius: s, contacts: vec![[0.0, s]], approach: delta, inside, outside, nearest }
     }
 

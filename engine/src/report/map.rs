@@ -195,9 +195,9 @@ impl MapReport {
         if let Ordinate::Key(axis) = y {
             report.y = AxisReport::of(axis);
             let family = Family::new(preset, vec![x, axis.clone()])?;
-            let mut map = family.map(progress)?;
-            family.mark_changes(&mut map, progress);
-            let counts = family.counts(cells, progress).ok_or(MapError::Cancelled)?;
+            let mut map = family.map(&Part::new(progress, [0.1, 0.3]))?;
+            family.mark_changes(&mut map, &Part::new(progress, [0.3, 0.7]));
+            let counts = family.counts(cells, &Part::new(progress, [0.7, 1.0])).ok_or(MapError::Cancelled)?;
             report.rows_of_map(&family, &map);
             report.counts = Some(CountsReport::of(&family, counts));
             report.notes.extend(map.notes);

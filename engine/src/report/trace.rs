@@ -340,6 +340,8 @@ mod tests {
                 asked.set(asked.get() + 1);
                 false
             };
+            // The tables that are kept are asked for once.
+            assert_eq!(compute(&Unwatched), None);
             assert_eq!(compute(&count), None);
             let all = asked.get();
             assert!(all >= 5, "{all}");

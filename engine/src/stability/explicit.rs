@@ -12,6 +12,7 @@ use super::family::{Family, FamilyError, Local};
 use super::law::{Edge, adhesion_of};
 use crate::elementary::hypot;
 use crate::problem::Control;
+use crate::progress::Progress;
 
 /// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
 const PER_PANEL: f64 = 24.0;
@@ -52,7 +53,7 @@ impl Family {
     ///
     /// # Errors
     /// A table cannot be had.
-    pub fn explicit_cusps(&self) -> Result<Option<Vec<Line>>, FamilyError> {
+    pub fn explicit_cusps(&self, progress: &dyn Progress) -> Result<Option<Vec<Line>>, FamilyError> {
         let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len())
         else {
             return Ok(None);
@@ -84,7 +85,7 @@ impl Family {
                     bend: a.bend + t * (b.bend - a.bend),
                 })
             };
-            return Ok(Some(self.sampled(&born)));
+            return Ok(Some(self.sampled(progress, &born)));
         }
         if self.compliance() == Some(other) {
             let mut at = [0.0; 2];
@@ -107,7 +108,7 @@ impl Family {
                         bend: edge.bend,
                     })
                 };
-                lines.extend(self.sampled(&born));
+                lines.extend(self.sampled(progress, &born));
             }
             return Ok(Some(lines));
         }
@@ -164,11 +165,14 @@ impl Family {
     }
 
     /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
-    pub(super) fn sampled(&self, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
+    pub(super) fn sampled(&self, progress: &dyn Progress, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
         let mut lines: Vec<Line> = vec![Line::default()];
         let mut before: Option<(f64, Option<Born>)> = None;
         let good = |s: f64| born(s).filter(Born::is_inside);
         for s in self.sampled_radii() {
+            if progress.stop() {
+                break;
+            }
             let here = good(s);
             if let Some((from, old)) = before {
                 // Where it enters or leaves the map, the piece of a step that is on it.

@@ -53,7 +53,7 @@ impl Family {
     /// A gap cannot be tabulated, or a value is out of its range.
     pub fn folds(&self, progress: &dyn Progress) -> Result<Folds, FamilyError> {
         let mut folds = Folds::default();
-        if let Some(lines) = self.explicit_folds()? {
+        if let Some(lines) = self.explicit_folds(progress)? {
             for (points, cusps) in lines {
                 let point = |born: &Born| self.point_at(&born.at[..1], born.contact_radius);
                 folds.cusps.extend(cusps.iter().filter_map(point));
@@ -109,7 +109,10 @@ impl Family {
     }
 
     /// The curves that follow from s; their tips are the cusps.
-    fn explicit_folds(&self) -> Result<Option<Vec<super::explicit::Line>>, FamilyError> {
+    fn explicit_folds(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Option<Vec<super::explicit::Line>>, FamilyError> {
         let axis = &self.axes[0];
         let [end, start] = self.radii;
         let born = |s: f64, share: f64, slope: f64| Born {
@@ -119,7 +122,7 @@ impl Family {
         };
         if let Some(factor) = self.adhesion_factor() {
             let member = self.member(&[0.5])?;
-            return Ok(Some(self.sampled(&|s| {
+            return Ok(Some(self.sampled(progress, &|s| {
                 let edge = member.local(s)?.edge;
                 (edge.value > 0.0).then(|| born(s, axis.share(adhesion_of(edge.value) / factor), edge.slope))
             })));
@@ -127,7 +130,7 @@ impl Family {
         if self.linear() == Some(0) {
             let (lo, hi) = (self.member(&[0.0])?, self.member(&[1.0])?);
             let [from, to] = axis.range;
-            return Ok(Some(self.sampled(&|s| {
+            return Ok(Some(self.sampled(progress, &|s| {
                 let (a, b) = (lo.local(s)?, hi.local(s)?);
                 let t = (a.root - a.edge.value) / (b.edge.value - a.edge.value);
                 let slope = a.edge.slope + t * (b.edge.slope - a.edge.slope);
@@ -137,7 +140,7 @@ impl Family {
         if self.compliance() == Some(0) {
             let grips = self.member(&[0.0])?;
             let stiffness = self.preset.problem().reduced_by(self.length).units.stiffness;
-            return Ok(Some(self.sampled(&|s| {
+            return Ok(Some(self.sampled(progress, &|s| {
                 let local = grips.local(s)?;
                 let first = local.edge.value / Weight::of(grips.control, s).value;
                 let q = local.root / (s.sqrt() * first);

@@ -76,7 +76,7 @@ impl Family {
     /// The gap cannot be tabulated somewhere, or a value is out of its range.
     pub fn map(&self, progress: &dyn Progress) -> Result<Map, FamilyError> {
         let mut map = Map::default();
-        if let Some(lines) = self.explicit_cusps()? {
+        if let Some(lines) = self.explicit_cusps(progress)? {
             for (points, tips) in lines {
                 let point = |born: &super::explicit::Born| self.point_at(&born.at, born.contact_radius);
                 let points: Vec<MapPoint> = points.iter().filter_map(point).collect();
@@ -278,7 +278,9 @@ impl Family {
 
     /// Says of every line where the number of snaps changes across it.
     pub fn mark_changes(&self, map: &mut Map, progress: &dyn Progress) {
-        for line in &mut map.lines {
+        let count = map.lines.len() as f64;
+        for (i, line) in map.lines.iter_mut().enumerate() {
+            progress.report(i as f64 / count);
             let points = &line.points;
             let changes = (0..points.len()).map(|k| {
                 let (a, b) = (points[k.saturating_sub(1)].at, points[(k + 1).min(points.len() - 1)].at);
@@ -302,6 +304,7 @@ impl Family {
         let mut cells = vec![vec![None; shares[0].len()]; shares[1].len()];
         // Column by column, so that a table serves a whole one.
         for (i, x) in shares[0].iter().enumerate() {
+            progress.report(*x);
             for (j, y) in shares[1].iter().enumerate() {
                 if progress.stop() {
                     return None;

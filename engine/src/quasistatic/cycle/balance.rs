@@ -11,6 +11,7 @@
 
 use crate::annuli::{AnnuliError, Around, Contacts, Ground, Resolution, State, Wanted, points};
 use crate::problem::Control;
+use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -26,7 +27,7 @@ const LONGEST: f64 = 0.1;
 const LEFT: f64 = 0.4;
 
 /// Contacts under a device.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Balance<'a> {
     /// The gap.
     pub ground: &'a Ground,
@@ -34,6 +35,8 @@ pub struct Balance<'a> {
     pub work_of_adhesion: f64,
     /// The device.
     pub control: Control,
+    /// Asked while the edges run.
+    pub progress: &'a dyn Progress,
 }
 
 /// Edges at a control value, in equilibrium or not.

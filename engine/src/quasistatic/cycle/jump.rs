@@ -97,6 +97,9 @@ impl Balance<'_> {
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
+            if self.progress.stop() {
+                return Err(CycleError::Cancelled);
+            }
             contacts = self.tidied(contacts, sense, passed);
             if contacts.is_empty() {
                 return Ok(None);

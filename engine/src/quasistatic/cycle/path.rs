@@ -121,7 +121,7 @@ pub fn cycle_on(
 ) -> Result<Cycle, CycleError> {
     // Without adhesion all controls rise together, and the approach is the one that is stepped.
     let stepped = if gamma > 0.0 { setting.control } else { Control::Displacement };
-    let balance = Balance { ground, work_of_adhesion: gamma, control: stepped };
+    let balance = Balance { ground, work_of_adhesion: gamma, control: stepped, progress };
     let path = Path {
         balance: &balance,
         setting,

@@ -39,7 +39,6 @@ impl Point {
 }
 
 /// A step from a point: its points on the rings are held. Its length is measured along the tangent, or along one edge.
-#[derive(Debug)]
 pub struct Step<'a, 'b> {
     balance: &'a Balance<'b>,
     from: &'a Point,

@@ -8,6 +8,7 @@ use crate::continuation::Tracer;
 use crate::disc::Place;
 use crate::gap::Gap;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::curve::{Curve, settings};
 use crate::quasistatic::jump::{self, Run};
 use crate::quasistatic::monotone::{Limit, Monotone, Turn};
@@ -221,7 +222,7 @@ impl Walk<'_> {
         let judge = equilibrium.judge();
         let crest = |s: f64| {
             let delta = equilibrium.basis.equilibrium(&equilibrium.problem, s)?.approach;
-            judge.judge(s, delta).nearest
+            judge.judge(s, delta, &Unwatched).nearest
         };
         let wave = equilibrium.problem.gap.feature_length().unwrap_or(from);
         let [start, end] = [from, to].map(crest);

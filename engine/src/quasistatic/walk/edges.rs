@@ -14,6 +14,7 @@ use crate::disc::Table;
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::cycle::balance::keeps_widths;
 use crate::quasistatic::cycle::{Balance, Held};
@@ -116,7 +117,8 @@ impl<'a> Edges<'a> {
     pub fn held(&self, point: &Point, control: Control) -> Option<Held> {
         let contacts = contacts(&self.scales, point);
         let [delta, force] = device(&self.scales, point);
-        let balance = Balance { ground: self.ground, work_of_adhesion: self.work_of_adhesion, control };
+        let work_of_adhesion = self.work_of_adhesion;
+        let balance = Balance { ground: self.ground, work_of_adhesion, control, progress: &Unwatched };
         balance.held(&contacts, &points(self.ground, &contacts), control.value(delta, force)).ok()
     }
 }

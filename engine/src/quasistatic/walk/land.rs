@@ -50,7 +50,7 @@ impl Walk<'_> {
             arrival,
             stability: equilibrium.stability(&point),
             stiffness: equilibrium.stiffness(&point),
-            admissibility: equilibrium.admissibility(&point),
+            admissibility: equilibrium.admissibility(&point, &Unwatched),
             digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
             state,
             point,

@@ -82,6 +82,11 @@ impl Walk<'_> {
 
     /// The equilibrium of contacts on `ground` under `control`.
     pub(super) fn balance<'a>(&self, ground: &'a Ground, control: crate::problem::Control) -> Balance<'a> {
-        Balance { ground, work_of_adhesion: self.equilibrium().problem.work_of_adhesion, control }
+        Balance {
+            ground,
+            work_of_adhesion: self.equilibrium().problem.work_of_adhesion,
+            control,
+            progress: &Unwatched,
+        }
     }
 }
