@@ -7,8 +7,8 @@
 #   PARTS="tar deb wheels" …                some of the parts alone
 #   MAINTAINER='NAME <ADDRESS>' …            who keeps the Debian package [default: who holds the copyright]
 #
-# Needs a C compiler for musl (Debian: musl-tools), dpkg-deb for the package, maturin and zig for wheels. A part that cannot
-# be made here is refused with a sentence, and the script then ends with status 3.
+# Needs a C compiler for musl (Debian: musl-tools) and dpkg-deb for the package; for wheels maturin and zig, taken from PyPI
+# where they are not there. A part that cannot be made here is refused with a sentence, and the script then ends with status 3.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=x86_64-unknown-linux-musl
@@ -96,8 +96,16 @@ CONTROL
     fi
 fi
 
+# maturin and zig: those that are there, or of the versions that are written down, from PyPI.
+wheel_tools() {
+    command -v maturin >/dev/null && { command -v zig >/dev/null || python3 -m ziglang version >/dev/null; } 2>/dev/null && return
+    python3 -m venv "$work/tools" 2>/dev/null || return 1
+    PATH=$work/tools/bin:$PATH
+    pip --disable-pip-version-check --quiet install --requirement python/requirements-release.txt 2>/dev/null
+}
+
 if wants wheels; then
-    if command -v maturin >/dev/null && command -v zig >/dev/null; then
+    if wheel_tools && rustup target add x86_64-unknown-linux-gnu "$target" 2>/dev/null; then
         for compatibility in manylinux2014 musllinux_1_2; do
             libc=gnu
             [ "$compatibility" = musllinux_1_2 ] && libc=musl
@@ -105,7 +113,7 @@ if wants wheels; then
                 --manifest-path python/Cargo.toml --out "$folder"
         done
     else
-        refuse 'the wheels: maturin and zig are needed for them (pip install maturin ziglang)'
+        refuse 'the wheels: maturin and zig are needed for them (PyPI: maturin, ziglang), and the target for musl'
     fi
 fi
 

@@ -67,6 +67,7 @@
 //! | `measured`, `fit` | measured curves, and the values of a preset that they give |
 //! | `report`, `verify` | the one serializable form of results; our numbers against theory |
 //! | `sweep` | one preset over many values of its keys, row by row |
+//! | [`progress`] | who watches a long computation, and may end it |
 
 #![cfg_attr(
     test,
