@@ -223,11 +223,11 @@ impl Equilibrium {
         self.scales.stability(point)
     }
 
-    /// The stiffnesses at a point, its `P_δ` evaluated there.
-    pub fn stiffness(&self, point: &Point) -> Stiffness {
+    /// The state and the stiffnesses at a point, energy and `P_δ` evaluated there.
+    pub fn state_and_stiffness(&self, point: &Point) -> (State, Stiffness) {
         /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
         const ROUNDING: f64 = 1e-10;
-        let [delta, _, s] = self.quantities(point.y());
+        let [delta, force, s] = self.quantities(point.y());
         let [along_delta, along_force, along_s] = self.quantities(point.tangent());
         let turns = point.tangent()[unknown::APPROACH].abs() <= ROUNDING;
         let corner = self.table.has_corner(s);
@@ -238,11 +238,13 @@ impl Equilibrium {
             let ratio = slope / along_delta;
             if turns { f64::INFINITY.copysign(ratio) } else { ratio }
         };
-        Stiffness {
-            contact: self.basis.evaluate(&self.problem, s, delta).force_gradient[0],
+        let here = self.basis.evaluate(&self.problem, s, delta);
+        let stiffness = Stiffness {
+            contact: here.force_gradient[0],
             tangent: per_approach(along_force),
             area_slope: per_approach(2.0 * PI * s * along_s),
-        }
+        };
+        (State { contact_radius: s, approach: delta, force, energy: here.energy }, stiffness)
     }
 
     /// The state of radius `s` from the explicit root, as a point whose tangent runs inward.
@@ -346,7 +348,7 @@ mod tests {
             let (delta, s) = (at.approach, at.contact_radius);
             let point = &equilibrium.explicit(s).unwrap();
             let [ss, sd, dd] = hessian(equilibrium, s, delta);
-            let stiffness = equilibrium.stiffness(point);
+            let stiffness = equilibrium.state_and_stiffness(point).1;
             assert!((stiffness.contact / dd - 1.0).abs() < 1e-5, "{} {dd}", stiffness.contact);
             for k in [0.01, 0.15, 1.0, 20.0] {
                 // The potential of bodies and device: its second derivatives are those of U and k on U_δδ.
@@ -374,7 +376,7 @@ mod tests {
                 equilibrium.quantities(point.y())
             });
             let delta = after[0] - before[0];
-            let stiffness = equilibrium.stiffness(&equilibrium.explicit(s).unwrap());
+            let stiffness = equilibrium.state_and_stiffness(&equilibrium.explicit(s).unwrap()).1;
             let area = PI * (after[2] * after[2] - before[2] * before[2]);
             assert!((stiffness.tangent * delta / (after[1] - before[1]) - 1.0).abs() < 1e-5, "{s}");
             assert!((stiffness.area_slope * delta / area - 1.0).abs() < 1e-5, "{s}");
@@ -382,7 +384,7 @@ mod tests {
         let limits = curve.limit_points(Control::Displacement);
         assert!(limits.len() > 10);
         for limit in limits {
-            let stiffness = equilibrium.stiffness(&equilibrium.explicit(limit.contact_radius).unwrap());
+            let stiffness = equilibrium.state_and_stiffness(&equilibrium.explicit(limit.contact_radius).unwrap()).1;
             assert!(stiffness.tangent.is_infinite() && stiffness.area_slope.is_infinite(), "{stiffness:?}");
             assert!(stiffness.contact.is_finite());
         }

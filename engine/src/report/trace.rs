@@ -99,9 +99,9 @@ impl PointReport {
         overlapping: &[Overlap],
     ) -> Self {
         let units = case.units();
-        let state = equilibrium.state(point).in_units(units);
+        let (state, stiffness) = equilibrium.state_and_stiffness(point);
+        let (state, stiffness) = (state.in_units(units), stiffness.in_units(units));
         let stability = equilibrium.stability(point);
-        let stiffness = equilibrium.stiffness(point).in_units(units);
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
         let s = equilibrium.contact_radius(point);
         Self {

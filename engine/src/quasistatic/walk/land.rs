@@ -45,11 +45,11 @@ impl Walk<'_> {
     /// The state of a disc, with what is to be known of it.
     pub(super) fn of_disc(&self, arrival: Arrival, point: Point) -> Reached {
         let equilibrium = self.equilibrium();
-        let state = equilibrium.state(&point);
+        let (state, stiffness) = equilibrium.state_and_stiffness(&point);
         Reached {
             arrival,
             stability: equilibrium.stability(&point),
-            stiffness: equilibrium.stiffness(&point),
+            stiffness,
             admissibility: equilibrium.admissibility(&point, &Unwatched),
             digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
             state,
