@@ -166,20 +166,22 @@ pub enum Run {
     Linear,
     /// Equal factors; what is not positive is not drawn.
     Logarithmic,
+    /// As [`Run::Linear`], but between whole numbers there is nothing.
+    Counted,
 }
 
 impl Run {
     /// Where a value stands on the axis, in steps of it; no number where it has no place.
     fn place(self, value: f64) -> f64 {
         match self {
-            Self::Linear => value,
+            Self::Linear | Self::Counted => value,
             Self::Logarithmic => value.log10(),
         }
     }
 
     fn value(self, place: f64) -> f64 {
         match self {
-            Self::Linear => place,
+            Self::Linear | Self::Counted => place,
             Self::Logarithmic => 10.0_f64.powf(place),
         }
     }

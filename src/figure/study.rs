@@ -1,7 +1,7 @@
 //! A quantity over the range of one value, the value of the preset marked.
 
 use super::bounds::Bounds;
-use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::parts::{Axis, Figure, Line, Mark, Role, Run, Sign};
 use super::subject::Subject;
 use crate::explorer::studies::{Outcome, StudyData, number};
 use pulloff_engine::preset::{Preset, Row};
@@ -67,6 +67,9 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
         })
         .collect();
     let is_counted = data.outcomes.iter().any(|outcome| matches!(outcome, Outcome::Found(Cell::Count(_))));
+    if is_counted {
+        figure.y.run = Run::Counted;
+    }
     for part in places.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
         let points: Vec<(f64, f64)> = part.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect();
         if !points.is_empty() {

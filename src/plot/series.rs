@@ -21,8 +21,10 @@ pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, M
     let values = distinct(&along);
     let run = if is_logarithmic(&values) { Run::Logarithmic } else { Run::Linear };
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
-    let [x, y] = [(axis, run), (quantity, Run::Linear)]
-        .map(|(name, run)| Axis::pure(results.title(name)).running(run));
+    let is_count = |(_, y): &(f64, f64)| !y.is_finite() || (*y >= 0.0 && y.fract() == 0.0);
+    let counted = if points.iter().all(is_count) { Run::Counted } else { Run::Linear };
+    let [x, y] =
+        [(axis, run), (quantity, counted)].map(|(name, run)| Axis::pure(results.title(name)).running(run));
     let mut figure = Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) };
     if results.is_random {
         // Neighbours drawn at random differ in whatever else was drawn: no line joins them.

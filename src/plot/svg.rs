@@ -175,10 +175,12 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
         .with_y_axis_max(bounds.y[1]);
     layout = match x.run {
         Run::Linear => layout.with_x_tick_format(ticks(bounds.x)),
+        Run::Counted => layout.with_x_tick_format(whole()),
         Run::Logarithmic => layout.with_log_x().with_x_tick_format(factors(bounds.x)),
     };
     layout = match y.run {
         Run::Linear => layout.with_y_tick_format(ticks(bounds.y)),
+        Run::Counted => layout.with_y_tick_format(whole()),
         Run::Logarithmic => layout.with_log_y().with_y_tick_format(factors(bounds.y)),
     };
     if !legend.is_empty() {
@@ -223,6 +225,11 @@ fn ticks([lo, hi]: [f64; 2]) -> TickFormat {
         zero if zero == "0" => zero,
         mantissa => printed(&format!("{mantissa}e{power}")),
     }))
+}
+
+/// The same for an axis of counts: a tick between two whole numbers has no number.
+fn whole() -> TickFormat {
+    TickFormat::Custom(Arc::new(|x| if (x - x.round()).abs() < 1e-6 { short(x, 6) } else { String::new() }))
 }
 
 /// The same for an axis of equal factors.

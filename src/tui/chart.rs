@@ -159,7 +159,7 @@ impl Chart<'_> {
 
     /// The ticks of y in a frame of this inside.
     fn y_ticks(&self, inner: Rect) -> Vec<(f64, String)> {
-        ticks(self.bounds.y, usize::from(inner.height / 3).clamp(2, 8))
+        ticks(self.bounds.y, self.figure.y.run, usize::from(inner.height / 3).clamp(2, 8))
     }
 
     /// Where the curves are drawn, with the frame in `area`; `None` where there is no room for them.
@@ -258,7 +258,9 @@ impl Chart<'_> {
         let title_width = u16::try_from(title.chars().count()).unwrap_or(u16::MAX);
         let end = inner.right().saturating_sub(title_width + 1);
         let mut free = inner.x;
-        for (value, label) in ticks(self.bounds.x, usize::from(plot.width / 12).clamp(2, 10)) {
+        for (value, label) in
+            ticks(self.bounds.x, self.figure.x.run, usize::from(plot.width / 12).clamp(2, 10))
+        {
             let width = u16::try_from(label.len()).unwrap_or(u16::MAX);
             let Some(column) = cell(value, self.bounds.x, plot.width, false) else { continue };
             let Some(x) = (plot.x + column).checked_sub(width / 2) else { continue };

@@ -384,7 +384,8 @@ mod tests {
         let limits = curve.limit_points(Control::Displacement);
         assert!(limits.len() > 10);
         for limit in limits {
-            let stiffness = equilibrium.state_and_stiffness(&equilibrium.explicit(limit.contact_radius).unwrap()).1;
+            let stiffness =
+                equilibrium.state_and_stiffness(&equilibrium.explicit(limit.contact_radius).unwrap()).1;
             assert!(stiffness.tangent.is_infinite() && stiffness.area_slope.is_infinite(), "{stiffness:?}");
             assert!(stiffness.contact.is_finite());
         }

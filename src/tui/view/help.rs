@@ -45,6 +45,7 @@ const READING: &[&str] = &[
 /// What the screen writes short, a line each.
 const SHORT: &[(&str, &str)] = &[
     ("δ  P  s", "approach, force (a pull is negative), contact radius: the outermost edge"),
+    ("E*  γ  R", "effective modulus, work of adhesion, radius of the sphere"),
     ("P/Pc", "the force over the pull-off force of the smooth sphere, 3πγR/2"),
     ("A/λ  λ/R", "height of the waves over their length, their length over the radius of the sphere"),
     ("γ'", "2πγ/(E*R): adhesion against stiffness"),
@@ -57,6 +58,8 @@ const SHORT: &[(&str, &str)] = &[
     ("stable δ yes", "whether the state stays with the displacement (δ), the force (P), the spring (k) held"),
     ("step 0.02", "the longest step by hand, as a share of the range of δ, P and s of the curve"),
     ("dP/dδ", "the slope of the curve; with s held: that of a punch of this radius"),
+    ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
+    ("c7", "on maps: the line of limit points at the seventh crest from the axis"),
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
     ("× pull-off", "the limit point from which nothing stable is left: the bodies come apart"),
     ("○ landing", "where a jump comes to rest"),

@@ -70,7 +70,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Cusp => (5, "cusp"),
         Sign::Swallowtail => (5, "swallowtail"),
         Sign::Snaps(_) => (6, "snaps"),
-        Sign::OfCrest(_) => (6, "crest"),
+        Sign::OfCrest(_) => (4, "crest"),
         Sign::Measured { loading: true } => (4, "measured approach"),
         Sign::Measured { loading: false } => (4, "measured retraction"),
     })
