@@ -129,7 +129,11 @@ fn note(line: &str) -> String {
     row.map_or_else(
         || NOTE.to_owned(),
         |row| match row.argument {
-            Some(argument) => format!("{argument}: {}", row.help),
+            // What is typed as it stands and what stands for something else look different.
+            Some(argument) if argument.chars().any(char::is_uppercase) => {
+                format!("{name} {argument}: {}", row.help)
+            }
+            Some(argument) => format!("{name} {}: {}", argument.to_uppercase(), row.help),
             None => row.help.to_owned(),
         },
     )
