@@ -63,6 +63,18 @@ pub trait Basis: Debug + Send + Sync {
     /// The residual, the force and the energy at contact radius `s > 0` and approach `delta`.
     fn evaluate(&self, problem: &Reduced, s: f64, delta: f64) -> Evaluation;
 
+    /// The same at each of `states`, (s, δ); fewer where `progress`, asked before each, said stop. Many at once are answered faster
+    /// than one by one.
+    fn evaluations(
+        &self,
+        problem: &Reduced,
+        states: &[[f64; 2]],
+        progress: &dyn Progress,
+    ) -> Vec<Evaluation> {
+        let wanted = states.iter().take_while(|_| !progress.stop());
+        wanted.map(|[s, delta]| self.evaluate(problem, *s, *delta)).collect()
+    }
+
     /// The approach at which a disc of radius `s` is in equilibrium with tension at its edge, evaluated there.
     ///
     /// `None` where there is none: rings too coarse for the gap, or a radius beyond what is known of the gap.

@@ -225,6 +225,28 @@ impl Equilibrium {
 
     /// The state and the stiffnesses at a point, energy and `P_δ` evaluated there.
     pub fn state_and_stiffness(&self, point: &Point) -> (State, Stiffness) {
+        let [delta, _, s] = self.quantities(point.y());
+        self.known(point, &self.basis.evaluate(&self.problem, s, delta))
+    }
+
+    /// The same at each of `points`; `None` when `progress` said stop.
+    pub fn states_and_stiffnesses(
+        &self,
+        points: &[Point],
+        progress: &dyn Progress,
+    ) -> Option<Vec<(State, Stiffness)>> {
+        let place = |point: &Point| {
+            let [delta, _, s] = self.quantities(point.y());
+            [s, delta]
+        };
+        let places: Vec<[f64; 2]> = points.iter().map(place).collect();
+        let found = self.basis.evaluations(&self.problem, &places, progress);
+        let all = points.iter().zip(&found).map(|(point, here)| self.known(point, here));
+        (found.len() == points.len()).then(|| all.collect())
+    }
+
+    /// The state and the stiffnesses at a point, which is evaluated.
+    fn known(&self, point: &Point, here: &Evaluation) -> (State, Stiffness) {
         /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
         const ROUNDING: f64 = 1e-10;
         let [delta, force, s] = self.quantities(point.y());
@@ -238,7 +260,6 @@ impl Equilibrium {
             let ratio = slope / along_delta;
             if turns { f64::INFINITY.copysign(ratio) } else { ratio }
         };
-        let here = self.basis.evaluate(&self.problem, s, delta);
         let stiffness = Stiffness {
             contact: here.force_gradient[0],
             tangent: per_approach(along_force),

@@ -11,7 +11,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::{Part, Progress, Unwatched};
 use crate::quasistatic::overlap::overlaps;
-use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point};
+use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point, State, Stiffness};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -95,11 +95,10 @@ impl PointReport {
         case: &Case,
         equilibrium: &Equilibrium,
         step: usize,
-        point: &Point,
+        (point, (state, stiffness)): (&Point, (State, Stiffness)),
         overlapping: &[Overlap],
     ) -> Self {
         let units = case.units();
-        let (state, stiffness) = equilibrium.state_and_stiffness(point);
         let (state, stiffness) = (state.in_units(units), stiffness.in_units(units));
         let stability = equilibrium.stability(point);
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
@@ -251,13 +250,15 @@ impl TraceReport {
         let equilibrium = &curve.equilibrium;
         let overlapping = overlaps(curve, progress).ok_or(CaseError::Cancelled)?;
         let inadmissible = OverlapReport::all(&overlapping, units);
-        let mut points = Vec::with_capacity(traced.len());
-        for (step, point) in traced.iter().enumerate() {
-            if progress.stop() {
-                return Err(CaseError::Cancelled);
-            }
-            points.push(PointReport::new(case, equilibrium, step, point, &overlapping));
-        }
+        let known = equilibrium.states_and_stiffnesses(traced, progress).ok_or(CaseError::Cancelled)?;
+        let points: Vec<PointReport> = traced
+            .iter()
+            .zip(known)
+            .enumerate()
+            .map(|(step, (point, known))| {
+                PointReport::new(case, equilibrium, step, (point, known), &overlapping)
+            })
+            .collect();
         let limit_points: Vec<LimitReport> = case
             .controls()
             .into_iter()

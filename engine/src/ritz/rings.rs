@@ -215,18 +215,39 @@ impl Rings {
         self.forms_of::<SAMPLES>(self.reduced::<SAMPLES>(gap, &[s]).as_slice())
     }
 
-    /// The equilibrium at each of `radii` from the first M samples, into `answers`.
-    fn solve_together<const M: usize>(
+    /// What `evaluate` makes of the forms from the first M samples at each of `places`, each of a radius, up to the first of
+    /// which it makes nothing, or where `progress` said stop.
+    fn together<const M: usize, T: Copy + Sync>(
         &self,
-        problem: &Reduced,
-        radii: &[f64],
-        answers: &mut [Option<Evaluation>],
-    ) {
-        let columns = self.reduced::<M>(problem.gap.as_ref(), radii);
-        let parts = columns.as_slice().chunks(M * self.size());
-        for ((&s, part), answer) in radii.iter().zip(parts).zip(answers) {
-            *answer = equilibrium_of(&self.forms_of::<M>(part), s, problem.work_of_adhesion);
+        gap: &dyn Gap,
+        places: &[T],
+        radius: impl Fn(T) -> f64 + Sync,
+        evaluate: impl Fn(&Forms, T) -> Option<Evaluation> + Sync,
+        progress: &dyn Progress,
+    ) -> Vec<Evaluation> {
+        let threads = if self.size() < RINGS_PER_THREAD { 1 } else { parallel::cores() };
+        let mut found = Vec::with_capacity(places.len());
+        for round in places.chunks(TOGETHER * threads) {
+            let complete = found.len() + round.len();
+            let wanted = round.iter().take_while(|_| !progress.stop()).count();
+            let mut answers = vec![None; wanted];
+            // As many on one thread as on the other, also where the round is short.
+            let share = wanted.div_ceil(threads).max(1);
+            let parts = round[..wanted].chunks(share).zip(answers.chunks_mut(share));
+            parallel::each(parts, |(places, answers)| {
+                let radii: Vec<f64> = places.iter().map(|place| radius(*place)).collect();
+                let columns = self.reduced::<M>(gap, &radii);
+                let parts = columns.as_slice().chunks(M * self.size());
+                for ((place, part), answer) in places.iter().zip(parts).zip(answers) {
+                    *answer = evaluate(&self.forms_of::<M>(part), *place);
+                }
+            });
+            found.extend(answers.into_iter().map_while(|answer| answer));
+            if found.len() < complete {
+                break;
+            }
         }
+        found
     }
 
     /// The pressure on each ring.
@@ -293,6 +314,17 @@ impl Basis for Rings {
         self.forms(problem.gap.as_ref(), s).evaluate(s, delta, problem.work_of_adhesion)
     }
 
+    fn evaluations(
+        &self,
+        problem: &Reduced,
+        states: &[[f64; 2]],
+        progress: &dyn Progress,
+    ) -> Vec<Evaluation> {
+        let gamma = problem.work_of_adhesion;
+        let evaluate = |forms: &Forms, [s, delta]: [f64; 2]| Some(forms.evaluate(s, delta, gamma));
+        self.together::<SAMPLES, _>(problem.gap.as_ref(), states, |[s, _]| s, evaluate, progress)
+    }
+
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation> {
         equilibrium_of(&self.forms(problem.gap.as_ref(), s), s, problem.work_of_adhesion)
     }
@@ -304,31 +336,13 @@ impl Basis for Rings {
         order: Order,
         progress: &dyn Progress,
     ) -> Vec<Evaluation> {
-        let solve = match order {
-            Order::State => Self::solve_together::<2>,
-            Order::Slopes => Self::solve_together::<3>,
-            Order::Curvature => Self::solve_together::<SAMPLES>,
-        };
-        let threads = if self.size() < RINGS_PER_THREAD { 1 } else { parallel::cores() };
-        let mut found = Vec::with_capacity(radii.len());
-        for round in radii.chunks(TOGETHER * threads) {
-            let complete = found.len() + round.len();
-            let wanted = round.iter().take_while(|_| !progress.stop()).count();
-            let mut answers = vec![None; wanted];
-            // As many on one thread as on the other, also where the round is short.
-            let share = wanted.div_ceil(threads).max(1);
-            parallel::each(
-                round[..wanted].chunks(share).zip(answers.chunks_mut(share)),
-                |(radii, answers)| {
-                    solve(self, problem, radii, answers);
-                },
-            );
-            found.extend(answers.into_iter().map_while(|answer| answer));
-            if found.len() < complete {
-                break;
-            }
+        let gap = problem.gap.as_ref();
+        let evaluate = |forms: &Forms, s: f64| equilibrium_of(forms, s, problem.work_of_adhesion);
+        match order {
+            Order::State => self.together::<2, _>(gap, radii, |s| s, evaluate, progress),
+            Order::Slopes => self.together::<3, _>(gap, radii, |s| s, evaluate, progress),
+            Order::Curvature => self.together::<SAMPLES, _>(gap, radii, |s| s, evaluate, progress),
         }
-        found
     }
 
     fn solution(
