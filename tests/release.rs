@@ -95,9 +95,8 @@ fn the_package_is_installed_and_removed() {
 
 #[test]
 fn what_cannot_be_made_is_refused_with_a_sentence() {
-    let has = |program: &str| Command::new(program).arg("--version").output().is_ok();
-    if has("maturin") && has("zig") {
-        eprintln!("LEFT OUT: the toolchain of the wheels is here, and building them takes long");
+    if Command::new("maturin").arg("--version").output().is_ok() {
+        eprintln!("LEFT OUT: what builds the wheels may be here, and building them takes long");
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -121,8 +121,7 @@ impl Case {
         Self::prepare(preset, &Unwatched)
     }
 
-    /// The same for a basis that takes long: `progress` is told the share of it that is built, and stops it by
-    /// answering no.
+    /// The same for a basis that takes long: `progress` is told the share of it that is built, and may stop it.
     ///
     /// # Errors
     /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said stop.

@@ -5,10 +5,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pulloff_engine::progress::Progress;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+use std::cell::OnceCell;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// Shorter commands show no bar.
+const MOMENT: Duration = Duration::from_millis(500);
 
 /// The signals that stop a command: the first lets it keep what is done, the second ends it at once.
 pub struct Stop {
@@ -46,27 +50,35 @@ impl Progress for Stop {
 
 /// The share that is done, shown on a terminal once the command takes longer than a moment.
 pub struct Bar<'a> {
-    bar: ProgressBar,
+    begun: Instant,
+    shown: OnceCell<ProgressBar>,
     stop: Option<&'a Stop>,
 }
 
 impl<'a> Bar<'a> {
     /// For a command that begins now. Without `stop` a signal ends the program, as ever.
     pub fn begin(stop: Option<&'a Stop>) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_secs(1));
-        Self { bar, stop }
+        Self { begun: Instant::now(), shown: OnceCell::new(), stop }
     }
+}
+
+fn drawn() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(100), ProgressDrawTarget::stderr_with_hz(5));
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent} %") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_secs(1));
+    bar
 }
 
 impl Progress for Bar<'_> {
     fn report(&self, share: f64) {
+        if self.begun.elapsed() < MOMENT {
+            return;
+        }
         // A share of a hundred.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        self.bar.set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
+        self.shown.get_or_init(drawn).set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
     }
 
     fn stop(&self) -> bool {
@@ -76,6 +88,27 @@ impl Progress for Bar<'_> {
 
 impl Drop for Bar<'_> {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        if let Some(bar) = self.shown.get() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_command_shows_no_bar() {
+        let bar = Bar::begin(None);
+        bar.report(0.5);
+        assert!(bar.shown.get().is_none());
+        let bar = Bar {
+            begun: Instant::now().checked_sub(2 * MOMENT).unwrap(),
+            shown: OnceCell::new(),
+            stop: None,
+        };
+        bar.report(0.5);
+        assert_eq!(bar.shown.get().unwrap().position(), 50);
     }
 }

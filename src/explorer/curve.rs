@@ -227,6 +227,7 @@ impl CurveData {
             checked.warnings.extend(self.case.unsettled(unloading, progress));
             report = Some(checked);
         }
-        Some(Self { base, report, ..self.clone() })
+        // What was given up may lack its warning.
+        (!progress.stop()).then(|| Self { base, report, ..self.clone() })
     }
 }

@@ -35,7 +35,7 @@ pub enum Stop {
 impl Tracer<'_> {
     /// Traces the curve from `start` to `end`, at most `settings.points` points.
     ///
-    /// `progress` is asked between points; when it says no, what has been traced is kept.
+    /// `go_on` is asked between points; when it says no, what has been traced is kept.
     pub fn trace(
         &mut self,
         start: Point,

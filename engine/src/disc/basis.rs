@@ -83,7 +83,7 @@ pub trait Basis: Debug + Send + Sync {
     /// The equilibria at `radii`, one after the other, up to the first radius that has none.
     ///
     /// What is beyond `order` need not be there: it may be not a number. Shorter than `radii` there, and where `progress`,
-    /// asked before each radius, says no. Many radii at once are answered faster than one by one.
+    /// asked before a radius or some of them, says stop. Many radii at once are answered faster than one by one.
     fn equilibria(
         &self,
         problem: &Reduced,

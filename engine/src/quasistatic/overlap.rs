@@ -37,8 +37,7 @@ impl Overlap {
     }
 }
 
-/// The states of `curve` that are not admissible, from its start inward. `progress` is asked before each state, `None` when it said
-/// stop.
+/// The states of `curve` that are not admissible, from its start inward; `None` when `progress`, asked before each, said stop.
 pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Option<Vec<Overlap>> {
     passed(curve, &[[curve.outermost(), curve.innermost()]], progress)
 }

@@ -153,7 +153,8 @@ impl UnloadReport {
             report = report.checked(&case, &unloading, &passed);
         }
         report.warnings.extend(case.unsettled(&unloading, progress));
-        Ok(report)
+        // What was given up may lack its warning.
+        if progress.stop() { Err(CaseError::Cancelled) } else { Ok(report) }
     }
 
     /// The document of an unloading of `case`, whose admissibility is not known yet: to find it takes longer than all
