@@ -84,7 +84,7 @@ started=
 same all.csv "the whole cluster killed half-way with $kept lines: equal to the single run"
 
 for task in $(seq 8); do
-    SLURM_ARRAY_TASK_ID=$task SLURM_ARRAY_TASK_COUNT=8 bash "$cluster/slurm.sh" "$spec" slurm.csv
+    SLURM_JOB_ID=$task SLURM_ARRAY_TASK_ID=$task bash "$cluster/slurm.sh" "$spec" slurm.csv 8
 done
-"$pulloff" sweep merge slurm.csv.parts/*.csv -o slurm.csv
+SLURM_JOB_ID=9 bash "$cluster/slurm.sh" "$spec" slurm.csv 8
 same slurm.csv 'the tasks of a job array: equal to the single run'

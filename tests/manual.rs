@@ -28,9 +28,10 @@ const PAGES: [&str; 6] = [
     "examples/cluster/README.md",
 ];
 /// The generated parts; each is in some file.
-const PARTS: [&str; 12] = [
+const PARTS: [&str; 13] = [
     "screen",
     "keys",
+    "exit statuses",
     "preset keys",
     "output: -h",
     "output: cycle fig-9-weak",
@@ -126,6 +127,7 @@ fn generated(name: &str) -> String {
     let fenced = |language: &str, text: &str| format!("```{language}\n{text}```\n");
     match name.split_once(": ") {
         None if name == "screen" => fenced("text", &screen()),
+        None if name == "exit statuses" => pulloff::cli::Status::markdown(),
         None if name == "keys" => pulloff::tui::keymap::markdown(),
         None if name == "preset keys" => key_table(),
         Some(("output", command)) => fenced("text", &shown(command)),

@@ -6,7 +6,9 @@
 mod home;
 
 use home::{Ended, Home};
+use pulloff::cli::Status;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
+use rustix::process::Signal;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::process::{Command, Stdio};
@@ -184,10 +186,92 @@ fn what_failed_is_1() {
         assert_eq!(ended.status, 1, "{line}: {}", ended.err);
         assert!(ended.err.contains("No space left on device"), "{line}: {}", ended.err);
     }
+    // A sweep of which every row failed, whole, joined of shards or looked at again; a shard may be a part of a good one.
+    let spec = |forces: &str| {
+        format!(
+            "preset = \"fig-3-jkr\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"path.start_force\"\nvalues = {forces}\n"
+        )
+    };
+    home.file("none.toml", &spec("[-1.0, -2.0]"));
+    for (line, status) in [
+        ("sweep none.toml -o none.csv", 1),
+        ("sweep none.toml -o none.csv", 1),
+        ("sweep check none.csv", 1),
+        ("sweep none.toml -o none-1.csv --shard 1/2", 0),
+        ("sweep none.toml -o none-2.csv --shard 2/2", 0),
+        ("sweep merge none-1.csv none-2.csv -o joined.csv", 1),
+        ("sweep merge none-1.csv none-2.csv -o -", 1),
+    ] {
+        let ended = shell(&home, &format!("$pulloff {line}"));
+        assert_eq!(ended.status, status, "{line}: {}", ended.err);
+        assert_eq!(status == 1, ended.err.contains("every row failed"), "{line}: {}", ended.err);
+    }
+    assert!(home.text("joined.csv") == home.text("none.csv"));
+    home.file("some.toml", &spec("[-1.0, 0.1]"));
+    assert_eq!(shell(&home, "$pulloff sweep some.toml -o some.csv").status, 0);
     // A curve that could not be followed to its end.
     let coarse = "trace fig-9 --set basis.rings=5";
     let ended = shell(&home, &format!("$pulloff {coarse}"));
     assert_eq!(ended.status, 1, "{}", ended.err);
+}
+
+/// The worst of many fits is said, and none keeps the others from being fitted.
+#[test]
+fn many_fits_end_with_the_worst() {
+    let home = Home::new();
+    let free = "material.effective_modulus,material.work_of_adhesion,data.offset";
+    let good = home.file("good.csv", include_str!("../presets/data/lens.csv"));
+    let (bad, gone) = (home.file("bad.csv", "a,b\n1,2\n"), "none.csv".to_owned());
+    let of = |files: &[&String], free: &str, expected: i32| {
+        let mut arguments = vec!["fit"];
+        arguments.extend(files.iter().map(|file| file.as_str()));
+        arguments.extend(["lens", "--no-scan", "--free", free]);
+        let ended = home.run(&arguments);
+        assert_eq!(ended.status, expected, "{arguments:?}: {}", ended.err);
+        assert_eq!(ended.out.matches("end: converged").count(), files.len() - usize::from(expected == 2));
+    };
+    of(&[&good, &good], free, 0);
+    of(&[&good, &bad], free, 2);
+    of(&[&gone, &good], free, 2);
+    of(&[&good, &good], &format!("gap.radius_of_curvature,{free}"), 3);
+    of(&[&bad, &good], &format!("gap.radius_of_curvature,{free}"), 2);
+}
+
+/// What a signal stops writes nothing and says which signal it was.
+#[test]
+fn what_a_signal_stops_has_the_status_of_the_signal() {
+    let home = Home::new();
+    home.file("there.csv", "mine");
+    let map =
+        ["map", "random-waves", "--x-key", "gap.rms=1e-4..1e-3", "--y-key", "groups.adhesion=1e-3..1e-1"];
+    for (arguments, signal, status) in [
+        (vec!["trace", "fig-9", "--set", "basis.rings=2000", "-o", "there.csv"], Signal::INT, 130),
+        (vec!["unload", "fig-9", "--set", "basis.rings=2000"], Signal::TERM, 143),
+        (map.to_vec(), Signal::TERM, 143),
+    ] {
+        let ended = home.stopped(&arguments, signal);
+        assert_eq!((ended.status, ended.out.as_str()), (status, ""), "{arguments:?}: {}", ended.err);
+        assert!(
+            ended.err.ends_with("pulloff: stopped: nothing was written\n"),
+            "{arguments:?}: {}",
+            ended.err
+        );
+    }
+    assert_eq!(home.text("there.csv"), "mine");
+}
+
+/// The table that book and manual page show is that of the program.
+#[test]
+fn every_status_is_listed_once_with_its_meaning() {
+    let codes: Vec<u8> = Status::ALL.into_iter().map(Status::code).collect();
+    assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
+    let home = Home::new();
+    let page = home.quiet(&["man"]).replace("\\-", "-");
+    let section = page.split(".SH \"EXIT STATUS\"").nth(1).unwrap().split(".SH ").next().unwrap();
+    for status in Status::ALL {
+        assert!(section.contains(&format!("\\fB{}\\fR", status.code())), "{section}");
+        assert!(section.contains(status.meaning().split(',').next().unwrap()), "{section}");
+    }
 }
 
 /// The limit on the size of files is no signal that kills, but an error as that of a full disk.

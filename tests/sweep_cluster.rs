@@ -6,7 +6,9 @@
 mod home;
 
 use home::{Ended, Home};
-use std::fs;
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::process::{Command, Stdio};
 
 const SPEC: &str = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\"]\nquantities = [\"snaps\", \"least_force\"]\n\
                     [[axis]]\nkey = \"gap.amplitude\"\nlinear = { from = 1e-4, to = 2e-3, count = 12 }\n";
@@ -49,7 +51,8 @@ fn the_status_says_how_far_it_is_and_spares_the_files_of_the_sweep() {
 #[test]
 fn a_row_that_takes_too_long_has_an_error_that_says_so() {
     let home = with_spec();
-    let (_, err) = said(&home, &["sweep", "s.toml", "-o", "r.csv", "--row-limit", "0.001ms"], 0);
+    let (_, err) = said(&home, &["sweep", "s.toml", "-o", "r.csv", "--row-limit", "0.001ms"], 1);
+    assert!(err.contains("every row failed"), "{err}");
     assert!(err.contains("12 row limit"), "{err}");
     let rows = fs::read_to_string(home.path("r.csv")).unwrap();
     assert_eq!(
@@ -57,7 +60,7 @@ fn a_row_that_takes_too_long_has_an_error_that_says_so() {
         12,
         "{rows}"
     );
-    let (out, _) = said(&home, &["sweep", "check", "r.csv"], 0);
+    let (out, _) = said(&home, &["sweep", "check", "r.csv"], 1);
     assert!(out.contains("12 of 12 rows, complete") && out.contains("12 row limit"), "{out}");
     for wrong in ["0s", "-1s", "10 parsecs", "nan", "1e40h"] {
         let (_, err) = said(&home, &["sweep", "s.toml", "-o", "x.csv", &format!("--row-limit={wrong}")], 2);
@@ -96,4 +99,81 @@ fn results_are_looked_at_without_computing() {
     assert!(said(&home, &["sweep", "check", "r.csv"], 2).1.contains("changed by hand"));
     fs::write(home.path("other.csv"), "a,b\n").unwrap();
     assert!(said(&home, &["sweep", "check", "other.csv"], 2).1.contains("other.csv"));
+}
+
+/// The script for Slurm, called as Slurm calls it.
+fn slurm(home: &Home, variables: &[(&str, &str)], arguments: &[&str]) -> Ended {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/cluster/slurm.sh");
+    let mut command = Command::new("bash");
+    command.env_clear().env("HOME", home.folder()).env("XDG_CONFIG_HOME", home.path("config"));
+    command.env("PATH", format!("{}:/usr/bin:/bin", home.path("bin").display()));
+    command.env("PULLOFF", env!("CARGO_BIN_EXE_pulloff")).envs(variables.iter().copied());
+    command.arg(script).args(arguments).current_dir(home.folder()).stdin(Stdio::null());
+    Ended::of(command.output().unwrap())
+}
+
+#[test]
+fn the_shards_of_a_job_array_are_those_of_the_sweep() {
+    let home = with_spec();
+    let arguments = ["s.toml", "my results.csv", "5"];
+    // Whatever the array has, task i is shard i of 5.
+    let task = |number: &str, array: &[(&str, &str)]| {
+        let variables = [&[("SLURM_JOB_ID", "7"), ("SLURM_ARRAY_TASK_ID", number)], array].concat();
+        slurm(&home, &variables, &arguments)
+    };
+    for number in ["1", "2", "3", "4", "5"] {
+        let ended = task(number, &[("SLURM_ARRAY_TASK_COUNT", "5"), ("SLURM_CPUS_PER_TASK", "2")]);
+        assert_eq!(ended.status, 0, "{}", ended.err);
+    }
+    let part = "my results.csv.parts/3-of-5.csv";
+    let third = home.text(part);
+    // A subset of the array, where the parts are there and where one was lost.
+    for lost in [false, true] {
+        if lost {
+            fs::remove_file(home.path(part)).unwrap();
+        }
+        for number in ["3", "5"] {
+            let subset = [("SLURM_ARRAY_TASK_COUNT", "2"), ("SLURM_ARRAY_TASK_MAX", "5")];
+            let ended = task(number, &subset);
+            assert_eq!(ended.status, 0, "{}", ended.err);
+        }
+        assert_eq!(home.text(part), third);
+    }
+    // A task that is no shard.
+    for number in ["0", "6"] {
+        let ended = task(number, &[]);
+        assert!(ended.status == 2 && ended.err.contains("shards 1 to 5"), "{}", ended.err);
+    }
+    // A job without an array joins them.
+    let ended = slurm(&home, &[("SLURM_JOB_ID", "8")], &arguments);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    said(&home, &["sweep", "s.toml", "-o", "whole.csv"], 0);
+    assert_eq!(home.text("my results.csv"), home.text("whole.csv"));
+    // Shards of another number beside them are other files, and what fails has the status of the program.
+    let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "my results.csv", "4"]);
+    assert!(ended.status == 2 && ended.err.contains("1-of-4.csv"), "{}", ended.err);
+    for wrong in ["0", "-1", "x", "", "1.5"] {
+        let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "x.csv", wrong]);
+        assert!(ended.status == 2 && ended.err.contains("from 1 up"), "{wrong}: {}", ended.err);
+    }
+    assert_eq!(slurm(&home, &[], &["s.toml", "x.csv"]).status, 2);
+}
+
+#[test]
+fn the_job_that_joins_waits_for_the_array() {
+    let home = with_spec();
+    // What Slurm would be told, and the number of a job for an answer.
+    home.file(
+        "bin/sbatch",
+        "#!/bin/sh\nprintf '%s|' \"$@\" >>calls\necho >>calls\necho \"$((40 + $(wc -l <calls)));cluster\"\n",
+    );
+    fs::set_permissions(home.path("bin/sbatch"), Permissions::from_mode(0o755)).unwrap();
+    let ended = slurm(&home, &[], &["s.toml", "my results.csv", "5"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert_eq!(ended.out, "the shards are job 41, joined by job 42\n");
+    let calls = home.text("calls");
+    let (array, join) = calls.split_once('\n').unwrap();
+    assert!(array.starts_with("--parsable|--array=1-5|") && array.ends_with("|s.toml|my results.csv|5|"));
+    assert!(join.contains("|--dependency=afterok:41|") && !join.contains("--array"), "{join}");
+    assert!(join.trim_end().ends_with("|s.toml|my results.csv|5|"), "{join}");
 }

@@ -46,7 +46,7 @@ def main():
     pulloff = os.environ.get("PULLOFF", "pulloff")
     folder = Path(f"{given.results}.parts").resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    parts = {f"{n}/{given.shards}": folder / f"{n}.csv" for n in range(1, given.shards + 1)}
+    parts = {f"{n}/{given.shards}": folder / f"{n}-of-{given.shards}.csv" for n in range(1, given.shards + 1)}
 
     def job():
         # One failed shard must not cancel the others.

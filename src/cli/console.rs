@@ -23,7 +23,7 @@ pub(super) fn ask(question: &str) -> Result<(), Failure> {
 pub(super) fn admissible(strict: bool, overlaps: &[OverlapReport]) -> Result<ExitCode, Failure> {
     if strict && !overlaps.is_empty() {
         let text = "the result was written, but has inadmissible states, which --strict forbids";
-        return Err(Failure::Inadmissible(text.to_owned()));
+        return Err(Failure::Doubtful(text.to_owned()));
     }
     Ok(ExitCode::SUCCESS)
 }

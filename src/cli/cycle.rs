@@ -2,7 +2,7 @@
 
 use super::console::{note, warn};
 use super::problem::Problem;
-use super::watch::Bar;
+use super::watch::{Bar, Stop};
 use super::{Failure, output};
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::Case;
@@ -104,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let units = case.units();
     let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
     let areas = if arguments.no_area { Areas::No } else { Areas::Yes };
-    let cycle = case.cycle(case.control, turn, areas, &Bar::begin(None));
+    let cycle = case.cycle(case.control, turn, areas, &Bar::begin(Some(&Stop::catch()?)));
     let report = CycleReport::new(&preset, &case, &cycle?);
     warn(&report.warnings);
     let text = match format {
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     output::write(&text, file)?;
     if arguments.strict && !report.warnings.is_empty() {
         let text = "the result was written, but carries a warning, which --strict forbids";
-        return Err(Failure::Inadmissible(text.to_owned()));
+        return Err(Failure::Doubtful(text.to_owned()));
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,4 +1,4 @@
-//! What a command can fail with, and the exit status that says so.
+//! The exit statuses of the program, and what a command can fail with.
 
 use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, Reason};
@@ -11,9 +11,103 @@ use crate::sweep::OutputError;
 use crate::sweep::merge::MergeError;
 use crate::sweep::spec::LoadError;
 use pulloff_engine::case::CaseError;
+use pulloff_engine::report::map::MapError;
 use pulloff_engine::report::rows::RowsError;
 use std::io;
 use std::process::ExitCode;
+
+/// How the program ended: the table of exit statuses, from the best end to the worst.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// All is done.
+    Done,
+    /// The result is there, but is in doubt: a warning under `--strict`, or values that are not determined.
+    Doubtful,
+    /// The result is there, but the model does not describe the data.
+    NotDescribed,
+    /// Another call or another file mends it.
+    Mendable,
+    /// Something failed that another call does not mend.
+    Failed,
+    /// The explorer lost its terminal.
+    HungUp,
+    /// Ctrl-C.
+    Cancelled,
+    /// SIGTERM.
+    Terminated,
+    /// A fault of the program.
+    Fault,
+}
+
+impl Status {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 9] = [
+        Self::Done,
+        Self::Failed,
+        Self::Mendable,
+        Self::Doubtful,
+        Self::NotDescribed,
+        Self::Fault,
+        Self::HungUp,
+        Self::Cancelled,
+        Self::Terminated,
+    ];
+
+    /// The number that the shell sees. Those of signals are 128 and the signal's own, as a shell says it of a program that
+    /// a signal ended.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::Failed => 1,
+            Self::Mendable => 2,
+            Self::Doubtful => 3,
+            Self::NotDescribed => 4,
+            Self::Fault => 101,
+            Self::HungUp => 129,
+            Self::Cancelled => 130,
+            Self::Terminated => 143,
+        }
+    }
+
+    /// What it means, in words.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Failed => {
+                "something failed: a full disk, a curve or a fit that did not come to its end, a row of verify, every row of a sweep"
+            }
+            Self::Mendable => {
+                "what you can mend: a bad value, option or file, a path that leads nowhere or must not be written, a file that exists already"
+            }
+            Self::Doubtful => {
+                "the result is written, but has a warning that --strict forbids, or a fit whose points do not determine its values"
+            }
+            Self::NotDescribed => "the result is written, but the model does not describe the measured curve",
+            Self::Fault => "a fault of the program, with a message and a report",
+            Self::HungUp => "the explorer lost its terminal",
+            Self::Cancelled => "stopped by Ctrl-C; a sweep, and the table of a fit, keep what is done",
+            Self::Terminated => "stopped by SIGTERM, likewise",
+        }
+    }
+
+    /// The status of a program that this signal stopped.
+    pub const fn of_signal(signal: u8) -> Self {
+        if signal == 2 { Self::Cancelled } else { Self::Terminated }
+    }
+
+    /// The table for the book.
+    pub fn markdown() -> String {
+        let row = |status: Self| format!("| {} | {} |\n", status.code(), status.meaning());
+        let rows: String = Self::ALL.into_iter().map(row).collect();
+        format!("| status | when |\n|---|---|\n{rows}")
+    }
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status.code())
+    }
+}
 
 /// Why a command ended without success.
 #[derive(Debug, thiserror::Error)]
@@ -50,7 +144,7 @@ pub enum Failure {
     Map(#[from] crate::plot::map::MapError),
     /// A map could not be computed.
     #[error(transparent)]
-    Lines(#[from] pulloff_engine::report::map::MapError),
+    Lines(#[from] MapError),
     /// A figure of the paper could not be computed.
     #[error(transparent)]
     Paper(#[from] crate::plot::paper::PaperError),
@@ -83,9 +177,12 @@ pub enum Failure {
     /// Numbers that are not what theory says; the comparison was written.
     #[error("{0}")]
     Disagreement(String),
-    /// Inadmissible states where none are allowed; the result was written.
+    /// A result in doubt: inadmissible states where none are allowed, values that are not determined; it was written.
     #[error("{0}")]
-    Inadmissible(String),
+    Doubtful(String),
+    /// Points that the model does not describe; the result was written.
+    #[error("{0}")]
+    NotDescribed(String),
     /// A line of a script failed; those before it were done.
     #[error("{text}")]
     Script {
@@ -103,7 +200,7 @@ pub enum Failure {
     /// The parts of a sweep cannot be joined.
     #[error(transparent)]
     Merge(MergeError),
-    /// A signal ended a sweep; what was done is kept.
+    /// A signal stopped the command; what was done is kept.
     #[error("{text}")]
     Interrupted {
         /// The signal's number.
@@ -146,15 +243,27 @@ impl Failure {
     }
 
     /// The exit status.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
-            Self::Closed => 0,
-            Self::Inadmissible(_) => 3,
-            // As a shell says it of a program that a signal ended.
-            Self::Interrupted { signal, .. } => 128 + signal,
-            other if other.can_be_mended() => 2,
-            _ => 1,
-        })
+    pub fn status(&self) -> Status {
+        match self {
+            Self::Closed => Status::Done,
+            Self::Doubtful(_) => Status::Doubtful,
+            Self::NotDescribed(_) => Status::NotDescribed,
+            Self::Interrupted { signal, .. } => Status::of_signal(*signal),
+            other if other.can_be_mended() => Status::Mendable,
+            _ => Status::Failed,
+        }
+    }
+
+    /// The same failure, or the word that `signal` stopped the command where the computation ended for it.
+    pub fn or_stopped(self, signal: Option<u8>) -> Self {
+        match (signal, &self) {
+            (
+                Some(signal),
+                Self::Case(CaseError::Cancelled)
+                | Self::Lines(MapError::Cancelled | MapError::Case(CaseError::Cancelled)),
+            ) => Self::Interrupted { signal, text: "stopped: nothing was written".to_owned() },
+            _ => self,
+        }
     }
 
     fn can_be_mended(&self) -> bool {
@@ -183,7 +292,8 @@ impl Failure {
             | Self::Closed
             | Self::Incomplete(_)
             | Self::Disagreement(_)
-            | Self::Inadmissible(_)
+            | Self::Doubtful(_)
+            | Self::NotDescribed(_)
             | Self::Interrupted { .. }
             | Self::Terminal(_) => false,
         }

@@ -1,6 +1,6 @@
 //! `pulloff man`: the manual page, made from the command line and the command table.
 
-use super::{Failure, output};
+use super::{Failure, Status, output};
 use crate::explorer::command::ROWS;
 use clap::Command;
 use clap_mangen::Man;
@@ -23,6 +23,7 @@ fn page(mut command: Command) -> io::Result<Vec<u8>> {
     for subcommand in command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help") {
         write_subcommand(subcommand, &mut page)?;
     }
+    statuses().to_writer(&mut page)?;
     commands().to_writer(&mut page)?;
     Ok(page)
 }
@@ -49,6 +50,18 @@ fn write_subcommand(subcommand: &Command, page: &mut Vec<u8>) -> io::Result<()> 
         page.push(b'\n');
     }
     Ok(())
+}
+
+/// The exit statuses.
+fn statuses() -> Roff {
+    let mut roff = Roff::new();
+    roff.control("SH", ["EXIT STATUS"]);
+    for status in Status::ALL {
+        roff.control("TP", []);
+        roff.text([bold(status.code().to_string())]);
+        roff.text([roman(status.meaning())]);
+    }
+    roff
 }
 
 /// The commands of the explorer and of scripts, with the keys that the person has for them.

@@ -2,7 +2,7 @@
 
 use super::console::{note, warn};
 use super::problem::Problem;
-use super::watch::Bar;
+use super::watch::{Bar, Stop};
 use super::{Failure, output};
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Width, lines, svg};
@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (None, _) => Ordinate::Control,
     };
     let over = arguments.over(&preset, &x, &y)?;
-    let report = MapReport::compute(&preset, x, &y, CELLS, &Bar::begin(None))?;
+    let report = MapReport::compute(&preset, x, &y, CELLS, &Bar::begin(Some(&Stop::catch()?)))?;
     warn(&report.notes);
     if let Some(onset) = &report.onset {
         let smallest = onset.amplitude_over_wavelength;

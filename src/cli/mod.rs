@@ -1,14 +1,6 @@
 //! The command line: one file per subcommand, exit codes, what goes to which stream.
 //!
-//! | exit status | when |
-//! |---|---|
-//! | 0 | success |
-//! | 1 | something failed: the computation, a full disk |
-//! | 2 | what the person can mend: bad usage, a bad value, a path that leads nowhere or must not be written |
-//! | 3 | with `--strict`: the result has inadmissible states; of a fit: the points do not determine the values |
-//! | 130, 143 | a sweep was stopped by Ctrl-C or SIGTERM; what was done is kept |
-//!
-//! Results go to standard output, everything else to standard error. A reader that goes away early
+//! The exit statuses are [`Status`]. Results go to standard output, everything else to standard error. A reader that goes away early
 //! (`| head`) is a quiet end.
 
 mod assigned;
@@ -35,7 +27,7 @@ mod unload;
 mod verify;
 mod watch;
 
-pub use failure::Failure;
+pub use failure::{Failure, Status};
 
 use clap::{CommandFactory, Parser, Subcommand};
 use problem::Problem;
@@ -113,7 +105,7 @@ pub fn run() -> ExitCode {
         Err(error) => {
             // Help and version are no errors; clap knows which stream and status each has.
             let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+            return if error.use_stderr() { Status::Mendable } else { Status::Done }.into();
         }
     };
     let result = match &cli.command {
@@ -135,13 +127,16 @@ pub fn run() -> ExitCode {
     };
     match result {
         Ok(code) => code,
-        Err(failure) => {
-            if let Some(text) = failure.text() {
-                let _ = writeln!(std::io::stderr(), "{text}");
-            }
-            failure.exit_code()
-        }
+        Err(failure) => ended(&failure.or_stopped(watch::signal())),
     }
+}
+
+/// Says why it failed.
+fn ended(failure: &Failure) -> ExitCode {
+    if let Some(text) = failure.text() {
+        let _ = writeln!(std::io::stderr(), "{text}");
+    }
+    failure.status().into()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::sweep_status::Reporter;
 use super::watch::Stop;
 use super::{Failure, output};
 use crate::store::stream;
+use crate::sweep::check::Checked;
 use crate::sweep::{
     Existing, Means, Output, OutputError, Shard, Summary, check, merge, run as compute, spec,
 };
@@ -97,14 +98,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         (Some(Command::Merge { parts, output, overwrite }), _) => {
             output::csv_only(output)?;
-            let rows = merge(parts, output, existing(*overwrite))?;
-            let shards = parts.len();
+            let merged = merge(parts, output, existing(*overwrite))?;
+            let (rows, shards) = (merged.rows, parts.len());
             say(&format!("{rows} rows of {shards} shards in {}", stream::shown(output)));
-            Ok(ExitCode::SUCCESS)
+            fruitful(merged.failures < rows)
         }
         (Some(Command::Check { results }), _) => {
-            output::write(&checked(results)?, None)?;
-            Ok(ExitCode::SUCCESS)
+            let found = check(results)?;
+            output::write(&checked(results, &found), None)?;
+            fruitful(!found.is_failure())
         }
         (None, Some(sweep)) => sweep.run(),
         // clap asks for the arguments first.
@@ -129,13 +131,13 @@ fn time(text: &str) -> Result<Duration, String> {
 }
 
 /// What results are, in words.
-fn checked(results: &Path) -> Result<String, Failure> {
-    let found = check(results)?;
+fn checked(results: &Path, found: &Checked) -> String {
     let shard =
         if found.shard == Shard::WHOLE { String::new() } else { format!(" of shard {}", found.shard) };
     let state = if found.rows == found.of { "complete" } else { "the same command goes on from there" };
     let mut text = format!("{}: {} of {} rows{shard}, {state}\n", show_path(results), found.rows, found.of);
-    let faults: Vec<String> = found.faults.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
+    let faults: Vec<String> =
+        found.faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
     // Writing to a String cannot fail.
     let _ = write!(
         text,
@@ -147,7 +149,15 @@ fn checked(results: &Path) -> Result<String, Failure> {
     if found.is_torn {
         text.push_str("The last line is torn: the next run cuts it off.\n");
     }
-    Ok(text)
+    text
+}
+
+/// Success where some row has a quantity.
+fn fruitful(is_fruitful: bool) -> Result<ExitCode, Failure> {
+    if is_fruitful {
+        return Ok(ExitCode::SUCCESS);
+    }
+    Err(Failure::Incomplete("every row failed; the column error says why".to_owned()))
 }
 
 fn existing(overwrite: bool) -> Existing {
@@ -204,7 +214,8 @@ impl Sweep {
         }
         self.tell(&spec, &summary, jobs, begun.elapsed());
         match stop.signal().filter(|_| !summary.is_complete()) {
-            None => Ok(ExitCode::SUCCESS),
+            // A shard of failures alone may be a part of a good sweep.
+            None => fruitful(self.shard != Shard::WHOLE || !summary.is_failure()),
             Some(signal) => {
                 let rows = summary.before + summary.now;
                 let kept = if stream::is_stream(&self.output) {
@@ -249,10 +260,10 @@ impl Sweep {
             let _ = write!(text, "; {} s, {} rows/s on {threads}", short(seconds, 3), significant(rate, 3));
         }
         say(&text);
-        let faults: u64 = summary.faults.values().sum();
+        let faults = summary.faults.total();
         if faults > 0 {
             let reasons: Vec<String> =
-                summary.faults.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
+                summary.faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
             say(&format!("{faults} with an error: {}", reasons.join(", ")));
         }
         if summary.is_complete()

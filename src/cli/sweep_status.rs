@@ -104,7 +104,7 @@ impl Reporter {
     /// The run is over.
     pub fn end(&mut self, summary: &Summary) {
         let state = if summary.is_complete() { "complete" } else { "stopped" };
-        self.replace(state, summary.before + summary.now, summary.faults.values().sum());
+        self.replace(state, summary.before + summary.now, summary.faults.total());
     }
 
     fn replace(&mut self, state: &str, rows: u64, with_error: u64) {

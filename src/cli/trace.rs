@@ -2,7 +2,7 @@
 
 use super::console::{admissible, note, warn};
 use super::problem::Problem;
-use super::watch::Bar;
+use super::watch::{Bar, Stop};
 use super::{Failure, output};
 use clap::{Args, ValueEnum};
 use pulloff_engine::quasistatic::CurveStop;
@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = output::format(arguments.format, file, Format::Csv)?;
     let loaded = arguments.problem.load()?;
     output::spares(file, "-o", &loaded)?;
-    let mut report = TraceReport::compute_while(&loaded.preset, &Bar::begin(None))?;
+    let mut report = TraceReport::compute_while(&loaded.preset, &Bar::begin(Some(&Stop::catch()?)))?;
     if arguments.theory {
         report = report.beside(&Exact::of(&loaded.preset.problem()));
     }

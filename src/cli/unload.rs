@@ -2,7 +2,7 @@
 
 use super::console::{admissible, note, warn};
 use super::problem::Problem;
-use super::watch::Bar;
+use super::watch::{Bar, Stop};
 use super::{Failure, output};
 use clap::{Args, ValueEnum};
 use pulloff_engine::quasistatic::PathStop;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             .assign("path.control", control)
             .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
     }
-    let report = UnloadReport::compute_while(&preset, &Bar::begin(None))?;
+    let report = UnloadReport::compute_while(&preset, &Bar::begin(Some(&Stop::catch()?)))?;
     warn(&report.warnings);
     let text = match format {
         Format::Table => table::unload(&report),

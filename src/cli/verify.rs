@@ -43,6 +43,7 @@ fn verdict(report: &VerifyReport) -> Result<ExitCode, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::Status;
 
     #[test]
     fn one_row_that_fails_is_exit_status_one() {
@@ -51,7 +52,7 @@ mod tests {
         let report = VerifyReport::new(&groups, None);
         assert!(report.passed < report.total);
         let failure = verdict(&report).unwrap_err();
-        assert_eq!(failure.exit_code(), ExitCode::from(1));
+        assert_eq!(failure.status(), Status::Failed);
         assert!(failure.text().unwrap().contains(&report.verdict()));
     }
 }

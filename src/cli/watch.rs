@@ -7,12 +7,24 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::cell::OnceCell;
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Shorter commands show no bar.
 const MOMENT: Duration = Duration::from_millis(500);
+
+/// The number of the signal that has come, once they are caught.
+static CAUGHT: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
+
+/// The signal that has come, where a command catches them.
+pub(super) fn signal() -> Option<u8> {
+    number(CAUGHT.get()?)
+}
+
+fn number(signal: &AtomicUsize) -> Option<u8> {
+    u8::try_from(signal.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
+}
 
 /// The signals that stop a command: the first lets it keep what is done, the second ends it at once.
 pub struct Stop {
@@ -22,7 +34,7 @@ pub struct Stop {
 impl Stop {
     /// Catches them from now on.
     pub fn catch() -> Result<Self, Failure> {
-        let signal = Arc::new(AtomicUsize::new(0));
+        let signal = Arc::clone(CAUGHT.get_or_init(Arc::default));
         let again = Arc::new(AtomicBool::new(false));
         let catch = |number: i32, value: usize| -> io::Result<()> {
             // Before the flag is set, so that it acts on the next one.
@@ -38,7 +50,7 @@ impl Stop {
 
     /// The signal that has come.
     pub fn signal(&self) -> Option<u8> {
-        u8::try_from(self.signal.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
+        number(&self.signal)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Results looked at without computing anything: whether they are of the sweep beside them, and how far they are.
 
 use super::output::{Faults, OutputError};
-use super::record::{Layout, Wrong};
+use super::record::{Layout, Outcome, Wrong};
 use super::shard::Shard;
 use super::sidecar::{Sidecar, SidecarError};
 use crate::store::hash::sha256;
@@ -26,6 +26,14 @@ pub struct Checked {
     pub is_torn: bool,
 }
 
+impl Checked {
+    /// Whether every row of a whole sweep is there, and none of them has a quantity.
+    #[must_use]
+    pub fn is_failure(&self) -> bool {
+        self.shard == Shard::WHOLE && self.rows == self.of && self.faults.failures == self.of
+    }
+}
+
 /// Checks the results at `path`: the hash beside them, the header, and in each row its number, its axes and its cells.
 /// Errors: The first line that is not what belongs there, and [`OutputError::NotOurs`].
 pub fn check(path: &Path) -> Result<Checked, OutputError> {
@@ -48,7 +56,7 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
         rows: 0,
         of,
         columns: layout.columns.clone(),
-        faults: Faults::new(),
+        faults: Faults::default(),
         is_torn: false,
     };
     let (mut line, mut number) = (Vec::new(), 0);
@@ -67,22 +75,15 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
             layout.check_header(&line).map_err(changed)?;
             continue;
         }
-        if let Some(reason) = fault(&layout, shard, checked.rows, of, &line).map_err(changed)? {
-            *checked.faults.entry(reason).or_default() += 1;
-        }
+        let found = outcome(&layout, shard, checked.rows, of, &line);
+        checked.faults.count(found.map_err(changed)?);
         checked.rows += 1;
     }
 }
 
-/// The reason for which a row is not whole.
-fn fault(
-    layout: &Layout,
-    shard: Shard,
-    index: u64,
-    of: u64,
-    line: &[u8],
-) -> Result<Option<&'static str>, Wrong> {
-    if index < of { layout.fault(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
+/// What became of a row.
+fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> Result<Outcome, Wrong> {
+    if index < of { layout.outcome(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
 }
 
 /// The hash of the canonical form that stands in the file beside the results.

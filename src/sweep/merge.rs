@@ -111,10 +111,18 @@ impl Part {
     }
 }
 
-/// Joins `parts`, in any order, to `results`; says how many rows there are.
+/// What was joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Merged {
+    pub rows: u64,
+    /// The rows with a fault and no quantity.
+    pub failures: u64,
+}
+
+/// Joins `parts`, in any order, to `results`.
 /// Errors: A part is missing, doubled, incomplete or of another sweep; there is a file already, and `existing` does not replace it;
 /// nothing has changed then.
-pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u64, MergeError> {
+pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Merged, MergeError> {
     let Some(first) = parts.first() else { return Err(MergeError::Missing("none is given".to_owned())) };
     let not_ours = |path: &Path| {
         let path = show_path(path);
@@ -154,16 +162,20 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<u6
     };
     if stream::is_stream(results) {
         // A stream cannot be taken back, so all parts are checked first.
-        fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
+        let failures = fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
         let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
         fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, sidecar.rows)?;
-        return Ok(sidecar.rows);
+        return Ok(Merged { rows: sidecar.rows, failures });
     }
     let mut open = open()?;
     let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
-    write_filled(results, overwrite, |file| fill(file, results, &mut open, &layout, sidecar.rows))?;
+    let mut failures = 0;
+    write_filled(results, overwrite, |file| {
+        failures = fill(file, results, &mut open, &layout, sidecar.rows)?;
+        Ok::<(), MergeError>(())
+    })?;
     write_atomically(&sidecar::path(results), whole.as_bytes(), Overwrite::Always)?;
-    Ok(sidecar.rows)
+    Ok(Merged { rows: sidecar.rows, failures })
 }
 
 fn listed(names: &[String]) -> String {
@@ -174,16 +186,20 @@ fn listed(names: &[String]) -> String {
     if more == 0 { told } else { format!("{told} and {more} more") }
 }
 
-/// The rows of all parts, taken in turn.
+/// The rows of all parts, taken in turn; how many of them failed.
 fn fill(
     file: &mut dyn Write,
     results: &Path,
     parts: &mut [Part],
     layout: &Layout,
     rows: u64,
-) -> Result<(), MergeError> {
+) -> Result<u64, MergeError> {
     let failed = |cause| {
-        OutputError::Io { path: stream::shown(results), doing: "write", cause: explained(cause) }.into()
+        MergeError::from(OutputError::Io {
+            path: stream::shown(results),
+            doing: "write",
+            cause: explained(cause),
+        })
     };
     let mut out = BufWriter::new(file);
     for part in parts.iter_mut() {
@@ -192,7 +208,7 @@ fn fill(
         checked.map_err(|wrong| part.changed(wrong))?;
     }
     out.write_all(layout.header().as_bytes()).map_err(failed)?;
-    let mut row = 0;
+    let (mut row, mut failures) = (0, 0);
     while row < rows {
         for part in parts.iter_mut() {
             if row == rows {
@@ -204,8 +220,9 @@ fn fill(
                 let (path, of) = (show_path(&part.path), shard.len(rows));
                 return Err(MergeError::Incomplete { path, rows: had, of, shard });
             };
-            if let Err(wrong) = layout.fault(row, line) {
-                return Err(part.changed(wrong));
+            match layout.outcome(row, line) {
+                Ok(outcome) => failures += u64::from(outcome.is_failure()),
+                Err(wrong) => return Err(part.changed(wrong)),
             }
             out.write_all(line).map_err(failed)?;
             row += 1;
@@ -216,5 +233,6 @@ fn fill(
             return Err(part.changed(Wrong::behind_the_last()));
         }
     }
-    out.flush().map_err(failed)
+    out.flush().map_err(failed)?;
+    Ok(failures)
 }

@@ -4,7 +4,7 @@
 //! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
 //! of ours and are not touched. Standard output, a pipe or a device takes the rows as they come, and nothing else.
 
-use super::record::{Layout, Wrong};
+use super::record::{Layout, Outcome, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::identity;
@@ -71,8 +71,30 @@ impl Mend for OutputError {
     }
 }
 
-/// Faults by their reason.
-pub type Faults = BTreeMap<&'static str, u64>;
+/// Faults of rows.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// How many, by their reason.
+    pub reasons: BTreeMap<&'static str, u64>,
+    /// The rows with a fault and no quantity.
+    pub failures: u64,
+}
+
+impl Faults {
+    /// Counts a row.
+    pub(super) fn count(&mut self, outcome: Outcome) {
+        if let Some(reason) = outcome.fault {
+            *self.reasons.entry(reason).or_default() += 1;
+        }
+        self.failures += u64::from(outcome.is_failure());
+    }
+
+    /// The rows with a fault.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.reasons.values().sum()
+    }
+}
 
 /// Results being written.
 #[derive(Debug)]
@@ -133,7 +155,7 @@ impl Output {
     }
 
     fn new(file: File, path: String) -> Self {
-        let (buffer, flushed, faults) = (Vec::new(), Instant::now(), Faults::new());
+        let (buffer, flushed, faults) = (Vec::new(), Instant::now(), Faults::default());
         Self { file, path, is_stream: false, buffer, flushed, rows: 0, faults }
     }
 
@@ -161,11 +183,15 @@ impl Output {
             } else {
                 let row = shard.row(self.rows);
                 self.rows += 1;
-                if row < spec.rows { layout.fault(row, &line) } else { Err(Wrong::behind_the_last()) }
+                if row < spec.rows {
+                    layout.outcome(row, &line).map(Some)
+                } else {
+                    Err(Wrong::behind_the_last())
+                }
             };
             let changed = |what| OutputError::Changed { path: self.path.clone(), line: number, what };
-            if let Some(reason) = found.map_err(changed)? {
-                *self.faults.entry(reason).or_default() += 1;
+            if let Some(outcome) = found.map_err(changed)? {
+                self.faults.count(outcome);
             }
             whole += length as u64;
         }

@@ -21,6 +21,23 @@ pub struct Layout {
     pub columns: Vec<String>,
 }
 
+/// What became of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Outcome {
+    /// The reason of its fault, if it has one.
+    pub fault: Option<&'static str>,
+    /// Whether it has a quantity: a fault of one leaves the others.
+    pub has_quantity: bool,
+}
+
+impl Outcome {
+    /// Whether there is a fault and nothing else.
+    #[must_use]
+    pub fn is_failure(self) -> bool {
+        self.fault.is_some() && !self.has_quantity
+    }
+}
+
 /// Why a line is not the one that belongs there, in words that are safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wrong(String);
@@ -104,8 +121,8 @@ impl Layout {
         Err(Wrong(format!("the columns are not {}", names.join(", "))))
     }
 
-    /// The reason of the fault of a row, if it has one, from its whole line.
-    pub fn fault(&self, row: u64, line: &[u8]) -> Result<Option<&'static str>, Wrong> {
+    /// What became of a row, from its whole line.
+    pub fn outcome(&self, row: u64, line: &[u8]) -> Result<Outcome, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));
         let fields = fields(line).ok_or_else(|| wrong("is no CSV"))?;
@@ -128,11 +145,12 @@ impl Layout {
         if let Some(at) = (known.len()..last).find(|at| !is_cell(*at)) {
             return Err(wrong_field(at, "a number or nothing"));
         }
-        match (&fields[last], Fault::reason_of(&fields[last])) {
-            ("", _) => Ok(None),
-            (_, Some(reason)) => Ok(Some(reason)),
-            _ => Err(wrong_field(last, "a fault or nothing")),
+        let fault = Fault::reason_of(&fields[last]);
+        if fault.is_none() && !fields[last].is_empty() {
+            return Err(wrong_field(last, "a fault or nothing"));
         }
+        let has_quantity = (known.len()..last).any(|at| !fields[at].is_empty());
+        Ok(Outcome { fault, has_quantity })
     }
 }
 

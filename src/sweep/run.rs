@@ -4,7 +4,7 @@
 //! row is begun. So the file grows in order whatever the threads do, and memory does not grow with the number of rows.
 
 use super::output::{Faults, Output, OutputError};
-use super::record;
+use super::record::{self, Outcome};
 use super::shard::Shard;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::{Fault, Spec};
@@ -36,6 +36,12 @@ impl Summary {
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.before + self.now == self.of
+    }
+
+    /// Whether all rows are there, and none of them has a quantity.
+    #[must_use]
+    pub fn is_failure(&self) -> bool {
+        self.is_complete() && self.faults.failures == self.of
     }
 }
 
@@ -72,30 +78,24 @@ pub fn run(
         let late =
             || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
         let measured = measured.or_else(late)?;
-        let reason = measured.fault.as_ref().map(|fault| fault.reason);
-        Some((record::record(spec, row, &measured), reason))
+        let outcome = Outcome {
+            fault: measured.fault.as_ref().map(|fault| fault.reason),
+            has_quantity: measured.cells.iter().any(Option::is_some),
+        };
+        Some((record::record(spec, row, &measured), outcome))
     };
-    in_order(
-        before..of,
-        means.jobs,
-        WINDOW,
-        &compute,
-        progress,
-        |item: Option<(String, Option<&'static str>)>| {
-            let result = match item {
-                Some((line, reason)) => {
-                    now += 1;
-                    if let Some(reason) = reason {
-                        *faults.entry(reason).or_default() += 1;
-                    }
-                    output.append(&line)
-                }
-                None => output.flush(),
-            };
-            written(before + now, faults.values().sum());
-            result
-        },
-    )?;
+    in_order(before..of, means.jobs, WINDOW, &compute, progress, |item: Option<(String, Outcome)>| {
+        let result = match item {
+            Some((line, outcome)) => {
+                now += 1;
+                faults.count(outcome);
+                output.append(&line)
+            }
+            None => output.flush(),
+        };
+        written(before + now, faults.total());
+        result
+    })?;
     output.finish()?;
     Ok(Summary { before, now, of, faults })
 }

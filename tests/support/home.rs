@@ -1,10 +1,13 @@
 //! A home of its own in which the program runs, so that nothing of the machine's user is seen or touched.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// A folder that is home, configuration and current folder of the program.
@@ -52,6 +55,24 @@ impl Home {
 
     pub fn run(&self, arguments: &[&str]) -> Ended {
         Ended::of(self.command(arguments).output().expect("a run"))
+    }
+
+    /// Starts the program, sends the signal once it is caught, and says how it ended.
+    pub fn stopped(&self, arguments: &[&str], signal: Signal) -> Ended {
+        let mut command = self.command(arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a run");
+        let status = format!("/proc/{}/status", child.id());
+        let is_caught = || {
+            let text = fs::read_to_string(&status).unwrap_or_default();
+            let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+            let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+            mask >> (signal.as_raw() - 1) & 1 == 1
+        };
+        while !is_caught() && child.try_wait().expect("its state").is_none() {
+            sleep(Duration::from_millis(5));
+        }
+        kill_process(Pid::from_child(&child), signal).expect("it has not ended");
+        Ended::of(child.wait_with_output().expect("its end"))
     }
 
     /// A run that succeeds and says nothing on standard error.
