@@ -6,7 +6,9 @@
 mod home;
 
 use home::Home;
+use rustix::process::Signal;
 use serde_json::Value;
+use std::fs;
 
 const LENS: &str = include_str!("../presets/data/lens.csv");
 const FREE: [&str; 2] = ["--free", "E*,gamma,data.offset"];
@@ -60,7 +62,7 @@ fn a_table_goes_on_where_it_ended() {
     let (good, bad) = (home.file("a.csv", LENS), home.file("b.csv", &LENS.replace("retraction", "back")));
     let arguments = [&["fit", &good, &bad, "lens", "--table", "t.csv"], &FREE[..]].concat();
     let ended = home.run(&arguments);
-    assert!(ended.status == 1 && ended.err.contains("the segment \"back\" is not known"), "{}", ended.err);
+    assert!(ended.status == 2 && ended.err.contains("the segment \"back\" is not known"), "{}", ended.err);
     let first = home.text("t.csv");
     assert!(first.lines().count() == 3 && first.contains("a.csv,ok,"), "{first}");
     // The bad one, mended, is fitted; the good one is passed over.
@@ -69,6 +71,150 @@ fn a_table_goes_on_where_it_ended() {
     assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
     let second = home.text("t.csv");
     assert_eq!((second.lines().count(), second.matches(",ok,").count()), (3, 2), "{second}");
+}
+
+/// A pattern names what earlier fits wrote too: the command may be run twice in one folder.
+#[test]
+fn what_fits_wrote_is_not_fitted() {
+    let home = Home::new();
+    let free = [FREE[0], FREE[1], "--no-scan"];
+    home.file("a.csv", LENS);
+    home.file("b.csv", LENS);
+    let alone = [&["fit", "a.csv", "lens", "--residuals", "rest.csv"], &free[..]].concat();
+    assert_eq!(home.run(&alone).status, 0);
+    let all = ["fit", "a.csv", "b.csv", "rest.csv", "results.csv", "lens", "--table", "results.csv"];
+    let first = home.run(&[&all[..3], &all[5..], &free].concat());
+    assert_eq!(first.status, 0, "{}", first.err);
+    let table = home.text("results.csv");
+    let again = home.run(&[&all[..], &free].concat());
+    assert_eq!(again.status, 0, "{}", again.err);
+    assert_eq!(home.text("results.csv"), table);
+    for said in [
+        "note: rest.csv: is the residuals of a fit, not a measured curve; it is left out",
+        "note: results.csv: is a table of fits, not a measured curve; it is left out",
+        "note: a.csv: is in the table already: ok",
+    ] {
+        assert!(again.err.contains(said), "{}", again.err);
+    }
+    // Alone they are refused, and a measured curve is no table.
+    home.refused(
+        &[&["fit", "rest.csv", "lens"], &free[..]].concat(),
+        &["rest.csv: is the residuals of a fit"],
+    );
+    home.refused(
+        &[&["fit", "a.csv", "b.csv", "lens", "--table", "b.csv"], &free[..]].concat(),
+        &["--table", "b.csv: is the file of the points"],
+    );
+    assert_eq!(home.text("b.csv"), LENS);
+}
+
+/// What was cut off is in no table, and a rerun computes it.
+#[test]
+fn a_table_has_no_row_that_was_cut_off() {
+    let home = Home::new();
+    home.file("a.csv", LENS);
+    home.file("b.csv", LENS);
+    // The second takes far longer than it takes to stop it.
+    let common = ["lens", "--table", "t.csv", FREE[0], FREE[1], "--no-scan"];
+    let bootstrap = ["--bootstrap", "100000"];
+    let first = [&["fit", "a.csv"], &common[..]].concat();
+    assert_eq!(home.run(&first).status, 0);
+    let before = home.text("t.csv");
+    let arguments = [&["fit", "a.csv", "b.csv"], &common[..], &bootstrap].concat();
+    let ended = home.stopped(&arguments, Signal::INT);
+    assert_eq!(ended.status, 130, "{}", ended.err);
+    assert!(ended.err.contains("the same command goes on from there"), "{}", ended.err);
+    assert_eq!(home.text("t.csv"), before);
+    // Alone and without a table the best values are written, and it says so.
+    let ended =
+        home.stopped(&[&["fit", "b.csv", "lens", FREE[0], FREE[1]], &bootstrap[..]].concat(), Signal::TERM);
+    assert_eq!(ended.status, 143, "{}", ended.err);
+    assert!(ended.err.contains("pulloff: stopped: "), "{}", ended.err);
+    let ended = home.run(&[&["fit", "a.csv", "b.csv"], &common[..]].concat());
+    assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
+    assert_eq!(home.text("t.csv").matches(",ok,").count(), 2);
+}
+
+/// A rerun of a table ends as its worst row does.
+#[test]
+fn a_rerun_says_how_good_the_rows_are_that_it_passes_over() {
+    let home = Home::new();
+    home.file("a.csv", LENS);
+    let arguments =
+        ["fit", "a.csv", "lens", "--free", "R,E*,gamma,data.offset", "--no-scan", "--table", "t.csv"];
+    for _ in 0..2 {
+        assert_eq!(home.run(&arguments).status, 3);
+    }
+}
+
+/// The columns are said of the file that is given, whatever the preset's own file has.
+#[test]
+fn columns_are_judged_by_the_file_that_is_given() {
+    let home = Home::new();
+    let free = [FREE[0], FREE[1], "--no-scan"];
+    // The same curve with columns of other names behind five others.
+    let wide: String = LENS
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .enumerate()
+        .map(|(at, line)| {
+            let line =
+                if at == 0 { "i,j,k,l,m,way,pull,branch".to_owned() } else { format!("0,0,0,0,0,{line}") };
+            line + "\n"
+        })
+        .collect();
+    let wide = home.file("wide.csv", &wide);
+    home.file("mine.toml", &home.quiet(&["presets", "show", "lens"]).replace("shipped:lens.csv", "mine.csv"));
+    home.file("mine.csv", LENS);
+    let columns = "position=way [um],force=pull [uN],segment=branch";
+    for columns in [columns, "position=6 [um],force=7 [uN],segment=8"] {
+        for preset in ["lens", "mine.toml"] {
+            let fitted = home.run(&[&["fit", &wide, preset, "--columns", columns], &free[..]].concat());
+            assert_eq!(fitted.status, 0, "{preset} {columns}: {}", fitted.err);
+            let drawn = home.run(&[
+                "plot",
+                preset,
+                "--measured",
+                &wide,
+                "--columns",
+                columns,
+                "-o",
+                "x.svg",
+                "--data",
+            ]);
+            assert_eq!(drawn.status, 0, "{preset} {columns}: {}", drawn.err);
+            fs::remove_file(home.path("x.svg")).unwrap();
+            fs::remove_file(home.path("x.csv")).unwrap();
+        }
+    }
+    // What is wrong is said of the right file, or of the option.
+    let wrong = |columns: &str, said: &[&str]| {
+        home.refused(&[&["fit", &wide, "lens", "--columns", columns], &free[..]].concat(), said);
+        home.refused(&["plot", "lens", "--measured", &wide, "--columns", columns], said);
+    };
+    wrong("x=9,force=7", &["wide.csv", "no column 9"]);
+    wrong("way=6", &["--columns", "way"]);
+    // Of the preset's own curve, where no other is given.
+    home.refused(
+        &[&["fit", "lens", "--columns", "x=9,force=2"], &free[..]].concat(),
+        &["lens.csv", "no column 9"],
+    );
+}
+
+/// The list of what is free goes with the fitted values.
+#[test]
+fn a_fitted_preset_keeps_what_was_free() {
+    let home = Home::new();
+    let fit = ["fit", "lens", "--free", "E*, gamma,data.offset", "--no-scan", "-o", "fitted.toml"];
+    assert_eq!(home.run(&fit).status, 0);
+    assert!(
+        home.text("fitted.toml").contains("free = \"E*,gamma,data.offset\""),
+        "{}",
+        home.text("fitted.toml")
+    );
+    let again = home.run(&["fit", "fitted.toml", "--no-scan"]);
+    assert_eq!(again.status, 0, "{}", again.err);
+    assert_eq!(again.out.matches("material.").count(), 2, "{}", again.out);
 }
 
 #[test]

@@ -66,12 +66,11 @@ pub fn fitted(
 ) -> PyResult<(Document, Problem, &'static str, Option<String>)> {
     let mut preset = problem.get().preset.clone();
     let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
-    if let Some(columns) = columns {
-        let set = preset.set(data_keys::COLUMNS, PresetValue::Text(columns.to_owned()));
-        set.map_err(|invalid| refused(&invalid))?;
-    }
-    let source = Source::new(name.to_owned(), None, data.into());
-    preset.set(data_keys::FILE, PresetValue::Points(Arc::new(source))).map_err(|invalid| match invalid {
+    let source = PresetValue::Points(Arc::new(Source::new(name.to_owned(), None, data.into())));
+    let columns = columns.map(|columns| (data_keys::COLUMNS, PresetValue::Text(columns.to_owned())));
+    // Together: the columns are those of this table, and not of the preset's own.
+    let both = [(data_keys::FILE, source)].into_iter().chain(columns);
+    preset.set_all(both).map_err(|invalid| match invalid {
         Invalid::Made { cause, .. } => errors::of_data(py, &cause),
         invalid => refused(&invalid),
     })?;

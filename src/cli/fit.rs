@@ -1,12 +1,13 @@
 //! `pulloff fit`: the values of a problem that a measured curve gives, with their errors.
 
+mod files;
 mod table;
 
 use self::table::Table;
 use super::console::{note, warn};
-use super::measured::{attach, typed};
+use super::measured::{attach, columns, typed};
 use super::watch::{Bar, Stop};
-use super::{Failure, output, problem};
+use super::{Failure, Status, output, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::{Args, ValueEnum};
@@ -115,20 +116,23 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(path) => Some(Table::open(path, &arguments.fingerprint(&loaded.preset))?),
         None => None,
     };
+    let said = arguments.said()?;
     let mut reports = Vec::new();
-    let mut worst = None;
+    let mut worst = Status::Done;
     for path in &files {
         let shown = show_path(path);
-        if table.as_ref().is_some_and(|table| table.has(path)) {
-            note(Some(&format!("{shown}: is in the table already")));
+        if let Some(state) = table.as_ref().and_then(|table| table.state(path)) {
+            note(Some(&format!("{shown}: is in the table already: {state}")));
+            worst = worst.max(status_of(state));
             continue;
         }
-        let found = match one(path, &loaded, &options, &stop) {
+        let found = match one(path, &loaded, &said, &options, &stop) {
             Ok(done) => done,
+            Err(_) if stop.signal().is_some() => break,
             // One bad file among many is told, and the others are fitted.
             Err(failure) if files.len() > 1 => {
                 warn(&[failure.to_string()]);
-                worst = worst.max(Some(1));
+                worst = worst.max(failure.status());
                 if let Some(table) = &mut table {
                     table.add(path, None, &failed(shown, &failure))?;
                 }
@@ -138,7 +142,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         };
         let report = FitReport::new(&shown, &found, arguments.poisson);
         warn(&report.warnings);
-        if let Some(table) = &mut table {
+        // What was cut off is computed again by a rerun.
+        if let Some(table) = table.as_mut().filter(|_| stop.signal().is_none()) {
             table.add(path, Some(table.fingerprint(path)), &report.row())?;
         }
         if let Some(file) = &arguments.residuals {
@@ -146,7 +151,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
         if let Some(file) = &arguments.output {
             let folder = file.parent().unwrap_or(Path::new("."));
-            output::write(&write(&found.preset.placed_in(folder)), Some(file))?;
+            let mut preset = found.preset.placed_in(folder);
+            let free = Value::Text(options.free.join(","));
+            preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
+            output::write(&write(&preset), Some(file))?;
         }
         worst = worst.max(status(&report));
         reports.push(report);
@@ -160,18 +168,35 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (false, reports) => reports.iter().map(FitReport::text).collect::<Vec<_>>().join("\n"),
     };
     output::write(&text, None)?;
-    match (stop.signal(), worst) {
-        (None, None | Some(0)) => Ok(ExitCode::SUCCESS),
-        (None, Some(3)) => Err(Failure::Inadmissible(
-            "the points do not determine all values; the result says which".to_owned(),
-        )),
-        (None, Some(_)) => Err(Failure::Incomplete(
-            "not every fit came to its end; the result has the best values so far".to_owned(),
-        )),
-        (Some(signal), _) => Err(Failure::Interrupted {
-            signal,
-            text: "stopped: the result has the best values so far".to_owned(),
-        }),
+    if let Some(signal) = stop.signal() {
+        let text = if table.is_some() {
+            "stopped: the table has the files that are done; the same command goes on from there"
+        } else if reports.is_empty() {
+            "stopped: nothing was fitted"
+        } else {
+            "stopped: the result has the best values so far"
+        };
+        let text = text.to_owned();
+        return Err(Failure::Interrupted { signal, text });
+    }
+    match worst {
+        Status::Done => Ok(ExitCode::SUCCESS),
+        Status::Doubtful => {
+            let text = "the points do not determine all values; the result says which";
+            Err(Failure::Doubtful(text.to_owned()))
+        }
+        Status::NotDescribed => {
+            let text = "the model does not describe all points; the result says why";
+            Err(Failure::NotDescribed(text.to_owned()))
+        }
+        Status::Mendable => {
+            let text = "not every file could be fitted; a warning says why";
+            Err(Failure::Usage(text.to_owned()))
+        }
+        _ => {
+            let text = "not every fit came to its end; the result has the best values so far";
+            Err(Failure::Incomplete(text.to_owned()))
+        }
     }
 }
 
@@ -181,23 +206,32 @@ fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
     [["file", "state"].map(str::to_owned).to_vec(), vec![file, text]]
 }
 
-/// 1 where a fit did not converge, else 3 where it is not determined.
-fn status(report: &FitReport) -> Option<u8> {
-    match (report.ended, report.determined) {
-        ("converged", true) => None,
-        ("converged", false) => Some(3),
-        // Above 3, so that it is what many files end with.
-        _ => Some(4),
+/// How good a fit is.
+fn status(report: &FitReport) -> Status {
+    status_of(report.state())
+}
+
+/// How good a fit of this state is.
+fn status_of(state: &str) -> Status {
+    match state {
+        "ok" => Status::Done,
+        "not determined" => Status::Doubtful,
+        _ => Status::Failed,
     }
 }
 
 /// The fit to one file, or to the curve of the preset itself.
-fn one(path: &Path, loaded: &Loaded, options: &Options, stop: &Stop) -> Result<Fit, Failure> {
+fn one(
+    path: &Path,
+    loaded: &Loaded,
+    said: &[(&'static str, Value)],
+    options: &Options,
+    stop: &Stop,
+) -> Result<Fit, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
     let mut preset = loaded.preset.clone();
-    if own(&preset) != Some(path.to_owned()) {
-        attach(&mut preset, path)?;
-    }
+    let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
+    attach(&mut preset, other, said)?;
     let fitted = fit_own(&preset, options, &Bar::begin(Some(stop)));
     fitted.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
@@ -218,14 +252,8 @@ impl Arguments {
             _ => (None, &self.paths[..]),
         };
         let mut files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        let mut loaded = problem::Problem { preset, assignments: self.assignments.clone() }.load()?;
-        for (key, flag, text) in [
-            (data::COLUMNS, "--columns", self.columns.clone()),
-            (data::SEGMENT, "--segment", self.segment.map(|branch| branch.word().to_owned())),
-        ] {
-            let set = text.map(|text| loaded.preset.set(key, Value::Text(text)));
-            set.transpose().map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
-        }
+        let loaded = problem::Problem { preset, assignments: self.assignments.clone() }.load()?;
+        files = files::measured(files)?;
         if files.is_empty() {
             files.extend(own(&loaded.preset));
         }
@@ -245,20 +273,19 @@ impl Arguments {
                 )));
             }
             output::spares(file.as_deref(), option, &loaded)?;
-            let same = |path: &PathBuf| {
-                let [a, b] =
-                    [Some(path), file.as_ref()].map(|path| path.and_then(|path| path.canonicalize().ok()));
-                a.is_some() && a == b
-            };
-            if files.iter().any(same) {
-                return Err(Failure::Usage(format!("{option}: is the file of the points; write to another")));
-            }
+            files::spared(&files, file.as_deref(), option)?;
         }
         if let Some(nu) = self.poisson.filter(|nu| !(-1.0..=0.5).contains(nu)) {
             return Err(Failure::Usage(format!("--poisson {nu}: Poisson's ratio is from -1 to 0.5")));
         }
         let options = self.options(&loaded.preset)?;
         Ok((files, loaded, options))
+    }
+
+    /// What is said of the files, with its keys.
+    fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
+        let segment = self.segment.map(|branch| (data::SEGMENT, Value::Text(branch.word().to_owned())));
+        Ok(columns(self.columns.as_deref())?.into_iter().chain(segment).collect())
     }
 
     fn options(&self, preset: &Preset) -> Result<Options, Failure> {

@@ -2,19 +2,33 @@
 
 use super::Failure;
 use crate::store::data::read_points;
+use pulloff_engine::measured::Spec;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::units::Quantity;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Gives the preset the measured curve in the file `path`, and the spring that it states where the preset has none.
-pub(super) fn attach(preset: &mut Preset, path: &Path) -> Result<(), Failure> {
-    let source = read_points(path)?;
-    preset.set(data::FILE, Value::Points(Arc::new(source))).map_err(|invalid| match invalid {
+/// Gives the preset the measured curve in the file `path`, or leaves it its own where that is `None`; the spring that it states
+/// where the preset has none; and what is `said` of it. All at once, for what is said is not about the curve before.
+pub(super) fn attach(
+    preset: &mut Preset,
+    path: Option<&Path>,
+    said: &[(&'static str, Value)],
+) -> Result<(), Failure> {
+    let file = path.map(|path| Ok::<_, Failure>(Value::Points(Arc::new(read_points(path)?)))).transpose()?;
+    let file = file.map(|points| (data::FILE, points));
+    preset.set_all(file.into_iter().chain(said.iter().cloned())).map_err(|invalid| match invalid {
         Invalid::Made { cause, .. } => Failure::Usage(cause),
         invalid => Failure::Usage(invalid.to_string()),
     })
+}
+
+/// What `--columns` says, if it can be said of any file.
+pub(super) fn columns(text: Option<&str>) -> Result<Option<(&'static str, Value)>, Failure> {
+    let Some(text) = text else { return Ok(None) };
+    Spec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
+    Ok(Some((data::COLUMNS, Value::Text(text.to_owned()))))
 }
 
 /// A number as typed behind `flag`, in SI or reduced units, of what the key `key` measures.

@@ -1,7 +1,7 @@
 //! `pulloff plot`: a view of the explorer as a figure for print.
 
 use super::console::{note, warn};
-use super::measured::{attach, typed};
+use super::measured::{attach, columns, typed};
 use super::problem::Problem;
 use super::{Failure, output};
 use crate::explorer::fitting::FitWish;
@@ -15,19 +15,18 @@ use crate::figure::{Figure, Range, Sign, Subject};
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Width, series, svg, table};
 use crate::print::{Format, FormatError};
-use crate::store::file::kind_of;
+use crate::store::file::{first_line, kind_of};
 use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
-use pulloff_engine::preset::{Preset, Value, data};
+use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::Areas;
 use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
-use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, LazyLock};
@@ -189,13 +188,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 impl Arguments {
     /// Gives the preset the measured curve that is asked for, and says what was found in its own.
     fn lay_points(&self, preset: &mut Preset) -> Result<(), Failure> {
-        if let Some(columns) = &self.columns {
-            let set = preset.set(data::COLUMNS, Value::Text(columns.clone()));
-            set.map_err(|invalid| Failure::Usage(format!("--columns: {invalid}")))?;
-        }
-        if let Some(path) = &self.measured {
-            attach(preset, path)?;
-        }
+        let said = columns(self.columns.as_deref())?;
+        attach(preset, self.measured.as_deref(), said.as_slice())?;
         for (flag, key, text) in
             [("--offset", data::OFFSET, &self.offset), ("--baseline", data::BASELINE, &self.baseline)]
         {
@@ -261,7 +255,7 @@ impl Arguments {
         if let Some(loaded) = loaded {
             output::spares(Some(&path), "--data", loaded)?;
         }
-        let overwrite = match first_line(&path)? {
+        let overwrite = match header_of(&path)? {
             None => Overwrite::Never,
             Some(line) if table::is_header(&line) => Overwrite::Always,
             Some(_) => {
@@ -277,23 +271,18 @@ impl Arguments {
 }
 
 /// The first line of a file; `None` where there is no file.
-fn first_line(path: &Path) -> Result<Option<String>, Failure> {
-    /// Far more than the header of a table of data.
-    const LONGEST: u64 = 4096;
+fn header_of(path: &Path) -> Result<Option<String>, Failure> {
     let failed = |cause| Failure::System { what: format!("--data {}", output::shown(path)), cause };
-    let file = match path.metadata() {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(failed(error)),
+    match path.metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(failed(error)),
         // A pipe would wait for its writer.
         Ok(metadata) if !metadata.is_file() => {
             let (path, what) = (output::shown(path), kind_of(&metadata));
-            return Err(WriteError::NotRegular { path, what }.into());
+            Err(WriteError::NotRegular { path, what }.into())
         }
-        Ok(_) => File::open(path).map_err(failed)?,
-    };
-    let mut line = Vec::new();
-    BufReader::new(file.take(LONGEST)).read_until(b'\n', &mut line).map_err(failed)?;
-    Ok(Some(String::from_utf8_lossy(&line).into_owned()))
+        Ok(_) => first_line(path).map(Some).map_err(failed),
+    }
 }
 
 /// The inside of the state of this contact radius, or of the start.

@@ -5,7 +5,7 @@ use pulloff_engine::text::show_path;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata, OpenOptions};
 use std::hash::{DefaultHasher, Hasher};
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use thiserror::Error;
@@ -89,6 +89,15 @@ pub fn kind_of(metadata: &Metadata) -> &'static str {
     } else {
         "a special file"
     }
+}
+
+/// The first line of a regular file, or as much of it as a header can be.
+pub fn first_line(path: &Path) -> io::Result<String> {
+    /// Far more than the header of a table.
+    const LONGEST: u64 = 4096;
+    let mut line = Vec::new();
+    BufReader::new(File::open(path)?.take(LONGEST)).read_until(b'\n', &mut line)?;
+    Ok(String::from_utf8_lossy(&line).into_owned())
 }
 
 /// The text of a regular file of at most `limit` bytes.

@@ -296,16 +296,21 @@ impl FitReport {
         let _ = writeln!(text, "end: {end}");
     }
 
+    /// How good it is, in the word of the column `state`: `ok`, `not determined`, or how else it ended.
+    #[must_use]
+    pub fn state(&self) -> &'static str {
+        match (self.ended, self.determined) {
+            ("converged", true) => "ok",
+            ("converged", false) => "not determined",
+            (other, _) => other,
+        }
+    }
+
     /// The header and the row of a table with one row for each file.
     #[must_use]
     pub fn row(&self) -> [Vec<String>; 2] {
         let mut header = vec!["file".to_owned(), "state".to_owned()];
-        let state = match (self.ended, self.determined) {
-            ("converged", true) => "ok",
-            ("converged", false) => "not determined",
-            (other, _) => other,
-        };
-        let mut row = vec![self.file.clone(), state.to_owned()];
+        let mut row = vec![self.file.clone(), self.state().to_owned()];
         for parameter in &self.parameters {
             header.push(parameter.key.clone());
             header.push(format!("{} error", parameter.key));
@@ -326,12 +331,15 @@ impl FitReport {
     }
 }
 
+/// The header of [`residuals`].
+pub const RESIDUALS: &str = "row,segment,part,x,force,residual,outlier";
+
 /// The points beside a fit as CSV: row, segment, x, P, part, residual in σ, outlier; x and P in base units, signs put right.
 #[must_use]
 pub fn residuals(residuals: &[Residual]) -> String {
     let mut rows: Vec<&Residual> = residuals.iter().collect();
     rows.sort_by_key(|residual| residual.datum.point.row);
-    let mut text = "row,segment,part,x,force,residual,outlier\n".to_owned();
+    let mut text = format!("{RESIDUALS}\n");
     for residual in rows {
         let datum = &residual.datum;
         let segment = match datum.segment {

@@ -13,8 +13,16 @@ pub(super) struct Table {
     rows: Vec<Vec<String>>,
 }
 
-/// The last column: what a row was computed from.
+/// The first two columns, and the last: what a row was computed from.
+const FILE: &str = "file";
+const STATE: &str = "state";
 const FINGERPRINT: &str = "fingerprint";
+
+/// Whether a line is the header of such a table.
+pub(super) fn is_header(line: &str) -> bool {
+    let names: Vec<&str> = line.trim_end().split(',').collect();
+    names.starts_with(&[FILE, STATE]) && names.ends_with(&[FINGERPRINT])
+}
 
 impl Table {
     /// The table in `path`, or a new one.
@@ -23,29 +31,25 @@ impl Table {
         let mut table = Self {
             path: path.to_owned(),
             settings: settings.to_owned(),
-            header: Vec::new(),
+            header: [FILE, STATE, FINGERPRINT].map(str::to_owned).to_vec(),
             rows: Vec::new(),
         };
         if !path.exists() {
             return Ok(table);
         }
         let (text, _) = crate::store::file::read_text(path, pulloff_engine::cells::LARGEST)?;
-        let mut reader =
-            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+        let wrong = |what: &str| Failure::Usage(format!("--table {}: {what}", output::shown(path)));
         for record in reader.records() {
-            table.rows.push(record?.iter().map(str::to_owned).collect());
+            let record = record.map_err(|error| wrong(&error.to_string()))?;
+            table.rows.push(record.iter().map(str::to_owned).collect());
         }
         if table.rows.is_empty() {
             return Ok(table);
         }
         table.header = table.rows.remove(0);
-        if table.header.first().map(String::as_str) != Some("file")
-            || table.header.last().map(String::as_str) != Some(FINGERPRINT)
-        {
-            return Err(Failure::Usage(format!(
-                "--table {}: holds something else than fits; name another",
-                output::shown(path)
-            )));
+        if !is_header(&table.header.join(",")) {
+            return Err(wrong("holds something else than fits; name another"));
         }
         Ok(table)
     }
@@ -58,10 +62,12 @@ impl Table {
         sha256(whole.as_bytes())[..16].to_owned()
     }
 
-    /// Whether the file was fitted before, in the same way.
-    pub(super) fn has(&self, path: &Path) -> bool {
+    /// How the file was fitted before, in the same way.
+    pub(super) fn state(&self, path: &Path) -> Option<&str> {
         let (shown, fingerprint) = (show_path(path), self.fingerprint(path));
-        self.rows.iter().any(|row| row.first() == Some(&shown) && row.last() == Some(&fingerprint))
+        let mut rows = self.rows.iter();
+        let row = rows.find(|row| row.first() == Some(&shown) && row.last() == Some(&fingerprint))?;
+        row.get(1).map(String::as_str)
     }
 
     /// Puts a row in, in place of an older one of the same file; one without a fingerprint is tried again by a rerun.
@@ -73,25 +79,71 @@ impl Table {
     ) -> Result<(), Failure> {
         let shown = show_path(path);
         self.rows.retain(|row| row.first() != Some(&shown));
-        let mut header = header.clone();
-        header.push(FINGERPRINT.to_owned());
-        if header.len() > self.header.len() || self.header.is_empty() {
-            self.header = header;
-        }
-        let mut row = row.clone();
-        // A file that could not be fitted has its reason, and nothing else.
-        row.resize(self.header.len().max(row.len() + 1) - 1, String::new());
-        row.push(fingerprint.unwrap_or_default());
-        self.rows.push(row);
-        let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+        self.widen(header);
+        let cell = |name: &String| match header.iter().position(|known| known == name) {
+            Some(at) => row.get(at).cloned().unwrap_or_default(),
+            None if name == FINGERPRINT => fingerprint.clone().unwrap_or_default(),
+            None => String::new(),
+        };
+        self.rows.push(self.header.iter().map(cell).collect());
+        let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(&self.header)?;
-        for row in &mut self.rows {
-            let last = row.pop().unwrap_or_default();
-            row.resize(self.header.len() - 1, String::new());
-            row.push(last);
-            writer.write_record(&*row)?;
+        for row in &self.rows {
+            writer.write_record(row)?;
         }
         let bytes = writer.into_inner().map_err(|error| Failure::Usage(error.to_string()))?;
         output::write_bytes(&bytes, Some(&self.path))
+    }
+
+    /// Makes room for the columns of `wanted`: those of rows that were computed otherwise keep their cells under their names.
+    fn widen(&mut self, wanted: &[String]) {
+        if wanted.iter().all(|name| self.header.contains(name)) {
+            return;
+        }
+        let others = self.header.iter().filter(|name| !wanted.contains(name) && *name != FINGERPRINT);
+        let mut header: Vec<String> = wanted.iter().chain(others).cloned().collect();
+        header.push(FINGERPRINT.to_owned());
+        let places: Vec<Option<usize>> =
+            header.iter().map(|name| self.header.iter().position(|known| known == name)).collect();
+        for row in &mut self.rows {
+            *row = places.iter().map(|at| at.map_or_else(String::new, |at| row[at].clone())).collect();
+        }
+        self.header = header;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fitted(file: &str, keys: &[&str]) -> [Vec<String>; 2] {
+        let header = [FILE, STATE].into_iter().chain(keys.iter().copied()).map(str::to_owned).collect();
+        let values = keys.iter().map(|key| format!("{key} of {file}"));
+        [header, [file.to_owned(), "ok".to_owned()].into_iter().chain(values).collect()]
+    }
+
+    /// Rows of other keys stay under their own names.
+    #[test]
+    fn a_value_stays_under_its_key() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        for (file, keys) in [("a", &["E", "gamma"][..]), ("b", &["E", "R"]), ("c", &["gamma"]), ("d", &[])] {
+            let mut table = Table::open(&path, "s").unwrap();
+            let fingerprint = table.fingerprint(Path::new(file));
+            table.add(Path::new(file), Some(fingerprint), &fitted(file, keys)).unwrap();
+            assert_eq!(table.state(Path::new(file)), Some("ok"));
+        }
+        let mut reader = csv::Reader::from_path(&path).unwrap();
+        let header = reader.headers().unwrap().clone();
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        assert_eq!(rows.len(), 4);
+        for (row, keys) in rows.iter().zip([&["E", "gamma"][..], &["E", "R"], &["gamma"], &[]]) {
+            for (name, cell) in header.iter().zip(row).filter(|(name, _)| ["E", "gamma", "R"].contains(name))
+            {
+                let expected =
+                    if keys.contains(&name) { format!("{name} of {}", &row[0]) } else { String::new() };
+                assert_eq!(cell, expected, "{name} of {row:?}");
+            }
+        }
     }
 }

@@ -49,7 +49,13 @@ impl Preset {
             let list = if groups::row(key).is_some() { &mut grouped } else { &mut plain };
             list.push((row, value));
         }
-        plain.sort_by_key(|(row, _)| !CHOOSERS.contains(&&*row.key));
+        // What is said of the columns of a file comes before the file, which is asked for its spring.
+        let order = |row: &Parameter| match &*row.key {
+            key if CHOOSERS.contains(&key) => 0,
+            data::COLUMNS => 1,
+            _ => 2,
+        };
+        plain.sort_by_key(|(row, _)| order(row));
         let mut changed = self.clone();
         if !plain.is_empty() {
             let mut values = self.keyed();
@@ -91,10 +97,9 @@ impl Preset {
             }
             // A device without a stiffness becomes the spring that the file states.
             data::FILE => {
+                let columns = values.get(data::COLUMNS).map(ToString::to_string).unwrap_or_default();
                 let states = match &value {
-                    Value::Points(source) => {
-                        source.measured(&self.data.columns).is_ok_and(|of| of.stiffness.is_some())
-                    }
+                    Value::Points(source) => source.measured(&columns).is_ok_and(|of| of.stiffness.is_some()),
                     _ => false,
                 };
                 if states && !matches!(self.path.control, Control::Stiffness(_)) {
