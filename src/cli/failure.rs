@@ -255,6 +255,7 @@ impl Failure {
     }
 
     /// The same failure, or the word that `signal` stopped the command where the computation ended for it.
+    #[must_use]
     pub fn or_stopped(self, signal: Option<u8>) -> Self {
         match (signal, &self) {
             (

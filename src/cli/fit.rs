@@ -144,7 +144,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         warn(&report.warnings);
         // What was cut off is computed again by a rerun.
         if let Some(table) = table.as_mut().filter(|_| stop.signal().is_none()) {
-            table.add(path, Some(table.fingerprint(path)), &report.row())?;
+            let fingerprint = table.fingerprint(path);
+            table.add(path, Some(&fingerprint), &report.row())?;
         }
         if let Some(file) = &arguments.residuals {
             output::write(&residuals(&found.residuals), Some(file))?;

@@ -74,7 +74,7 @@ impl Table {
     pub(super) fn add(
         &mut self,
         path: &Path,
-        fingerprint: Option<String>,
+        fingerprint: Option<&str>,
         [header, row]: &[Vec<String>; 2],
     ) -> Result<(), Failure> {
         let shown = show_path(path);
@@ -82,7 +82,7 @@ impl Table {
         self.widen(header);
         let cell = |name: &String| match header.iter().position(|known| known == name) {
             Some(at) => row.get(at).cloned().unwrap_or_default(),
-            None if name == FINGERPRINT => fingerprint.clone().unwrap_or_default(),
+            None if name == FINGERPRINT => fingerprint.unwrap_or_default().to_owned(),
             None => String::new(),
         };
         self.rows.push(self.header.iter().map(cell).collect());
@@ -130,7 +130,7 @@ mod tests {
         for (file, keys) in [("a", &["E", "gamma"][..]), ("b", &["E", "R"]), ("c", &["gamma"]), ("d", &[])] {
             let mut table = Table::open(&path, "s").unwrap();
             let fingerprint = table.fingerprint(Path::new(file));
-            table.add(Path::new(file), Some(fingerprint), &fitted(file, keys)).unwrap();
+            table.add(Path::new(file), Some(&fingerprint), &fitted(file, keys)).unwrap();
             assert_eq!(table.state(Path::new(file)), Some("ok"));
         }
         let mut reader = csv::Reader::from_path(&path).unwrap();
