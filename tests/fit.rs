@@ -25,7 +25,8 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     );
     assert_eq!((ended.status, ended.err.as_str()), (0, ""));
     let document: Value = serde_json::from_str(&ended.out).unwrap();
-    assert_eq!((document["schema"].as_u64(), document["determined"].as_bool()), (Some(1), Some(true)));
+    assert_eq!((document["schema"].as_u64(), document["verdict"].as_str()), (Some(1), Some("describes")));
+    assert!(document["reasons"].as_array().unwrap().is_empty());
     let truth = [
         ("material.effective_modulus", 1e6, "Pa"),
         ("material.work_of_adhesion", 0.05, "J/m^2"),
@@ -57,6 +58,26 @@ fn what_is_not_determined_has_a_status_of_its_own() {
 }
 
 #[test]
+fn a_model_that_does_not_describe_the_points_has_a_status_of_its_own() {
+    let home = Home::new();
+    let wrong = [
+        &["fit", "shipped:lens.csv", "lens", "--json", "--set", "path.control.stiffness=300 N/m"],
+        &FREE[..],
+    ]
+    .concat();
+    let ended = home.run(&wrong);
+    assert_eq!(ended.status, 4, "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!(document["verdict"].as_str(), Some("does-not-describe"));
+    assert_eq!(document["parameters"][0]["error_holds"].as_bool(), Some(false));
+    let reason = &document["reasons"][0];
+    assert!(reason["kind"].is_string() && reason["value"].is_number(), "{reason}");
+    assert!(ended.err.contains(reason["sentence"].as_str().unwrap()), "{}", ended.err);
+    let accepted = home.run(&[&wrong[..], &["--accept"]].concat());
+    assert_eq!((accepted.status, &accepted.out), (0, &ended.out));
+}
+
+#[test]
 fn a_table_goes_on_where_it_ended() {
     let home = Home::new();
     let (good, bad) = (home.file("a.csv", LENS), home.file("b.csv", &LENS.replace("retraction", "back")));
@@ -64,13 +85,13 @@ fn a_table_goes_on_where_it_ended() {
     let ended = home.run(&arguments);
     assert!(ended.status == 2 && ended.err.contains("the segment \"back\" is not known"), "{}", ended.err);
     let first = home.text("t.csv");
-    assert!(first.lines().count() == 3 && first.contains("a.csv,ok,"), "{first}");
+    assert!(first.lines().count() == 3 && first.contains("a.csv,describes,"), "{first}");
     // The bad one, mended, is fitted; the good one is passed over.
     home.file("b.csv", LENS);
     let ended = home.run(&arguments);
     assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
     let second = home.text("t.csv");
-    assert_eq!((second.lines().count(), second.matches(",ok,").count()), (3, 2), "{second}");
+    assert_eq!((second.lines().count(), second.matches(",describes,").count()), (3, 2), "{second}");
 }
 
 /// A pattern names what earlier fits wrote too: the command may be run twice in one folder.

@@ -401,7 +401,7 @@ class Fit(Result):
     value: Floats
     """In SI or, where the problem is in reduced units, in those."""
     standard_error: Floats
-    """NaN where it is not determined."""
+    """NaN where it is not determined. It holds only where :attr:`verdict` is ``"describes"``."""
     start: Floats
     unit: Texts
 
@@ -419,8 +419,23 @@ class Fit(Result):
 
     @property
     def errors(self) -> Dict[str, float]:
-        """Their standard errors."""
+        """Their standard errors, which hold only where :attr:`verdict` is ``"describes"``."""
         return dict(zip(self.key.tolist(), self.standard_error.tolist()))
+
+    @property
+    def intervals(self) -> Dict[str, Optional[List[float]]]:
+        """Their 95 % intervals by Student's t; None where they are not determined, or the model does not describe the points."""
+        return {of["key"]: of["interval"] if of["error_holds"] else None for of in self._said()["parameters"]}
+
+    @property
+    def verdict(self) -> str:
+        """``"describes"``, ``"does-not-describe"``, ``"not-determined"`` or ``"not-converged"``."""
+        return str(self._said()["verdict"])
+
+    @property
+    def reasons(self) -> List[Dict[str, Any]]:
+        """What speaks against the fit: ``kind``, ``sentence`` and ``value`` each."""
+        return list(self._said()["reasons"])
 
     @property
     def notes(self) -> List[str]:
@@ -429,7 +444,7 @@ class Fit(Result):
 
     def _title(self) -> str:
         said = self._said()
-        return f"{said['points']} points, chi squared per point {said['chi_squared']:.4g}, {said['ended']}"
+        return f"{said['points']} points, chi squared per point {said['chi_squared']:.4g}, {said['verdict']}"
 
 
 class Sweep(Table):

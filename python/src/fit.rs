@@ -37,7 +37,8 @@ impl Report for FitReport {
     }
 
     fn warnings(&self) -> &[String] {
-        &self.warnings
+        // What speaks against it is a warning too.
+        self.doubts.as_slice()
     }
 }
 

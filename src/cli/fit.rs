@@ -11,7 +11,7 @@ use super::{Failure, Status, output, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::{Args, ValueEnum};
-use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
+use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
 use pulloff_engine::measured::branches::{Asked, Span};
 use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::report::fit::{FitReport, residuals};
@@ -23,6 +23,7 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct Arguments {
     /// Files with measured curves, and behind them a preset's name or file (ending in .toml), the wavy sphere when left out; or
     /// a preset alone that names its curve in data.file
@@ -73,6 +74,9 @@ pub struct Arguments {
     /// Which random numbers the bootstrap draws
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
+    /// Exit with 0, not 4, where the model does not describe the points; the verdict stays
+    #[arg(long)]
+    accept: bool,
     /// Write JSON instead of text
     #[arg(long)]
     json: bool,
@@ -141,7 +145,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             Err(failure) => return Err(failure),
         };
         let report = FitReport::new(&shown, &found, arguments.poisson);
-        warn(&report.warnings);
+        warn(&report.doubts);
         // What was cut off is computed again by a rerun.
         if let Some(table) = table.as_mut().filter(|_| stop.signal().is_none()) {
             let fingerprint = table.fingerprint(path);
@@ -157,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
             output::write(&write(&preset), Some(file))?;
         }
-        worst = worst.max(status(&report));
+        worst = worst.max(status_of(report.verdict.word()));
         reports.push(report);
         if stop.signal().is_some() {
             break;
@@ -186,8 +190,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             let text = "the points do not determine all values; the result says which";
             Err(Failure::Doubtful(text.to_owned()))
         }
+        Status::NotDescribed if arguments.accept => Ok(ExitCode::SUCCESS),
         Status::NotDescribed => {
-            let text = "the model does not describe all points; the result says why";
+            let text = "the model does not describe all points; the result says why, and --accept takes it all the same";
             Err(Failure::NotDescribed(text.to_owned()))
         }
         Status::Mendable => {
@@ -204,20 +209,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 /// The header and the row of a file that could not be fitted.
 fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
     let text = failure.to_string().replace('\n', "; ");
-    [["file", "state"].map(str::to_owned).to_vec(), vec![file, text]]
+    [["file", "verdict"].map(str::to_owned).to_vec(), vec![file, text]]
 }
 
-/// How good a fit is.
-fn status(report: &FitReport) -> Status {
-    status_of(report.state())
-}
-
-/// How good a fit of this state is.
-fn status_of(state: &str) -> Status {
-    match state {
-        "ok" => Status::Done,
-        "not determined" => Status::Doubtful,
-        _ => Status::Failed,
+/// How good a fit of this verdict is.
+fn status_of(verdict: &str) -> Status {
+    match Verdict::of(verdict) {
+        Some(Verdict::Describes) => Status::Done,
+        Some(Verdict::DoesNotDescribe) => Status::NotDescribed,
+        Some(Verdict::NotDetermined) => Status::Doubtful,
+        Some(Verdict::NotConverged) | None => Status::Failed,
     }
 }
 

@@ -7,7 +7,7 @@ use super::requests::change;
 use super::{Effect, View};
 use crate::mend::Reason;
 use pulloff_engine::fit::least_squares::Ending;
-use pulloff_engine::fit::{Fit, FitError};
+use pulloff_engine::fit::{Fit, FitError, Verdict};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Value, data};
 use pulloff_engine::report::number::short;
@@ -72,29 +72,34 @@ pub(super) fn fit_came(model: &mut Model, id: u64, result: Result<Arc<Fit>, Reas
         return Vec::new();
     }
     let preset = found.preset.clone();
-    model.tell(Level::Info, told(&found));
+    model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(&found));
     model.fit = Some(found);
     change(model, preset)
 }
 
-/// What a fit found, in a line: how well first, since narrow screens cut the end.
+/// What a fit found, in a line: the verdict first, since narrow screens cut the end.
 fn told(fit: &Fit) -> String {
-    let ended = match fit.ending {
-        Ending::Converged => "fitted",
-        Ending::Rounds => "not converged, the best so far",
-        Ending::Cancelled => "stopped, the best so far",
+    let ended = match (fit.ending, fit.verdict) {
+        (Ending::Rounds, _) => "not converged, the best so far",
+        (Ending::Cancelled, _) => "stopped, the best so far",
+        (Ending::Converged, Verdict::Describes) => "fitted",
+        (Ending::Converged, _) => "fitted, but the model does NOT describe the points",
     };
-    let warnings = fit.warnings.iter().map(|warning| format!("; {warning}"));
-    greek(&format!("{ended}: χ² {}{}", short(fit.chi_squared, 3), warnings.collect::<String>()))
+    let reasons = fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings);
+    let begins = format!("{ended}: χ² {}", short(fit.chi_squared, 3));
+    let parts: Vec<&str> = std::iter::once(&*begins).chain(reasons.map(String::as_str)).collect();
+    greek(&parts.join("; "))
 }
 
 impl Model {
-    /// The standard error of the value of `key`, for as long as it is the one that a fit found.
+    /// The standard error of the value of `key`, for as long as all is as the fit found it: of another file, another R or another
+    /// column nothing is known. There is none where the model does not describe the points.
     pub fn standard_error(&self, key: &str) -> Option<f64> {
-        let fit = self.fit.as_deref()?;
-        let fitted = fit.parameters.iter().find(|fitted| fitted.key == key)?;
-        let is_same = self.preset.get(key)?.as_number() == fit.preset.get(key)?.as_number();
-        fitted.standard_error.filter(|_| is_same)
+        let fit = self.fit.as_deref().filter(|fit| fit.verdict == Verdict::Describes)?;
+        if !fit.holds_for(&self.preset) {
+            return None;
+        }
+        fit.parameters.iter().find(|fitted| fitted.key == key)?.standard_error
     }
 }
 

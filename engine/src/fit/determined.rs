@@ -1,8 +1,10 @@
 //! What the points determine: covariance, condition, and the direction in which they say nothing.
 //!
 //! ```text
-//! C = κ² S² [Σψ²/(n − p)] / (mean ψ')² (JᵀJ)⁻¹,    ψ of r/S,    κ = 1 + (p/n) var ψ'/(mean ψ')²
+//! C = κ² S² [Σψ²/(n − p)] / (mean ψ')² (JᵀJ)⁻¹ JᵀRJ (JᵀJ)⁻¹,    ψ of r/S,    κ = 1 + (p/n) var ψ'/(mean ψ')²
 //! ```
+//!
+//! R is the correlation of the noise of the rows, 1 for white noise.
 //!
 //! P. J. Huber, *Robust Statistics* (1981), eq. (7.6.6). The condition is that of J with columns of length 1: beyond
 //! [`LARGEST_CONDITION`] no errors are told.
@@ -10,8 +12,9 @@
 use super::least_squares::Evaluated;
 use super::options::letter;
 use super::problem::{Parameter, Problem};
-use super::solve::HUBER;
-use crate::elementary::{exp_m1, ln};
+use super::scatter::Correlation;
+use super::solve::{HUBER, Solved};
+use crate::elementary::{exp, exp_m1, ln};
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
 use nalgebra::{DMatrix, DVector};
@@ -30,12 +33,22 @@ pub struct Determined {
     pub errors: Option<DVector<f64>>,
     /// The correlations.
     pub correlations: Option<DMatrix<f64>>,
+    /// (JᵀJ)⁻¹, where they are determined.
+    pub inner: Option<DMatrix<f64>>,
     /// What cannot be told, in words.
     pub direction: Option<String>,
 }
 
-/// What `at`, the fit of `problem` with residuals of the scale `scale`, determines.
-pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robust: bool) -> Determined {
+/// What the fit `solved` of `problem` determines, its noise correlated from row to row as `correlation` says.
+pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation, robust: bool) -> Determined {
+    let (at, u, scale) = (&solved.minimum.at, &solved.minimum.parameters[..], solved.scale);
+    let none = Determined {
+        condition: f64::INFINITY,
+        errors: None,
+        correlations: None,
+        inner: None,
+        direction: None,
+    };
     let p = u.len();
     let lengths: Vec<f64> = at.jacobian.column_iter().map(|column| column.norm()).collect();
     let mut white = at.jacobian.clone();
@@ -46,7 +59,7 @@ pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robu
     }
     let svd = white.svd(false, true);
     let (Some(v), true) = (svd.v_t.as_ref(), p > 0) else {
-        return Determined { condition: f64::INFINITY, errors: None, correlations: None, direction: None };
+        return none;
     };
     let (most, least) = (svd.singular_values.max(), svd.singular_values.min());
     let condition = if least > 0.0 { most / least } else { f64::INFINITY };
@@ -56,16 +69,51 @@ pub fn determined(problem: &Problem, at: &Evaluated, u: &[f64], scale: f64, robu
         let direction: Vec<f64> =
             (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
         let words = words(problem, at, u, &direction);
-        return Determined { condition, errors: None, correlations: None, direction: Some(words) };
+        return Determined { condition, direction: Some(words), ..none };
     }
     let inner = DMatrix::from_fn(p, p, |i, j| {
         let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
         sum / (lengths[i] * lengths[j])
     });
     let factor = variance(&problem.real(&at.residuals), scale, p, robust);
-    let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * inner[(j, j)]).sqrt()));
-    let correlations = DMatrix::from_fn(p, p, |i, j| inner[(i, j)] / (inner[(i, i)] * inner[(j, j)]).sqrt());
-    Determined { condition, errors: Some(errors), correlations: Some(correlations), direction: None }
+    let mut whole = inner.clone();
+    if correlation.share > 0.0 {
+        whole = &inner * together(problem, &at.jacobian, correlation) * &inner;
+    }
+    let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * whole[(j, j)]).sqrt()));
+    let correlations = DMatrix::from_fn(p, p, |i, j| whole[(i, j)] / (whole[(i, i)] * whole[(j, j)]).sqrt());
+    Determined {
+        condition,
+        errors: Some(errors),
+        correlations: Some(correlations),
+        inner: Some(inner),
+        direction: None,
+    }
+}
+
+/// `JᵀRJ`: the rows of a branch in the order of the file, those in contact and those apart.
+fn together(problem: &Problem, jacobian: &DMatrix<f64>, correlation: &Correlation) -> DMatrix<f64> {
+    let (per, p) = (problem.per_point(), jacobian.ncols());
+    let mut crossed = DMatrix::zeros(p, p);
+    for branch in 0..problem.branches() {
+        let of = problem.data.iter().enumerate().filter(|(_, datum)| datum.branch == branch);
+        let mut rows: Vec<(usize, usize)> = of.map(|(index, datum)| (datum.point.row, index)).collect();
+        rows.sort_unstable();
+        for part in 0..per {
+            // Σ ρ^(i − k) J_k over the rows before.
+            let mut before = DVector::<f64>::zeros(p);
+            let mut last = None;
+            for (row, index) in &rows {
+                let way = last.map_or(0, |last: usize| row - last);
+                last = Some(*row);
+                before *= exp(way as f64 * ln(correlation.decay));
+                let of_row = jacobian.row(per * index + part).transpose();
+                crossed += &of_row * before.transpose();
+                before += of_row;
+            }
+        }
+    }
+    jacobian.tr_mul(jacobian) + correlation.share * (&crossed + crossed.transpose())
 }
 
 /// What (JᵀJ)⁻¹ is multiplied by.

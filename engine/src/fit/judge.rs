@@ -1,37 +1,45 @@
-//! What is to be doubted about a fit.
+//! What speaks against a fit, and what is to be doubted about it.
+//!
+//! | file | what it asks |
+//! |---|---|
+//! | `contact` | does the curve go through the points in contact |
+//! | `apart` | is the force a constant where the bodies are apart |
+//! | `spring` | what would another spring give |
+//!
+//! Here: are the values such as anything has.
+
+mod apart;
+mod contact;
+mod spring;
+
+pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
 use super::path::Foot;
-use super::problem::{ADHESION, Problem, Target};
-use super::solve::{Solved, solve};
-use crate::elementary::{exp_m1, hypot};
-use crate::measured::branches::median;
-use crate::measured::{Abscissa, Segment};
-use crate::preset::{Preset, Value};
+use super::problem::{ADHESION, Paths, Problem};
+use super::scatter::Scatter;
+use super::solve::Solved;
+use super::verdict::Reason;
+use crate::elementary::hypot;
+use crate::preset::Preset;
+use crate::problem::Groups;
 use crate::problem::groups::LARGE_TABOR;
-use crate::problem::{Control, Groups};
-use crate::progress::Progress;
 use crate::units::number::significant;
 use crate::units::{UnitSystem, number::short};
+use nalgebra::DMatrix;
 
 /// A contact so wide, or an approach so deep, in units of R, is none of a soft ball.
 const WIDE: f64 = 0.5;
 const DEEP: f64 = 1.0;
 /// Moduli of everything people press, in Pa.
 const MODULI: [f64; 2] = [10.0, 1e12];
-/// Deviations of the number of runs beyond so many of its own are no chance.
-const RUNS: f64 = -5.0;
-/// A slope of so many standard deviations is a tilt.
-const SLOPED: f64 = 4.5;
-/// Runs are counted in so many points at least.
-const RUNS_OF: usize = 40;
 /// Residuals below this share of the noise are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
 /// Works of adhesion that differ by less than this share are one, whatever their errors: points without noise have none.
 const DIFFERENT: f64 = 1e-3;
-/// Residuals so many times the noise of the free part, outliers apart, are more than noise; and how much more where that noise is known
-/// from few points, times 1/√n: three of its deviations.
-const LARGE_SCALE: f64 = 1.3;
+/// Noise in contact so many times that of the rows apart is another; and how much more where that is known from few rows, times
+/// 1/√n: three of its deviations.
+const NOISIER: f64 = 1.3;
 const OF_FEW: f64 = 3.5;
 
 /// The deviation of the number of runs of signs from that of chance, in its own; A. Wald and J. Wolfowitz, Ann. Math. Stat. 11,
@@ -47,42 +55,62 @@ pub fn runs(residuals: &[f64]) -> f64 {
     if variance > 0.0 { (runs - mean) / variance.sqrt() } else { f64::NEG_INFINITY }
 }
 
-/// The doubts about the fit `solved`, whose fitted preset is `preset`.
-pub fn doubts(
+/// What speaks against the fit `solved`, whose fitted preset is `preset`. `inner` is (JᵀJ)⁻¹ where the values are determined.
+pub(super) fn reasons(
     problem: &Problem,
     solved: &Solved,
+    scatter: &Scatter,
     preset: &Preset,
-    fitted: &[Fitted],
-    known_noise: bool,
-) -> Vec<String> {
-    let mut doubts = Vec::new();
+    inner: Option<&DMatrix<f64>>,
+) -> Vec<Reason> {
+    let mut reasons = contact::of_contact(problem, solved, scatter, inner);
+    reasons.extend(apart::of_apart(problem, solved, scatter));
+    reasons.extend(unlikely(problem, solved, preset));
+    reasons.extend(of_range(preset));
+    reasons
+}
+
+/// Adhesion that reaches beyond the edge.
+fn of_range(preset: &Preset) -> Option<Reason> {
+    let tabor = Groups::of(&preset.problem(), preset.range_of_action()).tabor?;
+    let sentence = format!(
+        "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit of this method \
+         does not hold"
+    );
+    (tabor < LARGE_TABOR).then(|| Reason::new("tabor", tabor, sentence))
+}
+
+/// Values in SI that nothing has. In reduced units all sizes are possible.
+fn unlikely(problem: &Problem, solved: &Solved, preset: &Preset) -> Vec<Reason> {
+    let mut reasons = Vec::new();
+    if !matches!(preset.units, UnitSystem::Si(_)) {
+        return reasons;
+    }
     let u = &solved.minimum.parameters;
-    let mut unit = |what: String| doubts.push(format!("{what}: check the unit of x"));
+    let mut unit = |value: f64, what: String| {
+        reasons.push(Reason::new("unit", value, format!("{what}: check the unit of x")));
+    };
     let radius = preset.gap.radius_of_curvature();
     if let (Some(radius), Some(paths)) = (radius, problem.paths(u)) {
         let (widest, deepest) = extent(problem, u, &paths);
         if widest > WIDE * radius {
-            unit(format!("the contact radius reaches {} R", short(widest / radius, 3)));
+            unit(widest / radius, format!("the contact radius reaches {} R", short(widest / radius, 3)));
         }
         if deepest > DEEP * radius {
-            unit(format!("the approach reaches {} R", short(deepest / radius, 3)));
+            unit(deepest / radius, format!("the approach reaches {} R", short(deepest / radius, 3)));
         }
     }
     let modulus = preset.material.effective_modulus;
-    if matches!(preset.units, UnitSystem::Si(_)) && !(MODULI[0]..=MODULI[1]).contains(&modulus) {
-        doubts.push(format!(
-            "E* = {} Pa is that of nothing people press: check the unit of x",
-            significant(modulus, 3)
-        ));
+    if !(MODULI[0]..=MODULI[1]).contains(&modulus) {
+        unit(modulus, format!("E* = {} Pa is that of nothing people press", significant(modulus, 3)));
     }
-    if let Some(tabor) =
-        Groups::of(&preset.problem(), preset.range_of_action()).tabor.filter(|mu| *mu < LARGE_TABOR)
-    {
-        doubts.push(format!(
-            "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit of this \
-             method does not hold"
-        ));
-    }
+    reasons
+}
+
+/// What is to be doubted about a fit, and leaves its verdict. `is_known` says whether the noise of the force was given, or found in
+/// rows apart.
+pub(super) fn doubts(problem: &Problem, scatter: &Scatter, fitted: &[Fitted], is_known: bool) -> Vec<String> {
+    let mut doubts = Vec::new();
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
         && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
@@ -95,109 +123,19 @@ pub fn doubts(
                 .to_owned(),
         );
     }
-    if solved.scale > ROUNDING {
-        doubts.extend(of_runs(problem, solved));
-    }
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
-    if known_noise && solved.scale > LARGE_SCALE + OF_FEW / free.sqrt() {
+    if let Some(s) = scatter.contact.filter(|s| is_known && *s > NOISIER + OF_FEW / free.sqrt()) {
         doubts.push(format!(
-            "the residuals are {} times the noise of the points: a value that is held may be wrong (the stiffness of the \
-             device above all), or the model",
-            short(solved.scale, 2)
+            "neighbouring points in contact differ by {} times the noise of x and of the force as it is known: there is more noise \
+             than that",
+            short(s, 2)
         ));
-    }
-    doubts
-}
-
-/// The slope of the residuals of free points over x, in its own standard deviations; `None` where the tilt is free, or of few points.
-fn slope(problem: &Problem, solved: &Solved) -> Option<f64> {
-    /// Outliers count as so many σ.
-    const MOST: f64 = 3.0;
-    if problem.abscissa == Abscissa::Radius || problem.parameters.iter().any(|p| p.target == Target::Tilt) {
-        return None;
-    }
-    let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(problem.per_point()));
-    let of = of.filter(|(datum, _)| datum.free).map(|(datum, r)| (datum.point.x, r.clamp(-MOST, MOST)));
-    let (x, r): (Vec<f64>, Vec<f64>) = of.unzip();
-    let n = x.len() as f64;
-    if x.len() < RUNS_OF {
-        return None;
-    }
-    let (mean_x, mean_r) = (x.iter().sum::<f64>() / n, r.iter().sum::<f64>() / n);
-    let [xx, xr, rr] = x.iter().zip(&r).fold([0.0; 3], |[xx, xr, rr], (x, r)| {
-        let (x, r) = (x - mean_x, r - mean_r);
-        [xx + x * x, xr + x * r, rr + r * r]
-    });
-    let correlation = xr / (xx * rr).sqrt();
-    let deviations = correlation.abs() * n.sqrt();
-    deviations.is_finite().then_some(deviations)
-}
-
-/// Residuals that keep their sign: of the points in contact, and of those apart.
-fn of_runs(problem: &Problem, solved: &Solved) -> Vec<String> {
-    let per = problem.per_point();
-    let mut doubts = Vec::new();
-    let mut signs = Vec::new();
-    for (segment, free) in [
-        (Segment::Approach, false),
-        (Segment::Retraction, false),
-        (Segment::Approach, true),
-        (Segment::Retraction, true),
-    ] {
-        let of = problem.data.iter().zip(solved.minimum.at.residuals.iter().step_by(per));
-        let of = of.filter(|(datum, _)| datum.free == free && datum.segment == segment);
-        let mut of: Vec<(usize, f64)> = of.map(|(datum, r)| (datum.point.row, *r)).collect();
-        if free {
-            // Of a radius all are at 0 there, and their order is that of the file.
-            of.sort_by_key(|(row, _)| *row);
-        }
-        let of: Vec<f64> = of.into_iter().map(|(_, r)| r).collect();
-        let runs = if of.len() < RUNS_OF { 0.0 } else { runs(&of) };
-        if runs >= RUNS {
-            continue;
-        }
-        let fewer = if runs.is_finite() {
-            format!(
-                "keep their sign for long runs ({} standard deviations fewer than by chance)",
-                short(-runs, 2)
-            )
-        } else {
-            "have all one sign".to_owned()
-        };
-        let name = segment.name();
-        if free {
-            doubts.push(format!(
-                "the force is no constant where the bodies are apart: the residuals of the {name} {fewer} there. It drifts, or \
-                 has a tilt: free data.tilt"
-            ));
-        } else {
-            signs.push(median(of).is_some_and(|middle| middle > 0.0));
-            doubts.push(format!("the model does not describe this: the residuals of the {name} {fewer}"));
-        }
-    }
-    if doubts.iter().all(|doubt| !doubt.contains("data.tilt"))
-        && let Some(deviations) = slope(problem, solved).filter(|t| *t > SLOPED)
-    {
-        doubts.push(format!(
-            "the force has a slope over x where the bodies are apart ({} standard deviations): free data.tilt",
-            short(deviations, 2)
-        ));
-    }
-    let one = problem.parameters.iter().any(|p| p.target == Target::Key(ADHESION.to_owned()));
-    if let ([a, b], true) = (signs.as_slice(), one)
-        && a != b
-    {
-        doubts.push(
-            "approach and retraction lie on different sides of the curve: they may differ in their works of adhesion, which \
-             --separate work_of_adhesion tells"
-                .to_owned(),
-        );
     }
     doubts
 }
 
 /// The largest contact radius and approach of the feet.
-fn extent(problem: &Problem, u: &[f64], paths: &super::problem::Paths) -> (f64, f64) {
+fn extent(problem: &Problem, u: &[f64], paths: &Paths) -> (f64, f64) {
     let feet = problem.feet(paths, &problem.instrument_at(u)).unwrap_or_default();
     let (mut widest, mut deepest) = (0.0, f64::NEG_INFINITY);
     for (datum, foot) in problem.data.iter().zip(&feet) {
@@ -209,43 +147,4 @@ fn extent(problem: &Problem, u: &[f64], paths: &super::problem::Paths) -> (f64, 
         }
     }
     (widest, deepest)
-}
-
-/// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
-pub fn of_spring(
-    problem: &Problem,
-    solved: &Solved,
-    robust: bool,
-    progress: &dyn Progress,
-) -> Option<String> {
-    const KEY: &str = "path.control.stiffness";
-    let Control::Stiffness(k) = problem.preset.path.control else { return None };
-    if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {
-        return None;
-    }
-    let mut told = Vec::new();
-    for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
-        let mut other = problem.clone();
-        other.preset.set(KEY, Value::Number(factor * k)).ok()?;
-        let found = solve(&other, &solved.minimum.parameters, robust, 40, progress);
-        let words = match found {
-            None => format!("{words}: no fit"),
-            Some(found) => {
-                let changes: Vec<String> = problem
-                    .parameters
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, parameter)| parameter.scale.is_none())
-                    .map(|(j, parameter)| {
-                        let change = found.minimum.parameters[j] - solved.minimum.parameters[j];
-                        let name = super::options::letter(&problem.preset, &parameter.key());
-                        format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
-                    })
-                    .collect();
-                format!("{words}: {}", changes.join(", "))
-            }
-        };
-        told.push(words);
-    }
-    Some(format!("with k {}", told.join("; with k ")))
 }

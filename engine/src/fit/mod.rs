@@ -14,12 +14,16 @@
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
 //! | [`intervals`] | profile intervals and the block bootstrap |
-//! | [`judge`] | warnings: runs, ranges, the device's stiffness |
+//! | [`scatter`] | the noise of the rows as neighbours show it |
+//! | [`chance`] | how likely a statistic is by chance |
+//! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
+//! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`run`] | all of it, in order |
 //!
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps with the values where the
 //! pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
+pub mod chance;
 pub mod determined;
 pub mod distance;
 pub mod fitted;
@@ -32,13 +36,16 @@ pub mod pose;
 pub mod problem;
 mod rings;
 pub mod run;
+pub mod scatter;
 pub mod solve;
 pub mod start;
+pub mod verdict;
 pub mod way;
 
 pub use fitted::Fitted;
 pub use options::{FitError, Options};
 pub use run::{Fit, fit, fit_own};
+pub use verdict::{Reason, Verdict};
 
 #[cfg(test)]
 mod tests;

@@ -69,9 +69,10 @@ pub fn posed(
 /// The points that are fitted.
 fn data(branches: &Branches) -> Vec<Datum> {
     let mut data = Vec::new();
-    for branch in &branches.list {
+    for (number, branch) in branches.list.iter().enumerate() {
         for (free, points) in [(false, &branch.attached), (true, &branch.free)] {
-            data.extend(points.iter().map(|&point| Datum { point, segment: branch.segment, free }));
+            let datum = |&point: &Point| Datum { point, segment: branch.segment, branch: number, free };
+            data.extend(points.iter().map(datum));
         }
     }
     data

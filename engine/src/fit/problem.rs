@@ -79,6 +79,8 @@ pub struct Datum {
     pub point: Point,
     /// Its branch.
     pub segment: Segment,
+    /// Its number among the branches, which are more than two in a file of several loops.
+    pub branch: usize,
     /// Whether the bodies are apart there.
     pub free: bool,
 }

@@ -1,17 +1,20 @@
 //! A whole fit: branches, start, minimum, errors, doubts.
 
+use super::chance::t_of;
 use super::determined::determined;
 use super::fitted::Fitted;
 use super::intervals::{block, bootstrap, profile};
-use super::judge::{doubts, of_spring};
+use super::judge::{doubts, of_spring, reasons};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
+use super::scatter::Scatter;
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
+use super::verdict::{Reason, Verdict};
 use crate::measured::branches::FLOOR;
-use crate::measured::{Abscissa, Asked, Noise, Points, Segment};
+use crate::measured::{Abscissa, Asked, Noise, Origin, Points, Segment};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::progress::{Part, Progress};
@@ -36,14 +39,24 @@ pub struct Residual {
 /// A fit.
 #[derive(Debug, Clone)]
 pub struct Fit {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// What speaks against it; empty where the model describes the points.
+    pub reasons: Vec<Reason>,
     /// What x of the points is.
     pub abscissa: Abscissa,
     /// The values.
     pub parameters: Vec<Fitted>,
     /// Their correlations; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
-    /// Σr²/(n − p), r in σ; in units of the residuals' own scale where σ comes from them.
+    /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
+    /// Σr²/n of the points in contact, and of those apart.
+    pub chi_squared_of: [Option<f64>; 2],
+    /// Of the errors: rows that count on their own, less the values.
+    pub degrees: f64,
+    /// The noise of the rows as neighbours show it.
+    pub scatter: Scatter,
     /// Points in contact, and apart.
     pub points: [usize; 2],
     /// How many are outliers.
@@ -60,10 +73,8 @@ pub struct Fit {
     pub starts: Vec<Tried>,
     /// The snaps of the fitted path.
     pub snaps: usize,
-    /// σ of x, P and s, and whether each was assumed.
+    /// σ of x, P and s, and where each is from.
     pub noise: Noise,
-    /// Whether σ of P comes from the residuals.
-    pub noise_from_residuals: bool,
     /// How many fits of the bootstrap there were, and the rows of its blocks.
     pub bootstrapped: Option<[usize; 2]>,
     /// What was found, assumed and held, in words.
@@ -76,6 +87,22 @@ pub struct Fit {
     pub instrument: Instrument,
     /// The points beside the fit.
     pub residuals: Vec<Residual>,
+}
+
+impl Fit {
+    /// Whether what was found is true of `preset`: it has the same points, taken in the same way, and all the fitted and all the held
+    /// values of the fit. Its path, which a fit does not see, may be another.
+    #[must_use]
+    pub fn holds_for(&self, preset: &Preset) -> bool {
+        let found = &self.preset;
+        let mut same = preset.clone();
+        same.title.clone_from(&found.title);
+        same.data.free.clone_from(&found.data.free);
+        same.basis.clone_from(&found.basis);
+        let has_same_device = preset.path.control == found.path.control;
+        same.path = found.path;
+        has_same_device && same == *found
+    }
 }
 
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
@@ -131,9 +158,9 @@ pub fn fit(
     let branches = points.branches(&options.asked)?;
     let mut notes = branches.notes.clone();
     let mut problem = posed(preset, &branches, options, &mut notes)?;
-    // Without a free part the residuals say how well the force is known.
-    let from_residuals = branches.baseline.is_none() && options.asked.sigma[1].is_none();
-    let least = from_residuals.then_some(FLOOR * branches.ranges[1]);
+    // Without rows apart neighbours say how well the force is known, never the residuals themselves.
+    let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
+    let least = of_neighbours.then_some(FLOOR * branches.ranges[1]);
     let found = |problem: &mut Problem| -> Result<_, FitError> {
         let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
             .ok_or(FitError::NoStart)?;
@@ -144,15 +171,18 @@ pub fn fit(
         problem = problem.without_loading(why, &mut notes)?;
         (starts, solved) = found(&mut problem)?;
     }
-    if from_residuals {
+    if branches.baseline.is_none() {
         notes.push(
-            "there is no free part: sigma of the force is that of the residuals, and the baseline is held"
+            "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
                 .to_owned(),
         );
     }
     let u = &solved.minimum.parameters;
-    let what = determined(&problem, &solved.minimum.at, u, solved.scale, options.robust);
-    let mut fitted = values(&problem, u, what.errors.as_ref());
+    let scatter = problem.scatter(&solved);
+    let what = determined(&problem, &solved, &scatter.correlation, options.robust);
+    let real = problem.real(&solved.minimum.at.residuals);
+    let degrees = (real.len() as f64 / scatter.correlation.rows() - u.len() as f64).max(1.0);
+    let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
     let bootstrapped = match &what.errors {
         Some(errors) => {
             intervals(&problem, &solved, options, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
@@ -161,31 +191,35 @@ pub fn fit(
     };
     notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
-    let real = problem.real(&solved.minimum.at.residuals);
-    let scale = if from_residuals { solved.scale } else { 1.0 };
-    let degrees = (real.len() - u.len().min(real.len())).max(1) as f64;
-    let known_noise = !from_residuals && !branches.noise.assumed[1];
+    let ending = if progress.stop() { Ending::Cancelled } else { solved.minimum.ending };
+    let reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref());
+    let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
     let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
     let rows = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let left = (real.len() - u.len().min(real.len())).max(1) as f64;
     Ok(Fit {
+        verdict: verdict(ending, what.errors.is_some(), &reasons),
+        reasons,
         abscissa: points.abscissa,
         correlations: what.correlations.map(rows),
-        chi_squared: real.iter().map(|r| (r / scale).powi(2)).sum::<f64>() / degrees,
+        chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
+        chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
+        degrees,
         points: [count(false), count(true)],
         outliers: residuals.iter().filter(|residual| residual.outlier).count(),
         dropped: [branches.list.iter().map(|branch| branch.dropped).sum(), branches.left_out],
         condition: what.condition,
         direction: what.direction,
-        ending: if progress.stop() { Ending::Cancelled } else { solved.minimum.ending },
+        ending,
         starts,
         snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
         noise: Noise { sigma: problem.sigma, ..branches.noise },
-        noise_from_residuals: from_residuals,
         bootstrapped,
         notes,
-        warnings: doubts(&problem, &solved, &found, &fitted, known_noise),
+        warnings: doubts(&problem, &scatter, &fitted, is_known),
+        scatter,
         preset: fitted_preset,
         instrument: problem.instrument_at(u),
         residuals,
@@ -193,7 +227,26 @@ pub fn fit(
     })
 }
 
-/// The last fit, from `u`. Where `least` is given, σ of P is that of the residuals, not below it.
+/// What a fit comes to.
+fn verdict(ending: Ending, is_determined: bool, reasons: &[Reason]) -> Verdict {
+    match (ending, is_determined) {
+        (Ending::Converged, true) if reasons.is_empty() => Verdict::Describes,
+        (Ending::Converged, true) => Verdict::DoesNotDescribe,
+        (Ending::Converged, false) => Verdict::NotDetermined,
+        _ => Verdict::NotConverged,
+    }
+}
+
+/// Σr²/n of the points in contact or apart.
+fn of_part(problem: &Problem, solved: &Solved, free: bool) -> Option<f64> {
+    let per = problem.per_point();
+    let of = solved.minimum.at.residuals.iter().enumerate();
+    let of = of.filter(|(i, _)| problem.data[i / per].free == free && (!free || i.is_multiple_of(per)));
+    let [sum, count] = of.fold([0.0; 2], |[sum, count], (_, r)| [sum + r * r, count + 1.0]);
+    (count > 0.0).then(|| sum / count)
+}
+
+/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, not below it.
 fn last(
     problem: &mut Problem,
     u: &[f64],
@@ -201,11 +254,12 @@ fn last(
     least: Option<f64>,
     progress: &dyn Progress,
 ) -> Result<Solved, FitError> {
-    /// Fits by which σ of the residuals has settled.
+    /// Fits by which σ has settled.
     const TIMES: usize = 2;
     let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     for _ in 0..if least.is_some() { TIMES } else { 0 } {
-        problem.sigma[1] = (problem.sigma[1] * solved.scale).max(least.unwrap_or(0.0));
+        let Some(scale) = problem.scatter(&solved).contact else { break };
+        problem.sigma[1] = (problem.sigma[1] * scale).max(least.unwrap_or(0.0));
         let u = &solved.minimum.parameters;
         solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     }
@@ -234,13 +288,17 @@ fn intervals(
     Some([count, block(&first)])
 }
 
-/// The values with their errors.
-fn values(problem: &Problem, u: &[f64], errors: Option<&DVector<f64>>) -> Vec<Fitted> {
+/// The values with their errors, which have so many degrees of freedom.
+fn values(problem: &Problem, u: &[f64], errors: Option<&DVector<f64>>, degrees: f64) -> Vec<Fitted> {
+    /// The share of truths outside of an interval.
+    const OUTSIDE: f64 = 0.05;
+    let t = t_of(OUTSIDE, degrees);
     let of = |(j, parameter): (usize, &Parameter)| {
         let value = parameter.value(u[j]);
         let standard_error = errors.map(|errors| errors[j] * parameter.slope(value).abs());
+        let interval = errors.map(|errors| [-t, t].map(|t| parameter.value(u[j] + t * errors[j])));
         let (key, start) = (parameter.key(), parameter.start);
-        Fitted { key, value, standard_error, start, profile: None, bootstrap: None }
+        Fitted { key, value, standard_error, interval, start, profile: None, bootstrap: None }
     };
     problem.parameters.iter().enumerate().map(of).collect()
 }

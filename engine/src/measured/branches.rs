@@ -8,6 +8,7 @@
 //!
 //! ```text
 //! σ_P = median |P_i − P_{i+1}| / 0.954                 of the free part, for normal noise
+//! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
@@ -18,6 +19,7 @@ pub use super::points::Point;
 use super::points::{Abscissa, Points};
 use super::role::Segment;
 use super::signs::{free_end, signs};
+use serde::Serialize;
 use thiserror::Error;
 
 /// Steps of x from row to row beyond this share of its range, in the median, are no order.
@@ -67,13 +69,28 @@ pub struct Branch {
     pub dropped: usize,
 }
 
+/// Where a standard deviation is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Origin {
+    /// A person gave it.
+    Given,
+    /// The rows apart.
+    Apart,
+    /// What neighbouring rows in contact differ by.
+    Neighbours,
+    /// The last digit, or the least share of the range.
+    #[default]
+    Assumed,
+}
+
 /// How well the columns are known, one standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     /// Of x, P and s.
     pub sigma: [f64; 3],
-    /// Whether it was assumed, and neither given nor found in the free part.
-    pub assumed: [bool; 3],
+    /// Where each is from.
+    pub from: [Origin; 3],
 }
 
 /// What a file has.
@@ -401,6 +418,7 @@ fn noise(
     of_radius: bool,
 ) -> Noise {
     let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
+    let mut in_contact = Vec::new();
     for (branch, in_order) in list {
         // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
         let touching =
@@ -408,6 +426,8 @@ fn noise(
         let with = |point: &Point| if of_radius { [point.force, point.x] } else { [point.x, point.radius] };
         let (x, s): (Vec<f64>, Vec<f64>) = touching.map(with).map(|[x, s]| (x, s)).unzip();
         radii.extend(scatter_over(&x, &s));
+        let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
+        in_contact.extend(scatter_over(&x, &force));
         let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
         rows.sort_unstable();
         let free: Vec<&Point> =
@@ -416,13 +436,19 @@ fn noise(
         ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
     }
     let radius = radii.into_iter().reduce(f64::min);
-    let forces = median(forces).map(|step| step / 0.954);
+    let apart = median(forces).map(|step| step / 0.954);
     // Of radii alone the scatter has that of the force in it: both cannot be told where neither is known.
-    let known = forces.is_some() || asked.sigma[1].is_some();
+    let known = apart.is_some() || asked.sigma[1].is_some();
     let of_ways = || median(ways).map(|way| way / 1.652);
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
-    let found = [ways, forces, radius];
-    let mut noise = Noise { sigma: [0.0; 3], assumed: [false; 3] };
+    let of = |found: Option<f64>, origin| found.map(|found| (found, origin));
+    let neighbours = in_contact.into_iter().reduce(f64::min);
+    let found = [
+        of(ways, if of_radius { Origin::Neighbours } else { Origin::Apart }),
+        of(apart, Origin::Apart).or(of(neighbours, Origin::Neighbours)),
+        of(radius, Origin::Neighbours),
+    ];
+    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3] };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
         if axis == 2 && floor == 0.0 {
@@ -430,11 +456,11 @@ fn noise(
             continue;
         }
         let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
-        let of_data = found[axis].unwrap_or(0.0).max(digits);
-        (noise.sigma[axis], noise.assumed[axis]) = match asked.sigma[axis] {
-            Some(given) => (given, false),
-            None => (of_data.max(floor), of_data < floor || found[axis].is_none()),
-        };
+        let (of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
+        let least = floor.max(digits);
+        let found = (of_data.max(least), if of_data.max(digits) < floor { Origin::Assumed } else { origin });
+        (noise.sigma[axis], noise.from[axis]) =
+            asked.sigma[axis].map_or(found, |given| (given, Origin::Given));
     }
     noise
 }

@@ -24,7 +24,7 @@ pub mod role;
 mod signs;
 pub mod source;
 
-pub use branches::{Asked, Branch, BranchError, Branches, Noise, Span};
+pub use branches::{Asked, Branch, BranchError, Branches, Noise, Origin, Span};
 pub use error::ReadError;
 pub use points::{Abscissa, Points, PointsError};
 pub use read::{Column, Measured, parse};

@@ -121,7 +121,11 @@ fn the_free_part_the_jump_and_the_noise_are_found() {
         assert_eq!(retraction.free.len(), apart);
         assert!((found.noise.sigma[1] / 1e-4 - 1.0).abs() < 0.2, "{:?}", found.noise);
         assert!(found.baseline.unwrap().abs() < 3e-5);
-        assert!(!found.noise.assumed[1] && found.noise.assumed[0], "{:?}", found.noise);
+        assert!(
+            found.noise.from[1] == Origin::Apart && found.noise.from[0] == Origin::Assumed,
+            "{:?}",
+            found.noise
+        );
     }
 }
 

@@ -6,7 +6,8 @@ use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Residual};
-use crate::measured::{Abscissa, Segment};
+use crate::fit::{Reason, Verdict};
+use crate::measured::{Abscissa, Origin, Segment};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -18,12 +19,26 @@ pub struct FitReport {
     pub schema: u32,
     /// The file of the points.
     pub file: String,
+    /// What it comes to: whether the values and their errors may be believed.
+    pub verdict: Verdict,
+    /// What speaks against it; empty where the model describes the points.
+    pub reasons: Vec<Reason>,
     /// The values.
     pub parameters: Vec<ParameterReport>,
     /// The correlations of the values, in their order; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
+    /// Σr²/n of the points in contact; `None` without.
+    pub chi_squared_in_contact: Option<f64>,
+    /// Of those apart.
+    pub chi_squared_apart: Option<f64>,
+    /// The noise of neighbouring points in contact, in σ; `None` of too few.
+    pub noise_of_neighbours: Option<f64>,
+    /// How many rows of the noise count as one: 1 for white noise.
+    pub rows_that_count_as_one: f64,
+    /// The degrees of freedom of the errors.
+    pub degrees_of_freedom: f64,
     /// The points that are fitted.
     pub points: usize,
     /// Of them those in contact.
@@ -46,10 +61,8 @@ pub struct FitReport {
     pub abscissa: &'static str,
     /// σ of x and of P, and of s where it is measured beside x.
     pub sigma: Vec<f64>,
-    /// Whether each was assumed.
-    pub sigma_assumed: Vec<bool>,
-    /// Whether σ of P is that of the residuals.
-    pub sigma_from_residuals: bool,
+    /// Where each is from.
+    pub sigma_from: Vec<Origin>,
     /// The snaps of the fitted path.
     pub snaps: usize,
     /// The starts that were run, the nearest first.
@@ -62,6 +75,9 @@ pub struct FitReport {
     pub notes: Vec<String>,
     /// What is to be doubted.
     pub warnings: Vec<String>,
+    /// The sentences of the reasons, and the warnings.
+    #[serde(skip)]
+    pub doubts: Vec<String>,
     /// How numbers are shown.
     #[serde(skip)]
     shown: UnitSystem,
@@ -76,6 +92,10 @@ pub struct ParameterReport {
     pub value: f64,
     /// Its standard error; `None` where it is not determined.
     pub standard_error: Option<f64>,
+    /// Whether the error may be believed: only where the model describes the points.
+    pub error_holds: bool,
+    /// The 95 % interval by Student's t.
+    pub interval: Option<[f64; 2]>,
     /// Where the fit started.
     pub start: f64,
     /// Its unit; empty in a reduced problem.
@@ -104,6 +124,9 @@ pub struct StartReport {
     pub snaps: usize,
 }
 
+/// Below so many degrees of freedom an interval is much wider than 1.96 errors.
+const FEW: f64 = 40.0;
+
 impl FitReport {
     /// The document of `fit` to the points of `file`, with E beside E* for Poisson's ratio ν.
     #[must_use]
@@ -119,6 +142,8 @@ impl FitReport {
                     key: fitted.key.clone(),
                     value: fitted.value,
                     standard_error: fitted.standard_error,
+                    error_holds: fit.verdict == Verdict::Describes && fitted.standard_error.is_some(),
+                    interval: fitted.interval,
                     start: fitted.start,
                     unit: quantity.si().filter(|_| is_si).unwrap_or(""),
                     profile_interval: fitted.profile,
@@ -148,9 +173,16 @@ impl FitReport {
         Self {
             schema: super::SCHEMA,
             file: file.to_owned(),
+            verdict: fit.verdict,
+            reasons: fit.reasons.clone(),
             parameters,
             correlations: fit.correlations.clone(),
             chi_squared: fit.chi_squared,
+            chi_squared_in_contact: fit.chi_squared_of[0],
+            chi_squared_apart: fit.chi_squared_of[1],
+            noise_of_neighbours: fit.scatter.contact,
+            rows_that_count_as_one: fit.scatter.correlation.rows(),
+            degrees_of_freedom: fit.degrees,
             points: fit.points.iter().sum(),
             points_in_contact: fit.points[0],
             outliers: fit.outliers,
@@ -166,14 +198,14 @@ impl FitReport {
             },
             abscissa: fit.abscissa.name(),
             sigma: fit.noise.sigma[..measured].to_vec(),
-            sigma_assumed: fit.noise.assumed[..measured].to_vec(),
-            sigma_from_residuals: fit.noise_from_residuals,
+            sigma_from: fit.noise.from[..measured].to_vec(),
             snaps: fit.snaps,
             starts,
             youngs_modulus,
             bootstrap: fit.bootstrapped,
             notes: fit.notes.clone(),
             warnings: fit.warnings.clone(),
+            doubts: fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings).cloned().collect(),
             shown: units.clone(),
         }
     }
@@ -183,6 +215,10 @@ impl FitReport {
     pub fn text(&self) -> String {
         let units = &self.shown;
         let mut text = format!("{}: force over {}\n", self.file, self.abscissa);
+        let _ = writeln!(text, "verdict: {}", self.verdict.sentence());
+        for reason in &self.reasons {
+            let _ = writeln!(text, "reason: {}", reason.sentence);
+        }
         for note in &self.notes {
             let _ = writeln!(text, "note: {note}");
         }
@@ -197,7 +233,10 @@ impl FitReport {
                 number(parameter.quantity, parameter.value),
                 parameter.standard_error.map_or_else(
                     || "-".to_owned(),
-                    |error| significant(shown(parameter.quantity, error).number, 2),
+                    |error| {
+                        let error = significant(shown(parameter.quantity, error).number, 2);
+                        if parameter.error_holds { error } else { format!("({error})") }
+                    },
                 ),
                 number(parameter.quantity, parameter.start),
                 unit,
@@ -205,11 +244,26 @@ impl FitReport {
         }
         text.push('\n');
         text.push_str(&aligned(&rows, 2));
+        if self.parameters.iter().any(|of| of.standard_error.is_some() && !of.error_holds) {
+            text.push_str(
+                "errors in parentheses do not hold: they are those of a model that describes the points\n",
+            );
+        }
         for parameter in &self.parameters {
             let interval = |[lo, hi]: [f64; 2]| {
                 format!("{} .. {}", number(parameter.quantity, lo), number(parameter.quantity, hi))
             };
             let key = &parameter.key;
+            if let Some(found) =
+                parameter.interval.filter(|_| parameter.error_holds && self.degrees_of_freedom < FEW)
+            {
+                let degrees = short(self.degrees_of_freedom, 3);
+                let _ = writeln!(
+                    text,
+                    "{key}: 95 % by Student's t with {degrees} degrees of freedom {}",
+                    interval(found)
+                );
+            }
             if let Some(found) = parameter.profile_interval {
                 let _ = writeln!(text, "{key}: 95 % by the profile of chi squared {}", interval(found));
             }
@@ -260,21 +314,39 @@ impl FitReport {
             self.dropped,
             self.left_out
         );
-        let sigma = |quantity, x, assumed: bool| {
-            let told = super::number::with_unit(units, quantity, x, true, |x| short(x, 3));
-            if assumed { format!("{told} (assumed)") } else { told }
+        let sigma = |quantity, axis: usize| {
+            let told = super::number::with_unit(units, quantity, self.sigma[axis], true, |x| short(x, 3));
+            let from = match self.sigma_from[axis] {
+                Origin::Given => " (given)",
+                Origin::Apart => "",
+                Origin::Neighbours => " (of neighbouring points)",
+                Origin::Assumed => " (assumed)",
+            };
+            format!("{told}{from}")
         };
-        let of_force = if self.sigma_from_residuals { " (of the residuals)" } else { "" };
         let _ = writeln!(
             text,
-            "sigma of x {}, of P {}{of_force}{}",
-            sigma(Quantity::Length, self.sigma[0], self.sigma_assumed[0]),
-            sigma(Quantity::Force, self.sigma[1], self.sigma_assumed[1] && !self.sigma_from_residuals),
-            match (self.sigma.get(2), self.sigma_assumed.get(2)) {
-                (Some(s), Some(assumed)) => format!(", of s {}", sigma(Quantity::Length, *s, *assumed)),
-                _ => String::new(),
+            "sigma of x {}, of P {}{}",
+            sigma(Quantity::Length, 0),
+            sigma(Quantity::Force, 1),
+            if self.sigma.len() > 2 {
+                format!(", of s {}", sigma(Quantity::Length, 2))
+            } else {
+                String::new()
             }
         );
+        let part = |name: &str, chi: Option<f64>| chi.map(|chi| format!("{name} {}", short(chi, 4)));
+        let parts = [part("in contact", self.chi_squared_in_contact), part("apart", self.chi_squared_apart)];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        let neighbours = self.noise_of_neighbours.map_or_else(String::new, |s| {
+            format!("; neighbours in contact differ as by a noise of {} sigma", short(s, 3))
+        });
+        let correlated = if self.rows_that_count_as_one > 1.0 {
+            format!("; {} rows of the noise count as one", short(self.rows_that_count_as_one, 2))
+        } else {
+            String::new()
+        };
+        let _ = writeln!(text, "chi squared per point {}{neighbours}{correlated}", parts.join(", "));
         let starts: Vec<String> = self
             .starts
             .iter()
@@ -296,21 +368,11 @@ impl FitReport {
         let _ = writeln!(text, "end: {end}");
     }
 
-    /// How good it is, in the word of the column `state`: `ok`, `not determined`, or how else it ended.
-    #[must_use]
-    pub fn state(&self) -> &'static str {
-        match (self.ended, self.determined) {
-            ("converged", true) => "ok",
-            ("converged", false) => "not determined",
-            (other, _) => other,
-        }
-    }
-
     /// The header and the row of a table with one row for each file.
     #[must_use]
     pub fn row(&self) -> [Vec<String>; 2] {
-        let mut header = vec!["file".to_owned(), "state".to_owned()];
-        let mut row = vec![self.file.clone(), self.state().to_owned()];
+        let mut header = vec!["file".to_owned(), "verdict".to_owned()];
+        let mut row = vec![self.file.clone(), self.verdict.word().to_owned()];
         for parameter in &self.parameters {
             header.push(parameter.key.clone());
             header.push(format!("{} error", parameter.key));
@@ -322,6 +384,7 @@ impl FitReport {
             ("points", self.points.to_string()),
             ("outliers", self.outliers.to_string()),
             ("snaps", self.snaps.to_string()),
+            ("reasons", self.reasons.iter().map(|reason| &*reason.sentence).collect::<Vec<_>>().join("; ")),
             ("warnings", self.warnings.join("; ")),
         ] {
             header.push(name.to_owned());

@@ -129,7 +129,8 @@ quantities! {
         Stage::Fit(|fit| fit.error("data.tilt"));
     "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
     "fit_outliers" "" Number "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
-    "fit_warnings" "" Number "warnings of the fit; pulloff fit says which": Stage::Fit(|fit| Some(fit.warnings()));
+    "fit_verdict" "" Number "0 where the model describes the points, 4 where it does not; no value is to be believed then": Stage::Fit(|fit| Some(fit.verdict()));
+    "fit_warnings" "" Number "reasons and warnings of the fit; pulloff fit says which": Stage::Fit(|fit| Some(fit.warnings()));
 }
 
 /// The quantities of a spec that names none.

@@ -5,7 +5,7 @@ use super::fault::Fault;
 use crate::case::{Case, CaseError};
 use crate::disc::{ExactSolution, Solution};
 use crate::fit::least_squares::Ending;
-use crate::fit::{Fit, Fitted, Options, fit_own};
+use crate::fit::{Fit, Fitted, Options, Verdict, fit_own};
 use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
@@ -108,7 +108,8 @@ impl Fitting {
     }
 
     pub(super) fn error(&self, key: &str) -> Option<Cell> {
-        self.of(key)?.standard_error.map(Cell::Number)
+        let is_believed = self.fit.verdict == Verdict::Describes;
+        self.of(key)?.standard_error.filter(|_| is_believed).map(Cell::Number)
     }
 
     pub(super) fn chi_squared(&self) -> Cell {
@@ -116,7 +117,11 @@ impl Fitting {
     }
 
     pub(super) fn warnings(&self) -> Cell {
-        Cell::Count(self.fit.warnings.len())
+        Cell::Count(self.fit.reasons.len() + self.fit.warnings.len())
+    }
+
+    pub(super) fn verdict(&self) -> Cell {
+        Cell::Count(if self.fit.verdict == Verdict::Describes { 0 } else { 4 })
     }
 
     pub(super) fn outliers(&self) -> Cell {

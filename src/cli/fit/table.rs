@@ -15,7 +15,7 @@ pub(super) struct Table {
 
 /// The first two columns, and the last: what a row was computed from.
 const FILE: &str = "file";
-const STATE: &str = "state";
+const STATE: &str = "verdict";
 const FINGERPRINT: &str = "fingerprint";
 
 /// Whether a line is the header of such a table.

@@ -1,0 +1,106 @@
+//! Whether the force is a constant where the bodies are apart, but for its noise.
+//!
+//! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: slope 1 in 1000, levels 1 in 1000.
+
+use super::super::chance::beyond_t;
+use super::super::problem::{Problem, Target};
+use super::super::scatter::Scatter;
+use super::super::solve::Solved;
+use super::super::verdict::Reason;
+use super::ROUNDING;
+use crate::measured::Abscissa;
+use crate::units::number::short;
+
+/// The share of right fits that each test flags.
+const FALSE_ALARM: f64 = 1e-3;
+/// Rows apart of a branch, at least.
+const FEWEST: usize = 8;
+/// Rows apart that count as fewer are a drift, not noise: it is the same in contact, and nothing says how large.
+const COUNTED: f64 = 5.0;
+
+/// What the rows apart say against the fit.
+pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) -> Vec<Reason> {
+    let mut reasons = Vec::new();
+    let tau = scatter.correlation.rows();
+    let counted = scatter.apart as f64 / tau;
+    if scatter.correlation.share > 0.0 && counted < COUNTED {
+        reasons.push(Reason::new(
+            "drift",
+            counted,
+            format!(
+                "the force is no constant where the bodies are apart: {} rows hang together so that they count as {}. It drifts",
+                scatter.apart,
+                short(counted, 2)
+            ),
+        ));
+    }
+    reasons.extend(slope(problem, solved, tau));
+    reasons.extend(levels(problem, solved, tau));
+    reasons
+}
+
+/// A slope over x.
+fn slope(problem: &Problem, solved: &Solved, tau: f64) -> Option<Reason> {
+    if problem.abscissa == Abscissa::Radius || problem.parameters.iter().any(|p| p.target == Target::Tilt) {
+        return None;
+    }
+    let [mut xx, mut xr, mut rr, mut count] = [0.0; 4];
+    for branch in 0..problem.branches() {
+        let rows = problem.rows(solved, branch, true, 0);
+        let n = rows.len() as f64;
+        if rows.len() < FEWEST {
+            continue;
+        }
+        let x = |at: usize| problem.data[rows[at].index].point.x;
+        let mean_x = (0..rows.len()).map(x).sum::<f64>() / n;
+        let mean_r = rows.iter().map(|row| row.residual).sum::<f64>() / n;
+        for (at, row) in rows.iter().enumerate() {
+            let (x, r) = (x(at) - mean_x, row.residual - mean_r);
+            (xx, xr, rr) = (xx + x * x, xr + x * r, rr + r * r);
+        }
+        count += n - 1.0;
+    }
+    let degrees = count / tau - 1.0;
+    if !(xx > 0.0 && rr > ROUNDING * ROUNDING * count && degrees >= 1.0) {
+        return None;
+    }
+    let r = xr / (xx * rr).sqrt();
+    let t = r * (degrees / (1.0 - r * r).max(f64::EPSILON)).sqrt();
+    (beyond_t(t, degrees) < FALSE_ALARM).then(|| {
+        let sentence = format!(
+            "the force has a slope over x where the bodies are apart ({} standard errors): free data.tilt",
+            short(t.abs(), 2)
+        );
+        Reason::new("tilt", t, sentence)
+    })
+}
+
+/// Forces that differ between the branches.
+fn levels(problem: &Problem, solved: &Solved, tau: f64) -> Option<Reason> {
+    let mut means: Vec<[f64; 3]> = Vec::new();
+    for branch in 0..problem.branches() {
+        let rows = problem.rows(solved, branch, true, 0);
+        let n = rows.len() as f64;
+        if rows.len() < FEWEST {
+            continue;
+        }
+        let mean = rows.iter().map(|row| row.residual).sum::<f64>() / n;
+        let squares = rows.iter().map(|row| (row.residual - mean).powi(2)).sum::<f64>();
+        means.push([mean, squares, n]);
+    }
+    let [first, .., last] = means.as_slice() else { return None };
+    let degrees = (first[2] + last[2]) / tau - 2.0;
+    let variance = (first[1] + last[1]) / (first[2] + last[2] - 2.0);
+    if !(degrees >= 1.0 && variance > ROUNDING * ROUNDING) {
+        return None;
+    }
+    let t = (last[0] - first[0]) / (variance * tau * (1.0 / first[2] + 1.0 / last[2])).sqrt();
+    (beyond_t(t, degrees) < FALSE_ALARM).then(|| {
+        let sentence = format!(
+            "where the bodies are apart the force of the first branch differs from that of the last by {} standard errors: it \
+             drifts, or one of the two is not apart",
+            short(t.abs(), 2)
+        );
+        Reason::new("levels", t, sentence)
+    })
+}

@@ -1,0 +1,279 @@
+//! The noise of the rows as neighbours show it, which says nothing of the model and so can judge it.
+//!
+//! ```text
+//! d_i = (r_{i−1} − 2 r_i + r_{i+1})/√6         of the residuals of one branch in contact, along the path; s² their robust variance
+//! a ρ^k                                         the correlation of the noise of two rows that are k rows apart, k ≥ 1
+//! τ = 1 + 2 a ρ/(1 − ρ)                         how many rows count as one: the variance of a mean is s² τ/n
+//! ```
+//!
+//! Second differences leave out what varies slowly along the path: s is the noise of the rows whatever the model is. Noise that is
+//! correlated from row to row varies slowly too. How much it does is told by the rows apart alone, where the model is a constant: in
+//! contact the noise cannot be told from what a wrong model leaves.
+//! J. von Neumann, Ann. Math. Stat. 12, 367 (1941), is the same with first differences.
+
+use super::problem::{Datum, Problem};
+use super::solve::Solved;
+use crate::elementary::{exp, ln};
+use crate::measured::branches::median;
+
+/// Rows farther off than so many times the scale of all are outliers, and left out.
+const OUTLIER: f64 = 4.0;
+/// Values beyond so many standard deviations count as so many, and the variance of normal values that is left so.
+const CLIPPED: f64 = 2.5;
+const LEFT: f64 = 0.977_56;
+/// Fewer rows of a branch say nothing of neighbours.
+const FEWEST: usize = 5;
+/// Rows apart by which a correlation is looked for, at least.
+const FEWEST_APART: usize = 20;
+/// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
+const ROUNDING: f64 = 0.1;
+/// The correlation of neighbours in white noise is beyond so many times 1/√n once in a thousand times.
+const CORRELATED: f64 = 3.1;
+
+/// One row, with its residual in σ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Its place among the data.
+    pub index: usize,
+    /// Its residual.
+    pub residual: f64,
+}
+
+/// How the noise of neighbours hangs together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Correlation {
+    /// a.
+    pub share: f64,
+    /// ρ.
+    pub decay: f64,
+}
+
+impl Correlation {
+    /// Between rows that are `k` rows apart.
+    #[must_use]
+    pub fn at(&self, k: f64) -> f64 {
+        if self.share > 0.0 { self.share * exp(k * ln(self.decay)) } else { 0.0 }
+    }
+
+    /// τ.
+    #[must_use]
+    pub fn rows(&self) -> f64 {
+        1.0 + 2.0 * self.share * self.decay / (1.0 - self.decay)
+    }
+
+    /// The variance of the mean of `n` rows, in that of one.
+    #[must_use]
+    pub fn of_mean(&self, n: usize) -> f64 {
+        let count = n as f64;
+        if self.share <= 0.0 {
+            return 1.0 / count;
+        }
+        let sum: f64 = (1..n).map(|k| (1.0 - k as f64 / count) * self.at(k as f64)).sum();
+        (1.0 + 2.0 * sum) / count
+    }
+
+    /// The variance of second differences, in that of white noise.
+    fn of_differences(&self) -> f64 {
+        1.0 - (8.0 * self.at(1.0) - 2.0 * self.at(2.0)) / 6.0
+    }
+}
+
+/// The noise of the rows, in σ of the problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scatter {
+    /// s of the rows in contact; `None` of too few.
+    pub contact: Option<f64>,
+    /// The degrees of freedom of s².
+    pub degrees: f64,
+    /// The scale of the residuals of the same rows, which has in it what the model leaves.
+    pub residuals: f64,
+    /// Their number.
+    pub rows: usize,
+    /// How neighbours hang together.
+    pub correlation: Correlation,
+    /// The rows apart in which it was looked for.
+    pub apart: usize,
+}
+
+impl Problem {
+    /// The residuals of one branch, in contact along the path or apart in the order of the file, without outliers.
+    pub(super) fn rows(&self, solved: &Solved, branch: usize, free: bool, part: usize) -> Vec<Row> {
+        let per = self.per_point();
+        let residuals = &solved.minimum.at.residuals;
+        let is_wanted = |datum: &Datum| datum.branch == branch && datum.free == free;
+        let of = self.data.iter().enumerate().filter(|(_, datum)| is_wanted(datum));
+        let mut rows: Vec<Row> =
+            of.map(|(index, _)| Row { index, residual: residuals[per * index + part] }).collect();
+        if free {
+            rows.sort_by_key(|row| self.data[row.index].point.row);
+        }
+        let sizes = rows.iter().map(|row| row.residual.abs()).collect();
+        let limit = OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0);
+        rows.retain(|row| row.residual.abs() <= limit);
+        rows
+    }
+
+    /// How many branches there are.
+    pub(super) fn branches(&self) -> usize {
+        self.data.iter().map(|datum| datum.branch + 1).max().unwrap_or(0)
+    }
+
+    /// The noise of the rows, by the residuals of `solved`.
+    pub(super) fn scatter(&self, solved: &Solved) -> Scatter {
+        let apart: Vec<Vec<f64>> = (0..self.branches())
+            .map(|branch| {
+                detrended(
+                    &self.rows(solved, branch, true, 0).iter().map(|row| row.residual).collect::<Vec<_>>(),
+                )
+            })
+            .filter(|rows| rows.len() >= FEWEST)
+            .collect();
+        let correlation = correlation(&apart);
+        let (mut differences, mut residuals, mut degrees) = (Vec::new(), Vec::new(), 0.0);
+        for branch in 0..self.branches() {
+            for part in 0..self.per_point() {
+                let rows = self.rows(solved, branch, false, part);
+                if rows.len() < FEWEST {
+                    continue;
+                }
+                differences.extend(rows.windows(3).map(|three| {
+                    (three[0].residual - 2.0 * three[1].residual + three[2].residual) / 6.0_f64.sqrt()
+                }));
+                residuals.extend(rows.iter().map(|row| row.residual));
+                degrees += 0.5 * rows.len() as f64 - 1.0;
+            }
+        }
+        let contact = variance(&differences).map(|found| (found / correlation.of_differences()).sqrt());
+        Scatter {
+            contact: contact.filter(|s| *s > 0.0),
+            degrees: (degrees / correlation.rows()).max(1.0),
+            residuals: variance(&residuals).unwrap_or(0.0).sqrt(),
+            rows: residuals.len(),
+            correlation,
+            apart: apart.iter().map(Vec::len).sum(),
+        }
+    }
+}
+
+/// The variance around 0 of normal values, some of which may be off.
+#[must_use]
+pub fn variance(values: &[f64]) -> Option<f64> {
+    const TIMES: usize = 20;
+    const SAME: f64 = 1e-6;
+    let mut found = (median(values.iter().map(|x| x.abs()).collect())? / 0.6745).powi(2);
+    for _ in 0..TIMES {
+        let most = CLIPPED * CLIPPED * found;
+        let next = values.iter().map(|x| (x * x).min(most)).sum::<f64>() / values.len() as f64 / LEFT;
+        let is_same = (next - found).abs() <= SAME * found;
+        found = next;
+        if is_same {
+            break;
+        }
+    }
+    Some(found)
+}
+
+/// Values without their mean and their slope over the order.
+fn detrended(values: &[f64]) -> Vec<f64> {
+    let n = values.len() as f64;
+    let (mean, middle) = (values.iter().sum::<f64>() / n, 0.5 * (n - 1.0));
+    let [xx, xy] = values.iter().enumerate().fold([0.0; 2], |[xx, xy], (i, y)| {
+        let x = i as f64 - middle;
+        [xx + x * x, xy + x * (y - mean)]
+    });
+    let slope = if xx > 0.0 { xy / xx } else { 0.0 };
+    values.iter().enumerate().map(|(i, y)| y - mean - slope * (i as f64 - middle)).collect()
+}
+
+/// The correlation of neighbours in series without mean and slope; none where it may be by chance.
+fn correlation(series: &[Vec<f64>]) -> Correlation {
+    /// Correlations below this share of that of neighbours, or which may be by chance, say nothing of the decay.
+    const TOLD: f64 = 0.3;
+    /// The slowest decay that is told from a drift, in the number of rows.
+    const SLOWEST: f64 = 3.0;
+    let none = Correlation::default();
+    let rows: usize = series.iter().map(Vec::len).sum();
+    let n = rows as f64;
+    if rows < FEWEST_APART {
+        return none;
+    }
+    let lagged = |lag: usize| {
+        let pairs: usize = series.iter().map(|of| of.len().saturating_sub(lag)).sum();
+        let sum: f64 =
+            series.iter().flat_map(|of| of.iter().zip(of.iter().skip(lag))).map(|(a, b)| a * b).sum();
+        sum / pairs.max(1) as f64
+    };
+    let longest = series.iter().map(Vec::len).max().unwrap_or(0) / 3;
+    let whole = lagged(0);
+    if whole <= ROUNDING * ROUNDING || lagged(1) <= CORRELATED / n.sqrt() * whole {
+        return none;
+    }
+    let mut found = Correlation { share: 1.0, decay: lagged(1) / whole };
+    // Without their mean and slope the series have lost 2 τ/n of each covariance.
+    for _ in 0..3 {
+        let lost = (2.0 * series.len() as f64 * found.rows() / n).min(1.0) * whole;
+        let at = |lag: usize| (lagged(lag) + lost) / (whole + lost);
+        let first = at(1);
+        let enough = f64::max(TOLD * first, 2.0 / n.sqrt());
+        let told: Vec<(f64, f64)> =
+            (1..=longest.max(1)).map(|lag| (lag as f64, at(lag))).take_while(|(_, r)| *r > enough).collect();
+        let least = exp(-SLOWEST / n);
+        found = if told.len() < 2 {
+            Correlation { share: 1.0, decay: first.clamp(0.0, least) }
+        } else {
+            let count = told.len() as f64;
+            let [mean_x, mean_y] =
+                told.iter().fold([0.0; 2], |[x, y], (lag, r)| [x + lag / count, y + ln(*r) / count]);
+            let [xx, xy] = told.iter().fold([0.0; 2], |[xx, xy], (lag, r)| {
+                [xx + (lag - mean_x).powi(2), xy + (lag - mean_x) * (ln(*r) - mean_y)]
+            });
+            let decay = exp((xy / xx).min(0.0)).min(least);
+            Correlation { share: (first / decay).min(1.0), decay }
+        };
+    }
+    if found.decay > 0.0 { found } else { none }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::tests::Normal;
+
+    #[test]
+    fn a_correlation_is_found_and_white_noise_has_none() {
+        let mut found = 0;
+        for seed in 0..200 {
+            let mut normal = Normal::new(seed);
+            let white: Vec<f64> = (0..100).map(|_| normal.next()).collect();
+            found += usize::from(correlation(&[detrended(&white)]).share > 0.0);
+        }
+        assert!(found <= 2, "{found} of 200");
+        let mut mean = 0.0;
+        for seed in 0..50 {
+            let mut normal = Normal::new(seed);
+            let mut last = 0.0;
+            let series = |normal: &mut Normal, last: &mut f64| {
+                let step = |_| {
+                    *last = 0.9 * *last + normal.next();
+                    *last
+                };
+                detrended(&(0..200).map(step).collect::<Vec<f64>>())
+            };
+            let both = [series(&mut normal, &mut last), series(&mut normal, &mut last)];
+            mean += correlation(&both).rows() / 50.0;
+        }
+        // (1 + 0.9)/(1 - 0.9)
+        assert!((14.0..25.0).contains(&mean), "{mean}");
+    }
+
+    #[test]
+    fn neighbours_show_the_noise_whatever_varies_slowly() {
+        let mut normal = Normal::new(3);
+        let values: Vec<f64> =
+            (0..2000).map(|i| normal.next() + 5.0 * (f64::from(i) / 200.0).sin()).collect();
+        let differences: Vec<f64> =
+            values.windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]) / 6.0_f64.sqrt()).collect();
+        let found = variance(&differences).unwrap();
+        assert!((found - 1.0).abs() < 0.12, "{found}");
+    }
+}

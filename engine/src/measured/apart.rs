@@ -1,0 +1,104 @@
+//! The jump behind which the bodies are apart, looked for in as many rows as the noise asks for.
+//!
+//! ```text
+//! D_w(j) = mean of w rows from j on − mean of the w rows before,     z = D_w/(σ √(2/w)),     w = 1, 2, 4, …
+//! ```
+//!
+//! The rows run from the contact to the free end. σ is what neighbours show. The force behind a jump is a line that hardly rises: a
+//! record that ends at its last contact has no such rows, for there the force rises ever faster.
+
+use super::noise::{FLOOR, median, range, scatter_over};
+
+/// A jump is so many deviations of its own noise.
+const SURE: f64 = 6.0;
+/// Rows on either side, at least.
+const FEWEST: usize = 3;
+/// It is so many times the scatter behind it, and what the force goes on there is at most this share of it.
+const CLEAR: f64 = 3.0;
+const GOES_ON: f64 = 0.5;
+/// Rows that are off by so many σ from the median of five are set to it.
+const OFF: f64 = 5.0;
+/// Rows behind the jump by which a slope is told from their scatter.
+const MANY: usize = 20;
+
+/// A jump.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Jump {
+    /// The first row behind it.
+    pub(super) at: usize,
+    /// Its height in deviations of its noise.
+    pub(super) deviations: f64,
+}
+
+/// The jump in `force` over `x`, from the contact to the free end; `None` where there is none.
+pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
+    let n = force.len();
+    if n < 2 * FEWEST {
+        return None;
+    }
+    let sigma = scatter_over(x, force).unwrap_or(0.0).max(FLOOR * range(force.iter().copied()));
+    if sigma <= 0.0 {
+        return None;
+    }
+    let force = without_outliers(force, OFF * sigma);
+    let mut sums = vec![0.0; n + 1];
+    for (i, p) in force.iter().enumerate() {
+        sums[i + 1] = sums[i] + p;
+    }
+    let mean = |from: usize, to: usize| (sums[to] - sums[from]) / (to - from) as f64;
+    let mut best: Option<Jump> = None;
+    let mut w = 1;
+    while w <= (n / 8).max(1) {
+        let scale = (w as f64 / 2.0).sqrt() / sigma;
+        for at in w.max(FEWEST)..=(n - w.max(FEWEST)) {
+            let deviations = (mean(at, at + w) - mean(at - w, at)) * scale;
+            if deviations > SURE
+                && best.is_none_or(|best| deviations > best.deviations)
+                && is_flat(x, &force, at, mean(at, at + w) - mean(at - w, at))
+            {
+                best = Some(Jump { at, deviations });
+            }
+        }
+        w *= 2;
+    }
+    best.map(|found| Jump { at: sharpened(&force, found.at, sigma), ..found })
+}
+
+/// Whether the force behind `at` stands still beside a jump of this height.
+fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64) -> bool {
+    let (x, rest) = (&x[at..], &force[at..]);
+    if rest.len() < 2 * FEWEST {
+        return range(rest.iter().copied()) <= GOES_ON * height;
+    }
+    // A slope of the baseline is the instrument's.
+    let half = rest.len() / 2;
+    let of = |part: &[f64]| median(part.to_vec()).unwrap_or(0.0);
+    let (x0, x1, p0, p1) = (of(&x[..half]), of(&x[half..]), of(&rest[..half]), of(&rest[half..]));
+    let slope = if rest.len() >= MANY && x0 > x1 { (p1 - p0) / (x1 - x0) } else { 0.0 };
+    let off: Vec<f64> = x.iter().zip(rest).map(|(x, p)| p - slope * (x - x0)).collect();
+    let middle = of(&off);
+    let scatter = 1.4826 * of(&off.iter().map(|p| (p - middle).abs()).collect::<Vec<_>>());
+    (p1 - p0).abs() <= GOES_ON * height && CLEAR * scatter <= height
+}
+
+/// The values, but for rows that are off from those around them by more than `limit`.
+fn without_outliers(values: &[f64], limit: f64) -> Vec<f64> {
+    let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
+    let cleaned = |(i, value): (usize, &f64)| {
+        let middle = median(around(i).to_vec()).unwrap_or(*value);
+        // At the ends and beside a jump the median of few is no better.
+        let is_inside = i >= 2 && i + 2 < values.len();
+        if is_inside && (value - middle).abs() > limit { middle } else { *value }
+    };
+    values.iter().enumerate().map(cleaned).collect()
+}
+
+/// The place near `at` where the force rises most from row to row, where one rise stands out.
+fn sharpened(force: &[f64], at: usize, sigma: f64) -> usize {
+    const NEAR: usize = 4;
+    const STANDS_OUT: f64 = 4.0;
+    let rise = |i: usize| force[i] - force[i - 1];
+    let near = at.saturating_sub(NEAR).max(FEWEST)..=(at + NEAR).min(force.len() - FEWEST);
+    let best = near.max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
+    best.filter(|&best| rise(best) > STANDS_OUT * sigma && rise(best) > rise(at)).unwrap_or(at)
+}

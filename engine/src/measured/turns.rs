@@ -1,0 +1,70 @@
+//! Where the way turns round: the branches of a file that names none, in any order and of any number of loops.
+
+use super::noise::range;
+use super::points::Point;
+use super::role::Segment;
+
+/// x turns where it comes back by more than this share of its range.
+const TURN: f64 = 0.2;
+/// Runs of a named branch with fewer rows are none, and shares of the rows in longer ones below which the rows are in no order.
+const FEWEST: usize = 5;
+const IN_RUNS: f64 = 0.9;
+
+/// The parts of `points` over which x goes one way.
+pub(super) fn one_way(points: &[Point]) -> Vec<Vec<Point>> {
+    let limit = TURN * range(points.iter().map(|point| point.x));
+    let mut cuts = vec![0];
+    // The farthest row so far, and the way that is gone, once that is known.
+    let (mut lowest, mut highest, mut rises) = (0, 0, None);
+    for (i, point) in points.iter().enumerate() {
+        if point.x < points[lowest].x {
+            lowest = i;
+        }
+        if point.x > points[highest].x {
+            highest = i;
+        }
+        let falls_now = points[highest].x - point.x > limit && rises != Some(false);
+        let rises_now = point.x - points[lowest].x > limit && rises != Some(true);
+        if falls_now || rises_now {
+            let turn = if falls_now { highest } else { lowest };
+            // The first way has no turn before it.
+            if rises.is_some() || turn >= FEWEST {
+                cuts.push(turn);
+            }
+            rises = Some(rises_now);
+            (lowest, highest) = (i, i);
+        }
+    }
+    cuts.push(points.len());
+    cuts.dedup();
+    cuts.windows(2).map(|pair| points[pair[0]..pair[1]].to_vec()).filter(|part| !part.is_empty()).collect()
+}
+
+/// The runs of rows of one named branch; all of them together where the rows are in no order.
+pub(super) fn runs(points: &[Point], segments: &[Segment], segment: Segment) -> Vec<Vec<Point>> {
+    let mut runs: Vec<Vec<Point>> = Vec::new();
+    let mut goes_on = false;
+    for point in points {
+        let is_of = segments[point.row - 1] == segment;
+        match runs.last_mut() {
+            Some(run) if is_of && goes_on => run.push(*point),
+            _ if is_of => runs.push(vec![*point]),
+            _ => {}
+        }
+        goes_on = is_of;
+    }
+    let all: usize = runs.iter().map(Vec::len).sum();
+    let in_long: usize = runs.iter().map(Vec::len).filter(|count| *count >= FEWEST).sum();
+    if (in_long as f64) < IN_RUNS * all as f64 {
+        return vec![runs.concat()];
+    }
+    runs.retain(|run| run.len() >= FEWEST);
+    runs
+}
+
+/// Whether x grows from the beginning of `points` to their end.
+pub(super) fn rises(points: &[Point]) -> bool {
+    let third = (points.len() / 3).max(1);
+    let mean = |of: &[Point]| of.iter().map(|point| point.x).sum::<f64>() / of.len().max(1) as f64;
+    mean(&points[points.len() - third..]) > mean(&points[..third])
+}
