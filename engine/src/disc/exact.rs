@@ -31,6 +31,9 @@ const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 /// Fewer digits than this are warned of.
 pub const DIGITS_WANTED: f64 = 11.0;
 
+/// Beyond so many radii of a disc the gap around it follows from the pressure inside, and needs no table out there.
+const FAR: f64 = 2.0;
+
 /// How often a table is made finer towards the axis where its innermost disc is not yet unstable.
 const TIMES_FINER: i32 = 40;
 
@@ -209,14 +212,24 @@ impl Basis for Exact {
         radii.map(|r| (r, outside::pressure(&panels, s, delta, r))).collect()
     }
 
-    fn gap_outside(&self, _problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
-        let farthest = radii.iter().fold(s, |most, r| most.max(*r));
-        let Ok(panels) = self.table.up_to(farthest.max(self.reach)) else {
+    fn gap_outside(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
+        let near = FAR * s;
+        let farthest = radii.iter().fold(s, |most, r| most.max(r.min(near)));
+        // Where the table ends before, what is farther out is far.
+        let panels = self.table.up_to(farthest.max(self.reach)).ok().or_else(|| self.panels(s));
+        let Some(panels) = panels.filter(|panels| s <= panels.reach()) else {
             return vec![f64::NAN; radii.len()];
         };
+        let end = self.table.end();
         let gap = |r: f64| {
-            // What is needed of δ is δ − g(s), of which the edge is made.
-            if r <= panels.reach() { outside::gap_from(&panels, s, delta, r) } else { f64::NAN }
+            if r <= near.min(panels.reach()) {
+                // What is needed of δ is δ − g(s), of which the edge is made.
+                outside::gap_from(&panels, s, delta, r)
+            } else if r <= end {
+                outside::gap_far(&panels, problem.gap.jet(r).value, s, delta, r)
+            } else {
+                f64::NAN
+            }
         };
         radii.iter().map(|r| gap(*r)).collect()
     }
@@ -254,6 +267,7 @@ pub fn outer_side(solution: &dyn Solution, place: Place) -> Place {
 mod tests {
     use super::*;
     use crate::gap::Shape;
+    use crate::gap::shapes::PowerLaw;
     use crate::problem::{Control, Problem};
     use crate::ritz::examples::{check_derivatives, wavy};
 
@@ -349,6 +363,34 @@ mod tests {
             let ours = exact(&scaled.reduced());
             assert!((ours.approach / reference.approach - 1.0).abs() < 1e-12);
             assert!((ours.force / reference.force - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_gap_far_out_is_that_of_the_table_and_needs_none() {
+        let shapes = [
+            Shape::Sphere { radius_of_curvature: 1.0 },
+            Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
+            Shape::PowerLaw(PowerLaw { factor: 0.5, exponent: 6.0 }),
+        ];
+        for shape in shapes {
+            let problem =
+                Problem { effective_modulus: 1.0, work_of_adhesion: 0.004, shape: shape.clone() }.reduced();
+            let (basis, s) = (Exact::of(&problem, 0.3).unwrap(), 0.2);
+            let delta = basis.equilibrium(&problem, s).unwrap().approach;
+            let radii: Vec<f64> = (0..200).map(|i| s * (1.0 + 0.05 * f64::from(i))).collect();
+            let ours = basis.gap_outside(&problem, s, delta, &radii);
+            let panels = basis.table().up_to(11.0 * s).unwrap();
+            for (r, ours) in radii.iter().zip(&ours) {
+                let exact = outside::gap_from_fine(&panels, s, delta, *r);
+                let size = problem.gap.jet(*r).value + delta.abs();
+                assert!((ours - exact).abs() <= 1e-12 * size, "{shape:?} {r}: {ours} {exact}");
+            }
+            // A radius that no table reaches takes nothing from the others.
+            let with_far = basis.gap_outside(&problem, s, delta, &[radii.clone(), vec![1e9]].concat());
+            assert_eq!(with_far[..200], ours, "{shape:?}");
+            let (far, undeformed) = (with_far[200], problem.gap.jet(1e9).value);
+            assert!((far / undeformed - 1.0).abs() < 1e-12, "{shape:?}: {far} {undeformed}");
         }
     }
 

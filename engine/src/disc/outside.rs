@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! r > s    gap(r) = (2/π) ∫_s^r (g(a) − δ)/√(r² − a²) da
+//!          gap(r) = h(r) − δ − (2/π) ∫₀^s (g(a) − δ)/√(r² − a²) da
 //! r < s    p(r)   = (1/π) [(δ − g(s))/√(s² − r²) + ∫_r^s g'(a)/√(a² − r²) da]
 //! ```
 //!
 //! The first follows from h(r) = (2/π) ∫₀ʳ g/√(r² − a²) da, Abel's inversion of g, and the displacement that the pressure
-//! causes outside. Both hold for any δ, not only in equilibrium. On every panel a substitution takes the singularity
+//! causes outside. The second is the first with the whole integral taken as h(r): near the edge it loses digits, far out it needs
+//! no table there. All hold for any δ, not only in equilibrium. On every panel a substitution takes the singularity
 //! away: a = b + (r − b) sin²ψ right of a break b, a = r sin ψ elsewhere.
 //!
 //! **What is to be searched.** If the gap is not negative on [s, q], what those radii give at r > q is
@@ -77,6 +79,16 @@ fn gap_by(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> 
         stretch(i, [span.lo.max(s), span.hi.min(r)])
     };
     FRAC_2_PI * (first..=last).map(part).sum::<f64>()
+}
+
+/// The same far from the edge, where `gap` is h(r); the panels must reach to `s` alone.
+pub fn gap_far(panels: &Panels, gap: f64, s: f64, delta: f64, r: f64) -> f64 {
+    let last = panels.place(s).panel;
+    let part = |i: usize| {
+        let panel = &panels.list()[i];
+        stretch_outside(panels, i, panel, delta, r, [panel.span.lo, panel.span.hi.min(s)])
+    };
+    gap - delta - FRAC_2_PI * (0..=last).map(part).sum::<f64>()
 }
 
 /// ∫ (g − δ)/√(r² − a²) da from `lo` to `hi` on one panel.
