@@ -7,7 +7,7 @@ use super::output::{Faults, Output, OutputError};
 use super::record::{self, Outcome};
 use super::shard::Shard;
 use pulloff_engine::progress::Progress;
-use pulloff_engine::sweep::{Fault, Spec};
+use pulloff_engine::sweep::{Fault, Measured, Spec};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -69,22 +69,14 @@ pub fn run(
     let of = shard.len(spec.rows);
     let (before, mut faults) = (output.rows, output.faults.clone());
     let mut now = 0;
-    let compute = |index: u64| {
-        let row = shard.row(index);
-        let begun = Instant::now();
-        let is_late = || means.row_limit.is_some_and(|limit| begun.elapsed() > limit);
-        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| progress.stop() || is_late())));
-        let measured = measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
-        let late =
-            || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
-        let measured = measured.or_else(late)?;
+    let make = |row: u64, measured: Measured| {
         let outcome = Outcome {
             fault: measured.fault.as_ref().map(|fault| fault.reason),
             has_quantity: measured.cells.iter().any(Option::is_some),
         };
-        Some((record::record(spec, row, &measured), outcome))
+        (record::record(spec, row, &measured), outcome)
     };
-    in_order(before..of, means.jobs, WINDOW, &compute, progress, |item: Option<(String, Outcome)>| {
+    rows(spec, shard, before..of, means, progress, &make, |item: Option<(String, Outcome)>| {
         let result = match item {
             Some((line, outcome)) => {
                 now += 1;
@@ -98,6 +90,31 @@ pub fn run(
     })?;
     output.finish()?;
     Ok(Summary { before, now, of, faults })
+}
+
+/// Computes the rows of a part whose places in it are `indices`, and hands what `make` makes of each over in order, on this
+/// thread; nothing now and then, while there is none. Ends early where `progress` says stop or `write` fails: all before that is
+/// handed over.
+pub fn rows<T: Send>(
+    spec: &Spec,
+    shard: Shard,
+    indices: Range<u64>,
+    means: Means,
+    progress: &(dyn Progress + Sync),
+    make: &(impl Fn(u64, Measured) -> T + Sync),
+    write: impl FnMut(Option<T>) -> Result<(), OutputError>,
+) -> Result<(), OutputError> {
+    let compute = |index: u64| {
+        let row = shard.row(index);
+        let begun = Instant::now();
+        let is_late = || means.row_limit.is_some_and(|limit| begun.elapsed() > limit);
+        let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &|| progress.stop() || is_late())));
+        let measured = measured.unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
+        let late =
+            || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
+        Some(make(row, measured.or_else(late)?))
+    };
+    in_order(indices, means.jobs, WINDOW, &compute, progress, write)
 }
 
 /// Which rows may be begun.
