@@ -32,7 +32,7 @@ const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 pub const DIGITS_WANTED: f64 = 11.0;
 
 /// Beyond so many radii of a disc the gap around it follows from the pressure inside, and needs no table out there.
-const FAR: f64 = 2.0;
+pub const FAR: f64 = 2.0;
 
 /// How often a table is made finer towards the axis where its innermost disc is not yet unstable.
 const TIMES_FINER: i32 = 40;

@@ -170,8 +170,23 @@ impl CycleReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
     pub fn compute(preset: &Preset, areas: Areas, progress: &dyn Progress) -> Result<Self, CaseError> {
+        Self::compute_to(preset, None, areas, progress)
+    }
+
+    /// The loop of `preset` that turns round at `turn`, in the units of the preset, in place of what that says.
+    ///
+    /// # Errors
+    /// As [`compute`](Self::compute).
+    pub fn compute_to(
+        preset: &Preset,
+        turn: Option<Turn>,
+        areas: Areas,
+        progress: &dyn Progress,
+    ) -> Result<Self, CaseError> {
         let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
-        let cycle = case.cycle(case.control, None, areas, &Part::new(progress, [0.1, 1.0]))?;
+        let units = case.units();
+        let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
+        let cycle = case.cycle(case.control, turn, areas, &Part::new(progress, [0.1, 1.0]))?;
         Ok(Self::new(preset, &case, &cycle))
     }
 
