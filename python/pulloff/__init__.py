@@ -15,11 +15,13 @@ other threads run, shows a bar where tqdm is installed, and ends on Ctrl-C.
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
+from operator import index
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _engine
-from ._problem import Problem
+from ._problem import PresetText, Problem
 from ._progress import Progress, told
+from ._table import Table
 from ._toml import written
 from .errors import (
     Cancelled,
@@ -29,18 +31,20 @@ from .errors import (
     FitError,
     GapError,
     InternalError,
+    Interrupted,
     MapError,
     NoLoop,
     NoState,
     NotCertified,
     NotConverged,
     NotDetermined,
+    OutputError,
     PresetError,
     SpecError,
     StartError,
     UnstableStart,
 )
-from .results import Cycle, Fit, Map, Stability, Sweep, Table, Trace, Unloading
+from .results import Cycle, Fit, Map, Stability, Sweep, Trace, Unloading
 
 __version__ = _engine.__version__
 
@@ -54,6 +58,7 @@ __all__ = [
     "FitError",
     "GapError",
     "InternalError",
+    "Interrupted",
     "Map",
     "MapError",
     "NoLoop",
@@ -61,7 +66,9 @@ __all__ = [
     "NotCertified",
     "NotConverged",
     "NotDetermined",
+    "OutputError",
     "PresetError",
+    "PresetText",
     "Problem",
     "Quantity",
     "SpecError",
@@ -103,6 +110,11 @@ def sweep(
     spec: Union[str, "os.PathLike[str]", Mapping[str, Any]],
     *,
     jobs: Optional[int] = None,
+    out: Union[str, "os.PathLike[str]", None] = None,
+    shard: Union[str, Tuple[int, int], None] = None,
+    resume: bool = True,
+    overwrite: bool = False,
+    row_limit: Optional[float] = None,
     progress: Progress = None,
 ) -> Sweep:
     """Computes many problems on all cores.
@@ -114,6 +126,17 @@ def sweep(
         :class:`Problem`; a file; or its text, of more than one line.
     jobs : int, optional
         Threads, 1 to 1024; as many as cores where none is given.
+    out : path, optional
+        A file for the rows, the very one that the program's ``sweep`` writes, with a file beside it that says what it is of: the
+        program goes on with it, checks it, joins shards and plots it.
+    shard : (i, n) or "i/n", optional
+        The part i of n alone, i from 1 to n.
+    resume : bool
+        Whether it goes on with the rows that ``out`` has of this very sweep; where not, a file that is there is refused.
+    overwrite : bool
+        Whether a file that is there is replaced.
+    row_limit : float, optional
+        A row is given up after so many seconds; its error says so.
 
     Returns
     -------
@@ -125,6 +148,10 @@ def sweep(
     ------
     SpecError
         The spec is refused.
+    OutputError
+        ``out`` is of another sweep, or cannot be written.
+    Interrupted
+        Ctrl-C, a ``KeyboardInterrupt``; ``result`` is the :class:`Sweep` of the rows that are done, the first ones without a gap.
     """
     folder, problem = os.curdir, None
     if isinstance(spec, Mapping):
@@ -138,14 +165,29 @@ def sweep(
     else:
         folder = os.path.dirname(os.fspath(spec)) or os.curdir
         try:
-            with open(spec, encoding="utf-8") as file:
-                text = file.read()
-        except (OSError, UnicodeDecodeError) as error:
-            raise SpecError(f"{os.fspath(spec)}: {error}") from error
+            text = _engine.read_file(spec).decode()
+        except (DataError, UnicodeDecodeError) as error:
+            where = "" if isinstance(error, DataError) else f"{os.fspath(spec)}: "
+            raise SpecError(f"{where}{error}") from error
     if jobs is None:
         jobs = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    jobs = index(jobs)
     if not 1 <= jobs <= 1024:
         raise SpecError(f"jobs = {jobs} is out of range: it must be from 1 to 1024")
+    if row_limit is not None and not 0.0 < row_limit < float("inf"):
+        raise SpecError(f"row_limit = {row_limit!r} is out of range: it is a time in seconds above 0")
+    wanted = {
+        "jobs": jobs,
+        "shard": shard if shard is None or isinstance(shard, str) else "/".join(str(index(n)) for n in shard),
+        "row_limit": row_limit,
+        "out": out,
+        "resume": resume,
+        "overwrite": overwrite,
+    }
     with told(progress, "sweep") as tell:
-        columns, axes = _engine.sweep(text, folder, problem, jobs, tell)
-    return Sweep(columns, tuple(axes))
+        columns, axes, interrupt = _engine.sweep(text, folder, problem, wanted, tell)
+    swept = Sweep(columns, tuple(axes))
+    if interrupt is not None:
+        kept = "" if out is None else f"; {os.fspath(out)} has them, and the same call goes on from there"
+        raise Interrupted(f"stopped with {swept.row_count} rows{kept}", result=swept) from interrupt
+    return swept

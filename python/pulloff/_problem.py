@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
+from operator import index
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
+from ._gap import column, plain, sampled
+from ._points import Range, draws_of, points_of, range_of
 from ._progress import Progress, told
-from .errors import ComputationError, DataError, MapError, NotCertified, NotConverged, NotDetermined, PresetError
+from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError
 from .results import Cycle, Fit, Map, Stability, Trace, Unloading
 
 if TYPE_CHECKING:
@@ -21,18 +24,43 @@ Value = Union[float, int, str]
 Control = Union[str, float]
 Axis = Union[Tuple[str, float, float], Tuple[str, float, float, str]]
 
-# A function is sampled at so many radii at first and at most: as many as the engine takes as knots.
-_SAMPLES = (65, 3841)
+class PresetText(str):
+    """The text of a preset, and with it what the files that it names hold: :class:`Problem` takes it without those files."""
+
+    _held: Tuple[Any, Any] = (None, None)
+
+    @classmethod
+    def _of(cls, native: _engine.Problem) -> "PresetText":
+        text, *held = native.state()
+        made = cls(text)
+        made._held = (held[0], held[1])
+        return made
+
+    @property
+    def files(self) -> Dict[str, bytes]:
+        """The files by the names that the text has for them, to be written beside it; those that come with the package are
+        none."""
+        rows, points = self._held
+        files = {}
+        if rows is not None:
+            name, _, radii, gaps, unit, _ = rows
+            unit = f" [{unit}]" if unit and 'units = "SI"' in self else ""
+            lines = (f"{r!r},{h!r}" for r, h in zip(radii.tolist(), gaps.tolist()))
+            files[name] = "\n".join([f"r{unit},h{unit}", *lines, ""]).encode()
+        if points is not None:
+            files[points[0]] = points[2]
+        return {name: content for name, content in files.items() if not name.startswith("shipped:")}
 
 
 class Problem:
-    """One problem of adhesive contact: two bodies, their gap, a loading device, a start. It never changes.
+    """One problem of adhesive contact: two bodies, their gap, a loading device, a start. It never changes, so it can be a key of a
+    dict; it can be pickled, and two are equal where all their values and data are.
 
     Parameters
     ----------
     source : str or path
         The name of a preset that comes with the package (see :func:`pulloff.presets`); a file: a path object, or a text
-        with a ``/`` or ending in ``.toml``; or the text of a preset, of more than one line.
+        with a ``/`` or ending in ``.toml``; or the text of a preset, of more than one line, as :meth:`to_toml` gives it.
     changes : dict, optional
         Other values by their keys, as ``{"gap.amplitude": 3e-3}``. A text is read as the program's ``--set`` reads it, with
         its unit where the problem has units: ``{"gap.amplitude": "2 um"}``.
@@ -43,27 +71,55 @@ class Problem:
         The source or a value is refused; ``key`` and ``line`` say which.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ("_base", "_native", "_source")
     _native: _engine.Problem
+    _source: str
+    """As ``repr`` says it."""
+    _base: Union[_engine.Problem, Dict[str, Value]]
+    """The source itself, or its values."""
 
     def __init__(
         self, source: Union[str, "os.PathLike[str]"], changes: Optional[Mapping[str, Value]] = None
     ) -> None:
+        said = "a text"
         if not isinstance(source, str):
-            native = _engine.Problem.of_file(os.fspath(source))
+            native, said = _engine.Problem.of_file(os.fspath(source)), repr(os.fspath(source))
+        elif isinstance(source, PresetText):
+            native = _of_state(str(source), *source._held)
         elif "\n" in source:
             native = _engine.Problem.of_text(source)
         elif "/" in source or source.endswith(".toml"):
-            native = _engine.Problem.of_file(source)
+            native, said = _engine.Problem.of_file(source), repr(source)
         else:
-            native = _engine.Problem.shipped(source)
+            native, said = _engine.Problem.shipped(source), repr(str(source))
+        self._base, self._source = native, said
         self._native = native.replace(dict(changes)) if changes else native
 
     @classmethod
-    def _of(cls, native: _engine.Problem) -> "Problem":
+    def _of(
+        cls, native: _engine.Problem, source: str, base: Union[_engine.Problem, Dict[str, Value], None] = None
+    ) -> "Problem":
         problem = cls.__new__(cls)
-        problem._native = native
+        problem._native, problem._source, problem._base = native, source, native if base is None else base
         return problem
+
+    @classmethod
+    def _restored(cls, state: Tuple[Any, ...], source: str, base: Optional[Dict[str, Value]]) -> "Problem":
+        return cls._of(_of_state(*state), source, base)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        base = None if self._base is self._native else self._base_values()
+        return type(self)._restored, (self._native.state(), self._source, base)
+
+    def _base_values(self) -> Dict[str, Value]:
+        return self._base if isinstance(self._base, dict) else self._base.values()
+
+    def _changed(self) -> Dict[str, Value]:
+        """The values that are others than those of the source."""
+        if self._base is self._native:
+            return {}
+        before = self._base_values()
+        return {key: value for key, value in self._native.values().items() if before.get(key) != value}
 
     @classmethod
     def from_gap(
@@ -107,9 +163,9 @@ class Problem:
             The rows or a value are refused.
         """
         if callable(h):
-            radii, gaps = _sampled(h, float(np.asarray(r, dtype=float)), tolerance)
+            radii, gaps = sampled(h, float(np.asarray(r, dtype=float)), tolerance)
         else:
-            radii, gaps = _column("r", r), _column("h", h)
+            radii, gaps = column("r", r), column("h", h)
             if radii.shape != gaps.shape:
                 raise PresetError(f"r has {radii.size} values and h has {gaps.size}: they must be as many", key="gap.file")
         text = "\n".join(
@@ -126,11 +182,11 @@ class Problem:
             ]
         )
         native = _engine.Problem.of_rows(text, radii, gaps)
-        return cls._of(native.replace(dict(changes)) if changes else native)
+        return cls._of(native.replace(dict(changes)) if changes else native, "from_gap", native)
 
     def replace(self, changes: Optional[Mapping[str, Value]] = None, **more: Value) -> "Problem":
         """The same problem with other values, checked as a whole."""
-        return self._of(self._native.replace({**(changes or {}), **more}))
+        return self._of(self._native.replace({**(changes or {}), **more}), self._source, self._base)
 
     @property
     def title(self) -> str:
@@ -141,9 +197,28 @@ class Problem:
         """Every key with its value, in SI or in reduced units."""
         return self._native.values()
 
-    def to_toml(self) -> str:
-        """As the text of a preset."""
-        return self._native.to_toml()
+    def to_toml(self) -> PresetText:
+        """As the text of a preset. It opens again, ``Problem(problem.to_toml()) == problem``: arrays and measured curves travel with
+        the text; :meth:`save` writes both to the disk."""
+        return PresetText._of(self._native)
+
+    def save(self, path: Union[str, "os.PathLike[str]"], *, overwrite: bool = False) -> None:
+        """Writes the preset to a file, and beside it the gap and the measured curve that it reads: ``NAME.gap.csv`` and
+        ``NAME.data.csv`` beside ``NAME.toml``. The program opens it, and so does :class:`Problem`.
+
+        Raises
+        ------
+        OutputError
+            One of them exists and is not to be overwritten, or cannot be written; nothing is replaced then.
+        """
+        path = os.fspath(path)
+        stem = os.path.basename(path)
+        stem = stem[: -len(".toml")] if stem.endswith(".toml") else stem
+        native = self._native.named(f"{stem}.gap.csv", f"{stem}.data.csv")
+        text = PresetText._of(native)
+        folder = os.path.dirname(path)
+        files = {os.path.join(folder, name): content for name, content in text.files.items()}
+        _engine.write_files({**files, path: text.encode()}, bool(overwrite))
 
     def __getitem__(self, key: str) -> Value:
         values = self._native.values()
@@ -151,17 +226,36 @@ class Problem:
             raise KeyError(f"{key!r} is no key of this problem; there is {', '.join(values)}")
         return values[key]
 
+    def __contains__(self, key: object) -> bool:
+        return key in self._native.values()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def keys(self) -> List[str]:
+        """The keys of all values: ``dict(problem)`` is ``problem.to_dict()``."""
+        return list(self._native.values())
+
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Problem) and self.to_toml() == other.to_toml()
+        return isinstance(other, Problem) and self._native.same(other._native)
 
     def __hash__(self) -> int:
-        return hash(self.to_toml())
+        return hash(self._native.digest())
 
     def __repr__(self) -> str:
-        return f"<pulloff.Problem: {self.title or self['gap.shape']}>"
+        changed = f", {changes!r}" if (changes := self._changed()) else ""
+        if self._source.startswith(("'", '"')):
+            return f"pulloff.Problem({self._source}{changed})"
+        title = f": {self.title}" if self.title else ""
+        return f"<pulloff.Problem of {self._source}{changed}{title}>"
 
-    def trace(self, *, progress: Progress = None) -> Trace:
+    def trace(self, *, theory: bool = False, progress: Progress = None) -> Trace:
         """The equilibrium curve from the start inward, by arc length.
+
+        Parameters
+        ----------
+        theory : bool
+            Whether the exact solution at the same contact radii stands beside it, as ``exact_force`` and such.
 
         Raises
         ------
@@ -169,7 +263,7 @@ class Problem:
             It cannot be computed; :class:`StartError` where there is no equilibrium at the start.
         """
         with told(progress, "trace") as tell:
-            return Trace(self._native.trace(tell))
+            return Trace(self._native.trace(bool(theory), tell))
 
     def unload(
         self,
@@ -200,6 +294,7 @@ class Problem:
         to_approach: Optional[float] = None,
         to_force: Optional[float] = None,
         to_radius: Optional[float] = None,
+        to_control: Optional[float] = None,
         areas: bool = True,
         progress: Progress = None,
     ) -> Cycle:
@@ -210,7 +305,9 @@ class Problem:
         control : {"displacement", "force"} or float, optional
             As of :meth:`unload`.
         to_approach, to_force, to_radius : float, optional
-            It turns round at the first stable state with at least this much; one of them at most.
+            It turns round at the first stable state with at least this much; one of them, or ``to_control``, at most.
+        to_control : float, optional
+            It turns round at this value of what is controlled: an approach, a force, or the way of the spring's other end.
         areas : bool
             Whether losses are computed in a second way.
         """
@@ -220,13 +317,18 @@ class Problem:
             "path.turn_contact_radius": to_radius,
         }
         given = {key: value for key, value in turns.items() if value is not None}
-        if len(given) > 1:
-            raise PresetError(f"a loop turns round once: {' and '.join(given)} are too many", key=list(given)[1])
+        named = [*given, *([] if to_control is None else ["to_control"])]
+        if len(named) > 1:
+            raise PresetError(f"a loop turns round once: {' and '.join(named)} are too many", key=named[1])
+        if to_control is not None:
+            to_control = float(to_control)
+            if not abs(to_control) < float("inf"):
+                raise PresetError(f"to_control = {to_control!r} is no number at which a loop could turn round")
         problem = self._under(control)
         if given:
             problem = problem.replace(given)
         with told(progress, "cycle") as tell:
-            return Cycle(problem.cycle(areas, tell))
+            return Cycle(problem.cycle(to_control, areas, tell))
 
     def stability(
         self, control: Optional[Control] = None, *, samples: int = 1501, progress: Progress = None
@@ -240,11 +342,12 @@ class Problem:
         samples : int
             Radii of equal distance from the end of the path to its start, 2 to 1000000; cusps and corners come between them.
         """
+        samples = index(samples)
         if not 2 <= samples <= 1_000_000:
             raise ComputationError(f"samples = {samples} is out of range: it must be from 2 to 1000000")
         problem = self._under(control)
         with told(progress, "stability") as tell:
-            return Stability(problem.stability(int(samples), tell))
+            return Stability(problem.stability(samples, tell))
 
     def map(
         self,
@@ -271,7 +374,7 @@ class Problem:
         """
         if isinstance(y, str) and y not in ("control", "approach", "force"):
             raise MapError(f"y = {y!r} is not known: it must be 'control', 'approach', 'force', or (key, from, to)")
-        columns, rows = (int(count) for count in cells)
+        columns, rows = (index(count) for count in cells)
         if not (1 <= columns <= 1000 and 1 <= rows <= 1000):
             raise MapError(f"cells = {cells!r} is out of range: from 1 to 1000 columns and rows")
         problem = self._under(control)
@@ -281,10 +384,13 @@ class Problem:
 
     def fit(
         self,
-        data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike]],
-        free: Sequence[str],
+        data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike], Any, None] = None,
+        free: Union[str, Sequence[str], None] = None,
         *,
         columns: Optional[str] = None,
+        segment: Optional[str] = None,
+        x_range: Optional[Range] = None,
+        force_range: Optional[Range] = None,
         separate: bool = False,
         robust: bool = True,
         sigma_x: Optional[float] = None,
@@ -293,20 +399,27 @@ class Problem:
         profile: bool = False,
         bootstrap: Optional[int] = None,
         seed: int = 1,
+        poisson: Optional[float] = None,
         progress: Progress = None,
     ) -> Fit:
         """The values of some keys that a measured curve gives, with their standard errors.
 
         Parameters
         ----------
-        data : path or dict of arrays, shape (points,)
+        data : path, DataFrame or mapping of arrays, shape (points,), optional
             A file that the program's ``fit`` reads; or columns by their names, ``"force"`` with ``"approach"``,
-            ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` where it is known; in SI or,
-            where the problem is in reduced units, in those.
-        free : sequence of str
-            The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument.
+            ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` where it is known; in the unit
+            that stands in the name, as in ``"force [nN]"``, else in SI or, where the problem is in reduced units, in those.
+            The measured curve of the problem itself, ``data.file``, when left out.
+        free : sequence of str, optional
+            The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument; those of the problem's
+            ``data.free`` when left out.
         columns : str, optional
-            What the columns of a file are where its header does not say it, as ``"x=1,force=2"``.
+            What the columns are where their names do not say it, as ``"x=1,force=2"`` or ``"position=Z,force=F"``.
+        segment : {"approach", "retraction"}, optional
+            The branch that is used alone.
+        x_range, force_range : (from, to), optional
+            Rows in this range alone are used, as they are in the data; None leaves an end open.
         separate : bool
             Whether approach and retraction have a work of adhesion each.
         robust : bool
@@ -319,6 +432,8 @@ class Problem:
             Whether 95 % intervals are found by the profile of χ²; ``to_dict()`` has them.
         bootstrap, seed : int, optional
             Fits to so many sets of blocks of rows drawn at random, 10 to 100000.
+        poisson : float, optional
+            Poisson's ratio of the soft body, -1 to 0.5: tells its E beside E*, as ``youngs_modulus``.
 
         Raises
         ------
@@ -329,39 +444,29 @@ class Problem:
         DataError
             The points, or what is asked of them, are refused.
         """
-        if isinstance(data, Mapping):
-            name, text = "data", _points(data, self._native.values().get("units") == "SI")
-        else:
-            name = os.fspath(data)
-            try:
-                with open(data, "rb") as file:
-                    text = file.read()
-            except (OSError, ValueError) as error:
-                raise DataError(f"{name}: {error}") from error
-        if bootstrap is not None and not 10 <= bootstrap <= 100_000:
-            raise DataError(f"bootstrap = {bootstrap} is out of range: it must be from 10 to 100000")
         for what, sigma in (("sigma_x", sigma_x), ("sigma_force", sigma_force)):
             if sigma is not None and not 0.0 < sigma < float("inf"):
                 raise DataError(f"{what} = {sigma!r} is out of range: a standard deviation is above 0")
-        if isinstance(free, str):
-            free = [free]
-        drawn = None if bootstrap is None else (int(bootstrap), int(seed))
+        if poisson is not None and not -1.0 <= poisson <= 0.5:
+            raise DataError(f"poisson = {poisson!r} is out of range: Poisson's ratio is from -1 to 0.5")
+        wanted = {
+            "columns": columns,
+            "segment": segment,
+            "free": [free] if isinstance(free, str) else None if free is None else list(free),
+            "separate": separate,
+            "robust": robust,
+            "sigma": (sigma_x, sigma_force),
+            "x_range": range_of("x_range", x_range),
+            "force_range": range_of("force_range", force_range),
+            "scan": scan,
+            "profile": profile,
+            "bootstrap": draws_of(bootstrap, seed),
+            "poisson": poisson,
+        }
+        points = None if data is None else points_of(data, self._native.values().get("units") == "SI")
         with told(progress, "fit") as tell:
-            document, problem, ended, direction = _engine.fitted(
-                self._native,
-                name,
-                text,
-                columns,
-                list(free),
-                separate,
-                robust,
-                (sigma_x, sigma_force),
-                scan,
-                profile,
-                drawn,
-                tell,
-            )
-        result = Fit(document, self._of(problem))
+            document, problem, ended, direction, residuals = _engine.fitted(self._native, points, wanted, tell)
+        result = Fit(document, self._of(problem, self._source, self._base), residuals)
         if ended != "converged":
             raise NotConverged("the fit did not converge; result has the best values so far", result=result)
         if direction is not None:
@@ -371,44 +476,39 @@ class Problem:
     def pressure(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.
 
-        It has the shape of ``r`` and is a stress. NaN at the edge, where adhesion makes it infinite, and outside. By the
-        exact solution, whatever the basis of the problem.
+        It has the shape of ``r`` and is a stress: ``-inf`` at the edge, ``r`` equal to ``s`` to rounding, where adhesion makes
+        it infinite, and 0 there without adhesion; NaN outside. By the exact solution, whatever the basis of the problem.
         """
         return self._across(s, r)[1]
 
     def gap(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The gap between the deformed bodies at the radii ``r`` in equilibrium at the contact radius ``s``.
 
-        It has the shape of ``r`` and is a length: 0 inside the contact, NaN beyond what is known of the bodies, negative
-        where a crest would overlap. By the exact solution, whatever the basis of the problem.
+        It has the shape of ``r`` and is a length: 0 inside the contact, NaN only where the undeformed gap is not known, beyond
+        the last row of a profile, and negative where a crest would overlap. By the exact solution, whatever the basis of the problem.
         """
         return self._across(s, r)[2]
 
     def _across(self, s: float, r: ArrayLike) -> Tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         radii = np.asarray(r, dtype=float)
-        flat = np.ascontiguousarray(radii).reshape(-1)
+        flat = plain(radii).reshape(-1)
         approach, pressure, gap = self._native.across(float(s), flat)
         return approach, pressure.reshape(radii.shape), gap.reshape(radii.shape)
 
     def _under(self, control: Optional[Control]) -> _engine.Problem:
         if control is None:
             return self._native
+        if isinstance(control, bool):
+            raise PresetError(f"control = {control!r} is none: it is 'displacement', 'force' or a stiffness", key="path.control")
         given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
         return self._native.replace({"path.control": given})
 
 
-def _points(data: Mapping[str, ArrayLike], in_si: bool) -> bytes:
-    """Columns as the table that the engine reads."""
-    units = {"force": " [N]", "segment": ""} if in_si else {}
-    columns = {str(name).replace("_", " "): np.asarray(values) for name, values in data.items()}
-    lengths = {column.size for column in columns.values() if column.ndim == 1}
-    if len(lengths) != 1 or any(column.ndim != 1 for column in columns.values()):
-        shapes = ", ".join(f"{name} {column.shape}" for name, column in columns.items())
-        raise DataError(f"the columns must have one dimension and one length: {shapes or 'there are none'}")
-    header = ",".join(name + units.get(name, " [m]" if in_si else "") for name in columns)
-    lists = [column.tolist() for column in columns.values()]
-    rows = (",".join(x if isinstance(x, str) else repr(x) for x in row) for row in zip(*lists))
-    return "\n".join([header, *rows, ""]).encode()
+def _of_state(text: str, rows: Any, points: Any) -> _engine.Problem:
+    if rows is not None:
+        name, folder, radii, gaps, *more = rows
+        rows = (name, folder, plain(radii), plain(gaps), *more)
+    return _engine.Problem.of_state(text, rows, points)
 
 
 def _axis(axis: Axis) -> Tuple[str, float, float, bool]:
@@ -419,51 +519,3 @@ def _axis(axis: Axis) -> Tuple[str, float, float, bool]:
     if not isinstance(key, str):
         raise MapError(f"{axis!r}: {words}")
     return key, float(lo), float(hi), len(axis) == 4
-
-
-def _column(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    column = np.ascontiguousarray(values, dtype=float)
-    if column.ndim != 1:
-        raise PresetError(f"{name} has {column.ndim} dimensions: it must have one", key="gap.file")
-    return column
-
-
-def _sampled(
-    h: Callable[[NDArray[np.float64]], ArrayLike], radius: float, tolerance: float
-) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Samples of a function out to ``radius``: as many as give it back between them."""
-    if not (np.isfinite(radius) and radius > 0.0):
-        raise PresetError(f"r = {radius!r} is out of range: a function is known to a radius above 0", key="gap.file")
-    if not 0.0 < tolerance < 1.0:
-        raise PresetError(f"tolerance = {tolerance!r} is out of range: it must be above 0 and below 1")
-
-    def of(radii: NDArray[np.float64]) -> NDArray[np.float64]:
-        gaps = np.asarray(h(radii), dtype=float)
-        if gaps.shape != radii.shape:
-            raise PresetError(f"h returned the shape {gaps.shape} for radii of the shape {radii.shape}", key="gap.file")
-        wrong = np.flatnonzero(~np.isfinite(gaps))
-        if wrong.size:
-            raise PresetError(f"h({radii[wrong[0]]!r}) is {gaps[wrong[0]]!r}, no number", key="gap.file")
-        return gaps
-
-    count, most = _SAMPLES
-    while True:
-        radii = np.linspace(0.0, radius, count)
-        gaps = of(radii)
-        # Two radii between each pair, the second where no finer grid has one: what waves at a grid's own rate is seen too.
-        share = np.array([0.5, 0.381966])
-        between = (radii[:-1, None] + share * np.diff(radii)[:, None]).reshape(-1)
-        truth = of(between) - gaps[0]
-        missed = np.abs(np.asarray(_engine.between(radii, gaps, between)) - truth)
-        allowed = tolerance * float(np.ptp(gaps))
-        if missed.max() <= allowed:
-            return radii, gaps
-        if count >= most:
-            at = int(missed.argmax())
-            raise NotCertified(
-                f"the gap is not resolved: a smooth curve through {count} samples misses it by {missed[at]:.3g} at "
-                f"r = {between[at]:.6g}, more than {allowed:.3g}; a corner or a finer wave needs a formula, or arrays",
-                radius=float(between[at]),
-                difference=float(missed[at]),
-            )
-        count = min(2 * count - 1, most)

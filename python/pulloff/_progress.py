@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Union
 
@@ -23,7 +24,10 @@ def told(progress: Progress, what: str) -> Iterator[Optional[Callable[[float], o
         yield None
         return
     try:
-        from tqdm.auto import tqdm
+        # It warns of widgets that are not installed, and then does without.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            from tqdm.auto import tqdm
     except ImportError:
         if progress:
             raise ImportError("progress=True needs tqdm: pip install tqdm, or give a function") from None

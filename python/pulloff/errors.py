@@ -1,14 +1,29 @@
 """What can go wrong, each with the engine's own sentence.
 
-Every exception of the package is a :class:`Error`. Values that are refused are a ``ValueError`` as well.
+Every exception of the package is a :class:`Error`, except :class:`Interrupted`, and goes from one process to another. Values that are refused are a ``ValueError`` as well.
 """
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence, Tuple, Type
 
 
-class Error(Exception):
+def _rebuilt(kind: Type[BaseException], sentence: Tuple[Any, ...], attributes: Dict[str, Any]) -> BaseException:
+    error = kind.__new__(kind)
+    error.args = sentence
+    error.__dict__.update(attributes)
+    return error
+
+
+class _Portable(BaseException):
+    """An exception that comes out of another process as it went in: its arguments by name would be lost otherwise, and a pool of
+    processes waits for ever for one that cannot be read."""
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return _rebuilt, (type(self), self.args, self.__dict__)
+
+
+class Error(_Portable, Exception):
     """Whatever the engine says no to."""
 
 
@@ -45,6 +60,10 @@ class SpecError(Error, ValueError):
     def __init__(self, sentence: str = "", *, line: Optional[int] = None) -> None:
         super().__init__(sentence)
         self.line = line
+
+
+class OutputError(Error, OSError):
+    """Results of a sweep that cannot be begun, gone on with or written."""
 
 
 class ComputationError(Error):
@@ -119,6 +138,14 @@ class NotCertified(Error, ValueError):
 
 class Cancelled(Error):
     """It was stopped; Ctrl-C raises ``KeyboardInterrupt`` instead."""
+
+
+class Interrupted(_Portable, KeyboardInterrupt):
+    """A sweep that Ctrl-C has ended, a ``KeyboardInterrupt``; ``result`` is a :class:`pulloff.Sweep` of the rows that are done."""
+
+    def __init__(self, sentence: str = "", *, result: Any = None) -> None:
+        super().__init__(sentence)
+        self.result = result
 
 
 class InternalError(Error, RuntimeError):

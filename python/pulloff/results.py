@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import html
-import json
+import csv
+import io
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple
 
 from . import _engine
+from ._table import Result, Table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,142 +19,6 @@ if TYPE_CHECKING:
     Texts = NDArray[np.object_]
 else:
     from ._numpy import np
-
-# So many rows of a table are shown in a notebook.
-_SHOWN = 12
-
-
-class Table:
-    """Columns of one length by their names: ``table["force"]``, or ``table.force``."""
-
-    def __init__(self, columns: Mapping[str, Any]) -> None:
-        self._arrays: Dict[str, NDArray[Any]] = {
-            # Texts, and what is not known, are objects; None is nothing.
-            name: np.array(values, dtype=object) if isinstance(values, list) else values
-            for name, values in columns.items()
-        }
-
-    @property
-    def columns(self) -> List[str]:
-        """The names of the columns, those of the program's CSV."""
-        return list(self._arrays)
-
-    def _column(self, name: str) -> NDArray[Any]:
-        return self._arrays[name]
-
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        """The column of this name, shape (rows,)."""
-        try:
-            return self._column(name)
-        except KeyError:
-            raise KeyError(f"no column is called {name!r}; there is {', '.join(self.columns)}") from None
-
-    def __getattr__(self, name: str) -> NDArray[Any]:
-        if not name.startswith("_"):
-            try:
-                return self._column(name)
-            except KeyError:
-                pass
-        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
-
-    def __dir__(self) -> List[str]:
-        return [*super().__dir__(), *(name for name in self.columns if name.isidentifier())]
-
-    def __len__(self) -> int:
-        """The number of rows."""
-        return len(self._column(self.columns[0]))
-
-    def to_pandas(self) -> Any:
-        """All columns as a ``pandas.DataFrame``."""
-        try:
-            import pandas
-        except ImportError:
-            raise ImportError("to_pandas needs pandas: pip install pandas") from None
-        return pandas.DataFrame({name: self._column(name) for name in self.columns})
-
-    def _title(self) -> str:
-        return f"{len(self)} rows"
-
-    def __repr__(self) -> str:
-        return f"<pulloff.{type(self).__name__}: {self._title()}>"
-
-    def _repr_html_(self) -> str:
-        rows = min(len(self), _SHOWN)
-        head = "".join(f"<th>{html.escape(name)}</th>" for name in self.columns)
-        cells = [[_cell(self._column(name)[row]) for name in self.columns] for row in range(rows)]
-        body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in cells)
-        more = f"<p>… {len(self) - rows} more rows</p>" if len(self) > rows else ""
-        return (
-            f"<div><p><b>{type(self).__name__}</b>: {html.escape(self._title())}</p>"
-            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}</div>"
-        )
-
-
-def _cell(value: Any) -> str:
-    if value is None or (isinstance(value, float) and np.isnan(value)):
-        return ""
-    if isinstance(value, (float, np.floating)):
-        return f"{value:.6g}"
-    return html.escape(str(value))
-
-
-class Result(Table):
-    """What was computed of one problem: a document with rows. Numbers are in the units of the problem."""
-
-    def __init__(self, document: _engine.Document) -> None:
-        super().__init__({})
-        self._document = document
-        self._dict: Optional[Dict[str, Any]] = None
-
-    @property
-    def columns(self) -> List[str]:
-        """The names of the columns, those of the program's CSV."""
-        return self._document.columns()
-
-    def _column(self, name: str) -> NDArray[Any]:
-        if name not in self._arrays:
-            values = self._document.column(name)
-            if isinstance(values, list):
-                values = np.array(values, dtype=object)
-            self._arrays[name] = values
-        return self._arrays[name]
-
-    @property
-    def warnings(self) -> List[str]:
-        """What to be careful about, in sentences."""
-        return self._document.warnings()
-
-    def to_dict(self) -> Dict[str, Any]:
-        """The whole document, of the very schema of the program's JSON; a new dict each time."""
-        return dict(json.loads(self._document.json()))
-
-    def to_json(self) -> str:
-        """The same as text, as the program writes it."""
-        return self._document.json()
-
-    def _said(self) -> Dict[str, Any]:
-        if self._dict is None:
-            self._dict = self.to_dict()
-        return self._dict
-
-    def _repr_html_(self) -> str:
-        warned = "".join(f"<p>⚠ {html.escape(warning)}</p>" for warning in self.warnings)
-        return super()._repr_html_() + warned
-
-    def _unit(self, quantity: str, symbol: str) -> str:
-        unit = self._said()["problem"]["units"].get(quantity)
-        return f"{symbol} ({unit})" if unit else symbol
-
-    def _axes(self, ax: Any) -> Any:
-        if ax is None:
-            try:
-                import matplotlib.pyplot as plt
-            except ImportError:
-                raise ImportError("plot needs matplotlib: pip install matplotlib") from None
-            ax = plt.figure().add_subplot()
-        ax.set_xlabel(self._unit("length", "approach δ"))
-        ax.set_ylabel(self._unit("force", "force P"))
-        return ax
 
 
 class Trace(Result):
@@ -181,9 +46,15 @@ class Trace(Result):
     """dA/dδ along the curve, a length; NaN where it is infinite."""
     admissible: Flags
     """Whether the bodies stay apart outside the disc."""
+    exact_approach: Floats
+    """With ``theory=True`` alone: δ of the exact solution at the same contact radius."""
+    exact_force: Floats
+    exact_energy: Floats
+    exact_relative_difference: Floats
+    """(P − exact P)/|exact P|."""
 
     def _title(self) -> str:
-        return f"{len(self)} points, smallest force {np.min(self.force):.6g}"
+        return f"{self.row_count} points, smallest force {np.min(self.force):.6g}"
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the force over the approach, unstable states thin and dashed, and returns the axes of matplotlib."""
@@ -243,7 +114,7 @@ class Unloading(Result):
         return float(self._said()["total_dissipated"])
 
     def _title(self) -> str:
-        return f"{len(self)} instabilities, smallest force {self.min_force:.6g}, lost {self.total_dissipated:.6g}"
+        return f"{self.row_count} instabilities, smallest force {self.min_force:.6g}, lost {self.total_dissipated:.6g}"
 
     def plot(self, ax: Any = None) -> Any:
         """Draws every jump from limit point to landing over the approach, and returns the axes of matplotlib."""
@@ -333,7 +204,7 @@ class Stability(Result):
 
     def _title(self) -> str:
         cusps = int(np.isin(self.kind, ("minimum", "maximum")).sum())
-        return f"{len(self)} radii, {cusps} cusps"
+        return f"{self.row_count} radii, {cusps} cusps"
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the law with its cusps, and the adhesion of the problem, and returns the axes of matplotlib."""
@@ -359,7 +230,7 @@ class Map(Result):
     crest: Floats
     contact_radius: Floats
     x: Floats
-    """The number on the x axis; NaN where it is infinite."""
+    """The number on the x axis; ``inf`` for the compliance of a dead load."""
     y: Floats
     control_value: Floats
     stable: Texts
@@ -371,23 +242,54 @@ class Map(Result):
         """The snaps at the corners of the cells: ``x``, shape (columns + 1,), ``y``, shape (rows + 1,), and ``snaps``, shape
         (rows + 1, columns + 1); NaN where there is no path. None for limit points."""
         counts = self._said()["counts"]
-        return counts and {name: np.array(values, dtype=float) for name, values in counts.items()}
+        return counts and {
+            name: self._with_end(name, np.array(values, dtype=float)) for name, values in counts.items()
+        }
+
+    def _column(self, name: str) -> NDArray[Any]:
+        if name not in self._arrays and name in ("x", "y"):
+            self._arrays[name] = self._with_end(name, super()._column(name).copy())
+        return super()._column(name)
+
+    def _middle(self, name: str) -> Optional[float]:
+        """What stands in the middle of an axis that goes on to infinity."""
+        axis = self._said().get(name)
+        return axis["middle"] if isinstance(axis, dict) else None
+
+    def _with_end(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The values of an axis, of which JSON has no infinity."""
+        if self._middle(name) is not None:
+            values[np.isnan(values)] = np.inf
+        return values
+
+    def _drawn(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where values stand on an axis: of one that goes on to infinity c/(c + c₀), c₀ in the middle."""
+        middle = self._middle(name)
+        if middle is None:
+            return values
+        end = np.isinf(values)
+        return np.where(end, 1.0, values / (np.where(end, 0.0, values) + middle))
 
     def _title(self) -> str:
         said = self._said()
-        return f"{said['y']['key']} over {said['x']['key']}, {len(self)} points"
+        return f"{said['y']['key']} over {said['x']['key']}, {self.row_count} points"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the lines, over the number of snaps where it was counted, and returns the axes of matplotlib."""
+        """Draws the lines, over the number of snaps where it was counted, and returns the axes of matplotlib. An axis of
+        compliances that goes on to infinity has equal steps in c/(c + c₀)."""
         ax = self._axes(ax)
         said, counts = self._said(), self.counts
         if counts is not None:
-            drawn = ax.pcolormesh(counts["x"], counts["y"], counts["snaps"], shading="nearest", cmap="Blues")
+            drawn = ax.pcolormesh(self._drawn("x", counts["x"]), self._drawn("y", counts["y"]), counts["snaps"], shading="nearest", cmap="Blues")
             ax.figure.colorbar(drawn, label="snaps")
         for number in np.unique(self.line[~np.isnan(self.line)]):
             rows = (self.line == number) & (self.kind != "swallowtail")
-            ax.plot(self.x[rows], self.y[rows], color="black", linewidth=0.8)
+            ax.plot(self._drawn("x", self.x[rows]), self._drawn("y", self.y[rows]), color="black", linewidth=0.8)
         for axis, name in ((said["x"], "x"), (said["y"], "y")):
+            if axis["middle"] is not None:
+                shares = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+                labels = [f"{axis['middle'] * share / (1.0 - share):.3g}" for share in shares[:-1]] + ["∞"]
+                getattr(ax, f"set_{name}ticks")(shares, labels)
             getattr(ax, f"set_{name}label")(axis["key"])
             if axis["logarithmic"]:
                 getattr(ax, f"set_{name}scale")("log")
@@ -408,14 +310,29 @@ class Fit(Result):
     problem: Any
     """The :class:`pulloff.Problem` with the fitted values."""
 
-    def __init__(self, document: _engine.Document, problem: Any) -> None:
+    def __init__(self, document: _engine.Document, problem: Any, points: str) -> None:
         super().__init__(document)
         self.problem = problem
+        self._points = points
+
+    def __getattr__(self, name: str) -> Any:
+        # What else the document says: chi_squared, correlations, sigma.
+        if not name.startswith("_") and name not in self.columns:
+            said = self._said()
+            if name in said:
+                return said[name]
+        return super().__getattr__(name)
 
     @property
-    def values(self) -> Dict[str, float]:
+    def parameters(self) -> Dict[str, float]:
         """The fitted values by their keys."""
         return dict(zip(self.key.tolist(), self.value.tolist()))
+
+    @property
+    def residuals(self) -> Table:
+        """The points beside the fit: ``row``, ``segment``, ``part``, ``x``, ``force``, ``residual`` in standard deviations, ``outlier``,
+        each of the shape (points,). x and the force are in SI or reduced units, their signs put right."""
+        return Table(_columns_of(self._points))
 
     @property
     def errors(self) -> Dict[str, float]:
@@ -442,9 +359,58 @@ class Fit(Result):
         """What was found, assumed and held, in sentences."""
         return list(self._said()["notes"])
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the points and the fitted curve, the force over x without offset and baseline, and returns the axes of
+        matplotlib."""
+        ax = self._axes(ax)
+        values, points, curve = self.problem.to_dict(), self.residuals, self.problem.trace(progress=False)
+        abscissa = self._said()["abscissa"]
+        line = {"contact radius": curve.contact_radius}.get(abscissa, curve.approach)
+        control = values["path.control"]
+        if abscissa == "position" and isinstance(control, str) and control.startswith("stiffness="):
+            line = curve.approach + curve.force / float(control.partition("=")[2])
+        offset = 0.0 if abscissa == "contact radius" else values.get("data.offset", 0.0)
+        x = points.x - offset
+        force = points.force - values.get("data.baseline", 0.0) - values.get("data.tilt", 0.0) * points.x
+        for part, rows in (("in contact", points.part == "contact"), ("apart", points.part != "contact")):
+            if rows.any():
+                ax.plot(x[rows], force[rows], ".", markersize=3, label=part)
+        ax.plot(line, curve.force, color="black", linewidth=0.8, label="fit")
+        ax.set_xlabel(self._unit("length", abscissa))
+        ax.legend()
+        return ax
+
+    def _unit(self, quantity: str, symbol: str) -> str:
+        unit = {"length": "m", "force": "N"}[quantity] if self.problem.to_dict().get("units") == "SI" else None
+        return f"{symbol} ({unit})" if unit else symbol
+
+    def __eq__(self, other: object) -> bool:
+        return super().__eq__(other) and (not isinstance(other, Fit) or self.problem == other.problem)
+
+    __hash__ = None
+
     def _title(self) -> str:
         said = self._said()
         return f"{said['points']} points, chi squared per point {said['chi_squared']:.4g}, {said['verdict']}"
+
+
+def _columns_of(text: str) -> Dict[str, Any]:
+    """The columns of a CSV of the engine: numbers, flags or texts."""
+    names, *rows = csv.reader(io.StringIO(text))
+    columns: Dict[str, Any] = {}
+    for name, cells in zip(names, zip(*rows) if rows else ((),) * len(names)):
+        if cells and set(cells) <= {"true", "false"}:
+            columns[name] = np.array([cell == "true" for cell in cells])
+            continue
+        for kind in (np.int64, np.float64):
+            try:
+                columns[name] = np.array(cells, dtype=str).astype(kind)
+                break
+            except ValueError:
+                pass
+        else:
+            columns[name] = list(cells)
+    return columns
 
 
 class Sweep(Table):
@@ -465,7 +431,7 @@ class Sweep(Table):
 
     def _title(self) -> str:
         wrong = sum(error is not None for error in self.error)
-        return f"{len(self)} rows, {wrong} with an error"
+        return f"{self.row_count} rows, {wrong} with an error"
 
     def plot(self, quantity: Optional[str] = None, ax: Any = None) -> Any:
         """Draws a quantity, the first where none is named, over the first axis, and returns the axes of matplotlib."""

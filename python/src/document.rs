@@ -1,5 +1,6 @@
 //! A result: its JSON, the very one that the program writes, and the columns of its CSV as arrays.
 
+use crate::errors::in_python;
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
 use pulloff_engine::report::{self, CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
@@ -74,7 +75,7 @@ impl Document {
 
     /// What to be careful about.
     fn warnings(&self) -> Vec<String> {
-        self.report.warnings().to_vec()
+        self.report.warnings().iter().map(|warning| in_python(warning).into_owned()).collect()
     }
 
     /// A column as an array; one of texts as a list, in which None is nothing.

@@ -7,17 +7,40 @@ use pulloff_engine::sweep::SpecError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::any::Any;
+use std::borrow::Cow;
 
 /// An exception of the class `name` in `pulloff.errors`, with this sentence and these attributes.
 pub fn raise(py: Python<'_>, name: &str, sentence: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
     let made = py
         .import("pulloff.errors")
         .and_then(|module| module.getattr(name))
-        .and_then(|class| class.call((sentence,), Some(attributes)));
+        .and_then(|class| class.call((in_python(sentence),), Some(attributes)));
     match made {
         Ok(value) => PyErr::from_value(value),
         Err(error) => error,
     }
+}
+
+/// The words of the engine with Python's arguments in place of the options of the command line: `sigma_x` for `--sigma-x`.
+pub fn in_python(sentence: &str) -> Cow<'_, str> {
+    if !sentence.contains("--") {
+        return Cow::Borrowed(sentence);
+    }
+    let mut parts = sentence.split("--");
+    let mut said = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(part.len());
+        let (option, rest) = part.split_at(end);
+        said.push_str(&match option {
+            "" => "--".to_owned(),
+            "set" => "replace".to_owned(),
+            "overwrite" => "overwrite=True".to_owned(),
+            "no-scan" => "scan=False".to_owned(),
+            option => option.trim_end_matches('-').replace('-', "_"),
+        });
+        said.push_str(rest);
+    }
+    Cow::Owned(said)
 }
 
 fn plain(py: Python<'_>, name: &str, sentence: &str) -> PyErr {
@@ -80,6 +103,16 @@ pub fn of_spec(py: Python<'_>, error: &SpecError) -> PyErr {
         Ok(()) => raise(py, "SpecError", &error.to_string(), &attributes),
         Err(error) => error,
     }
+}
+
+/// What a sweep is asked for beside its spec, and is no such thing.
+pub fn of_shard(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "SpecError", sentence)
+}
+
+/// Results that cannot be begun, gone on with or written.
+pub fn of_output(py: Python<'_>, sentence: &str) -> PyErr {
+    plain(py, "OutputError", sentence)
 }
 
 /// A problem that cannot be computed.

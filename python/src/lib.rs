@@ -6,7 +6,6 @@
 //! | file | what lives there |
 //! |---|---|
 //! | `errors` | errors of the engine as exceptions of the package |
-//! | `files` | presets and profiles from the disk |
 //! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is told |
 //! | `document` | a result: its JSON, its columns as arrays |
 //! | `problem` | a problem, and all that is computed of it |
@@ -15,7 +14,6 @@
 
 mod document;
 mod errors;
-mod files;
 mod fit;
 mod problem;
 mod running;
@@ -32,6 +30,9 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fitted, module)?)?;
     module.add_function(wrap_pyfunction!(problem::between, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::unit_of, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::read_file, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::write_files, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::quantities, module)?)?;
     Ok(())

@@ -1,26 +1,35 @@
 //! A problem, and all that is computed of it.
 
 use crate::document::Document;
+use crate::errors;
 use crate::running::long;
-use crate::{errors, files};
 use numpy::{PyArray1, PyReadonlyArray1};
+use pulloff::store::file::{LARGEST, read_bytes, read_text};
+use pulloff::store::{FILES, Overwrite, write_atomically};
 use pulloff_engine::case::{Case, CaseError};
+use pulloff_engine::disc::exact::FAR;
 use pulloff_engine::disc::{Basis, Exact, TableError, outside};
-use pulloff_engine::gap::Gap;
-use pulloff_engine::gap::shapes::{Profile, Rows, Smoothing};
+use pulloff_engine::gap::panels::Refused;
+use pulloff_engine::gap::shapes::{Measured, Profile, Rows, Smoothing};
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::measured::{Role, Source};
+use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::read::{Held, read_holding, read_in};
-use pulloff_engine::preset::{Preset, Value, shipped, write};
+use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::cycle::{Areas, Turn};
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
-use pulloff_engine::text::{closest, quote};
-use pulloff_engine::units::Unit;
+use pulloff_engine::text::{closest, quote, show_path};
+use pulloff_engine::theory;
+use pulloff_engine::units::{Quantity, Unit};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
+use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyInt, PyString};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -44,11 +53,11 @@ fn find(py: Python<'_>, name: &str) -> PyResult<Preset> {
         );
         return Err(errors::of_source(py, &format!("no preset is called \"{}\"; {meant}", quote(name))));
     };
-    read_text(py, None, found.name, found.text)
+    preset_of(py, None, found.name, found.text)
 }
 
-fn read_text(py: Python<'_>, folder: Option<&Path>, name: &str, text: &str) -> PyResult<Preset> {
-    read_in(files::FILES, folder, name, text, &[] as &[&str]).map_err(|error| errors::of_reading(py, &error))
+fn preset_of(py: Python<'_>, folder: Option<&Path>, name: &str, text: &str) -> PyResult<Preset> {
+    read_in(FILES, folder, name, text, &[] as &[&str]).map_err(|error| errors::of_reading(py, &error))
 }
 
 /// The value of a key, as Python has it.
@@ -94,6 +103,13 @@ fn changed(mut preset: Preset, changes: Option<&Bound<'_, PyDict>>) -> PyResult<
 
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
+/// A profile as Python keeps it: name, folder, r, h, unit, notes.
+type HeldRows<'py> = (String, Option<PathBuf>, Array<'py>, Array<'py>, Option<String>, Vec<String>);
+/// A measured curve as Python keeps it: name, folder, bytes.
+type HeldPoints<'py> = (String, Option<PathBuf>, Bound<'py, PyBytes>);
+/// All that a problem is.
+type State<'py> = (String, Option<HeldRows<'py>>, Option<HeldPoints<'py>>);
+
 /// One problem, immutable.
 #[pyclass(frozen, module = "pulloff._engine")]
 pub struct Problem {
@@ -111,14 +127,15 @@ impl Problem {
     /// The text of a preset; its files are relative to the current folder.
     #[staticmethod]
     fn of_text(py: Python<'_>, text: &str) -> PyResult<Self> {
-        Ok(Self { preset: read_text(py, None, "the text", text)? })
+        Ok(Self { preset: preset_of(py, None, "the text", text)? })
     }
 
     /// A preset file.
     #[staticmethod]
     fn of_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let text = files::text(&path).map_err(|error| errors::of_source(py, &error))?;
-        Ok(Self { preset: read_text(py, path.parent(), &path.to_string_lossy(), &text)? })
+        let (text, _) =
+            read_text(&path, LARGEST).map_err(|error| errors::of_source(py, &error.to_string()))?;
+        Ok(Self { preset: preset_of(py, path.parent(), &path.to_string_lossy(), &text)? })
     }
 
     /// The text of a preset whose profile has these rows, in its own unit of length.
@@ -136,9 +153,83 @@ impl Problem {
             unit: Unit::parse("m", 0).ok(),
             ..Rows::default()
         };
-        let read =
-            read_holding(files::FILES, "from_gap", text, Held { rows: Arc::new(rows), ..Held::default() });
+        let read = read_holding(FILES, "from_gap", text, Held { rows: Arc::new(rows), ..Held::default() });
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
+    }
+
+    /// All that it is: the text of its preset, and what the files that this names hold.
+    fn state<'py>(&self, py: Python<'py>) -> State<'py> {
+        let rows = match &self.preset.gap {
+            Shape::Profile(measured) => Some(measured.rows()),
+            _ => None,
+        };
+        let rows = rows.map(|rows| {
+            let [radii, gaps] = [&rows.radii, &rows.gaps].map(|column| PyArray1::from_slice(py, column));
+            let unit = rows.unit.as_ref().map(Unit::ascii);
+            (rows.name.clone(), rows.folder.clone(), radii, gaps, unit, rows.notes.clone())
+        });
+        let points = self
+            .preset
+            .data
+            .source
+            .as_ref()
+            .map(|source| (source.name.clone(), source.folder.clone(), PyBytes::new(py, &source.bytes)));
+        (write(&self.preset), rows, points)
+    }
+
+    /// The way back from [`state`](Self::state): no file is read.
+    #[staticmethod]
+    #[expect(clippy::type_complexity, reason = "what Python keeps of a problem")]
+    fn of_state(
+        py: Python<'_>,
+        text: &str,
+        rows: Option<(
+            String,
+            Option<PathBuf>,
+            PyReadonlyArray1<'_, f64>,
+            PyReadonlyArray1<'_, f64>,
+            Option<String>,
+            Vec<String>,
+        )>,
+        points: Option<(String, Option<PathBuf>, Vec<u8>)>,
+    ) -> PyResult<Self> {
+        let mut held = Held::default();
+        if let Some((name, folder, radii, gaps, unit, notes)) = rows {
+            let (radii, gaps) = (radii.as_slice()?.to_vec(), gaps.as_slice()?.to_vec());
+            let unit = unit.and_then(|unit| Unit::parse(&unit, 0).ok());
+            held.rows = Arc::new(Rows { name, folder, radii, gaps, unit, header: None, notes });
+        }
+        if let Some((name, folder, bytes)) = points {
+            held.points = Arc::new(Source::new(name, folder, bytes.into()));
+        }
+        let read = read_holding(FILES, "the text", text, held);
+        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
+    }
+
+    /// The same problem with its gap and its measured curve in files of these names; those that come with the package keep theirs.
+    fn named(&self, rows: &str, points: &str) -> Self {
+        let mut preset = self.preset.clone();
+        if let Shape::Profile(measured) = &self.preset.gap
+            && !measured.rows().name.starts_with(SHIPPED_DATA)
+        {
+            preset.gap = Shape::Profile(Arc::new(Measured::clone(measured).named(rows.to_owned())));
+        }
+        if let Some(source) = self.preset.data.source.as_ref().filter(|s| !s.name.starts_with(SHIPPED_DATA)) {
+            preset.data.source = Some(Arc::new(source.named(points.to_owned(), None)));
+        }
+        Self { preset }
+    }
+
+    /// Whether it is the same problem: the same values and data, whatever files these came from.
+    fn same(&self, other: &Bound<'_, Self>) -> bool {
+        Content::of(&self.preset) == Content::of(&other.get().preset)
+    }
+
+    /// A hash that problems which are the same have in common.
+    fn digest(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        Content::of(&self.preset).hash(&mut hasher);
+        hasher.finish()
     }
 
     /// The same problem with other values.
@@ -168,14 +259,12 @@ impl Problem {
         Ok(all)
     }
 
-    /// As the text of a preset.
-    fn to_toml(&self) -> String {
-        write(&self.preset)
-    }
-
-    /// The equilibrium curve.
-    fn trace(&self, py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<Document> {
-        let made = long(py, progress, |progress| TraceReport::compute_while(&self.preset, progress))?;
+    /// The equilibrium curve, with `theory` beside the exact solution.
+    fn trace(&self, py: Python<'_>, theory: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
+        let made = long(py, progress, |progress| {
+            let report = TraceReport::compute_while(&self.preset, progress)?;
+            Ok(if theory { report.beside(&theory::Exact::of(&self.preset.problem())) } else { report })
+        })?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
@@ -194,10 +283,18 @@ impl Problem {
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
-    /// The loop of loading and unloading.
-    fn cycle(&self, py: Python<'_>, areas: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
+    /// The loop of loading and unloading; it turns round at the control value `to_control`, where one is given.
+    fn cycle(
+        &self,
+        py: Python<'_>,
+        to_control: Option<f64>,
+        areas: bool,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Document> {
         let areas = if areas { Areas::Yes } else { Areas::No };
-        let made = long(py, progress, |progress| CycleReport::compute(&self.preset, areas, progress))?;
+        let turn = to_control.map(Turn::Control);
+        let made =
+            long(py, progress, |progress| CycleReport::compute_to(&self.preset, turn, areas, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
@@ -234,7 +331,8 @@ impl Problem {
     }
 
     /// The approach, the pressure and the gap at the radii `r` in equilibrium at the contact radius `s`, by the exact
-    /// solution: pressure NaN at and outside the edge, the gap 0 inside and NaN beyond what is known of the bodies.
+    /// solution: pressure minus infinity at an adhesive edge and NaN outside, the gap 0 inside and NaN beyond what is known of
+    /// the bodies.
     fn across<'py>(
         &self,
         py: Python<'py>,
@@ -242,16 +340,15 @@ impl Problem {
         r: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
         let radii = r.as_slice()?.to_vec();
-        if !(s > 0.0 && s.is_finite()) {
-            return Err(errors::of_state(
-                py,
-                &format!("s = {s} is out of range: a contact radius is above 0"),
-            ));
+        if !RADII.contains(&s) {
+            let [lo, hi] = [RADII.start(), RADII.end()];
+            let sentence = format!("s = {s:?} is out of range: a contact radius is from {lo:?} to {hi:?}");
+            return Err(errors::of_state(py, &sentence));
         }
         if let Some(wrong) = radii.iter().find(|r| !(**r >= 0.0 && r.is_finite())) {
             return Err(errors::of_state(py, &format!("r = {wrong} is out of range: radii are not below 0")));
         }
-        let state = long(py, None, |progress| State::of(&self.preset, s, &radii, progress))?;
+        let state = long(py, None, |progress| Across::of(&self.preset, s, &radii, progress))?;
         let state = state.map_err(|error| errors::of_case(py, &error))?;
         let Some(state) = state else {
             let sentence =
@@ -294,14 +391,77 @@ pub fn between(
     Ok(at.as_slice()?.iter().map(|r| profile.jet(*r).value).collect())
 }
 
+/// Writes files whole, by their paths, in this order; all or none where one exists already and is not to be replaced.
+#[pyfunction]
+pub fn write_files(py: Python<'_>, files: &Bound<'_, PyDict>, overwrite: bool) -> PyResult<()> {
+    let mut all: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    for (path, content) in files {
+        all.push((path.extract()?, content.extract()?));
+    }
+    if let Some((path, _)) = all.iter().find(|(path, _)| !overwrite && path.symlink_metadata().is_ok()) {
+        let sentence = format!("{}: exists already; overwrite=True replaces it", show_path(path));
+        return Err(errors::of_output(py, &sentence));
+    }
+    let overwrite = if overwrite { Overwrite::Always } else { Overwrite::Never };
+    for (path, content) in &all {
+        write_atomically(path, content, overwrite)
+            .map_err(|error| errors::of_output(py, &error.to_string()))?;
+    }
+    Ok(())
+}
+
+/// The content of a regular file of bounded size: a measured curve, or a spec.
+#[pyfunction]
+pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> {
+    let read =
+        read_bytes(&path, profile::LARGEST).map_err(|error| errors::of_data(py, &error.to_string()))?;
+    Ok(PyBytes::new(py, &read.0))
+}
+
+/// The SI unit of what a column of this name holds in a measured curve; nothing for a name that is not known.
+#[pyfunction]
+pub fn unit_of(column: &str) -> &'static str {
+    Role::of(column).and_then(Role::quantity).and_then(Quantity::si).unwrap_or("")
+}
+
+/// What makes two problems the same: the text of the preset without the names of files, and what these hold.
+#[derive(PartialEq, Eq, Hash)]
+struct Content {
+    text: String,
+    rows: Vec<u64>,
+    points: Arc<[u8]>,
+}
+
+impl Content {
+    fn of(preset: &Preset) -> Self {
+        let (mut unnamed, mut rows, mut points) = (preset.clone(), Vec::new(), Arc::from([]));
+        if let Shape::Profile(measured) = &preset.gap {
+            let held = measured.rows();
+            rows.extend(held.radii.iter().chain(&held.gaps).map(|x| x.to_bits()));
+            unnamed.gap = Shape::Profile(Arc::new(Measured::clone(measured).named("rows".to_owned())));
+        }
+        if let Some(source) = &preset.data.source {
+            points = Arc::clone(&source.bytes);
+            unnamed.data.source = Some(Arc::new(source.named("points".to_owned(), None)));
+        }
+        Self { text: write(&unnamed), rows, points }
+    }
+}
+
+/// The contact radii of states that are asked for: those that a preset takes.
+const RADII: RangeInclusive<f64> = 1e-30..=1e30;
+
+/// A radius counts as that of the edge up to this share: a share of it is rounded, as those of `numpy.linspace` are.
+const AT_EDGE: f64 = 8.0 * f64::EPSILON;
+
 /// A state across the radius, in the units of the preset.
-struct State {
+struct Across {
     approach: f64,
     pressure: Vec<f64>,
     gap: Vec<f64>,
 }
 
-impl State {
+impl Across {
     fn of(
         preset: &Preset,
         s: f64,
@@ -311,12 +471,15 @@ impl State {
         let case = Case::prepare(preset, progress)?;
         let units = case.units();
         let s = s / units.length;
-        // Far out it takes long: here it can be stopped.
-        let farthest = radii.iter().fold(s, |most, r| most.max(r / units.length));
-        match case.table.up_to_while(farthest, 0, progress) {
+        // A large contact takes long: here it can be stopped.
+        match case.table.up_to_while(s, 0, progress) {
             Err(TableError::Cancelled) => return Err(CaseError::Cancelled),
-            // What is known of it is enough, or else there is no equilibrium.
-            Err(TableError::TooFine(_)) | Ok(_) => {}
+            Err(TableError::TooFine(refused)) => {
+                let (radius, largest) = (refused.radius * units.length, refused.largest * units.length);
+                let error = TableError::TooFine(Refused { radius, largest, ..refused });
+                return Err(CaseError::Table { error, shown: Box::new(case.shown.clone()) });
+            }
+            Ok(_) => {}
         }
         let exact = Exact::new(Arc::clone(&case.table), s);
         let Some(at) = exact.equilibrium(&case.reduced, s) else { return Ok(None) };
@@ -324,9 +487,18 @@ impl State {
         let Ok(panels) = case.table.up_to(s) else { return Ok(None) };
         let reduced: Vec<f64> = radii.iter().map(|r| r / units.length).collect();
         let stress = units.force / (units.length * units.length);
-        let pressure =
-            |r: &f64| if *r < s { outside::pressure(&panels, s, delta, *r) * stress } else { f64::NAN };
-        let outer: Vec<f64> = reduced.iter().map(|r| r.max(s)).collect();
+        let is_adhesive = case.reduced.work_of_adhesion > 0.0;
+        let pressure = |r: &f64| {
+            if (r - s).abs() <= AT_EDGE * s {
+                if is_adhesive { f64::NEG_INFINITY } else { 0.0 }
+            } else if *r < s {
+                outside::pressure(&panels, s, delta, *r) * stress
+            } else {
+                f64::NAN
+            }
+        };
+        // With the farthest radius for which the table is asked: no gap depends on the other radii.
+        let outer: Vec<f64> = reduced.iter().map(|r| r.max(s)).chain([FAR * s]).collect();
         let opened = exact.gap_outside(&case.reduced, s, delta, &outer);
         let gap = reduced.iter().zip(opened).map(|(r, gap)| if *r < s { 0.0 } else { gap * units.length });
         Ok(Some(Self {

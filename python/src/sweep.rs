@@ -1,22 +1,26 @@
 //! Many problems on all cores: the rows of a sweep as columns.
 
+use crate::errors;
 use crate::problem::Problem;
-use crate::running::{Listener, PAUSE};
-use crate::{errors, files};
+use crate::running::Listener;
 use numpy::PyArray1;
+use pulloff::store::FILES;
+use pulloff::store::file::{LARGEST, read_text};
+use pulloff::store::stream::is_stream;
+use pulloff::sweep::run::rows;
+use pulloff::sweep::{Existing, Means, Output, OutputError, Results, Shard, run};
 use pulloff_engine::preset::read::read_in;
 use pulloff_engine::preset::{Preset, Value, shipped};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::axis::SweepAxis;
-use pulloff_engine::sweep::{Cell, Fault, Measured, QUANTITIES, Spec};
-use pulloff_engine::text::quote;
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
+use pulloff_engine::sweep::{Cell, Measured, QUANTITIES, Spec};
+use pulloff_engine::text::{quote, show_path};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::thread;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// The name, the SI unit and the meaning of every quantity.
 #[pyfunction]
@@ -32,8 +36,8 @@ fn preset(folder: &Path, name: &str, set: &[&str]) -> Result<Preset, String> {
     let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
     if is_path {
         let path = folder.join(name);
-        let text = files::text(&path)?;
-        return read_in(files::FILES, path.parent(), name, &text, set).map_err(|error| error.to_string());
+        let (text, _) = read_text(&path, LARGEST).map_err(|error| error.to_string())?;
+        return read_in(FILES, path.parent(), name, &text, set).map_err(|error| error.to_string());
     }
     let found = shipped::find(name).ok_or_else(|| {
         format!(
@@ -41,7 +45,7 @@ fn preset(folder: &Path, name: &str, set: &[&str]) -> Result<Preset, String> {
             quote(name)
         )
     })?;
-    read_in(files::FILES, None, name, found.text, set).map_err(|error| error.to_string())
+    read_in(FILES, None, name, found.text, set).map_err(|error| error.to_string())
 }
 
 /// The problem that stands in place of a preset, with the assignments of the spec.
@@ -55,95 +59,163 @@ fn assigned(problem: &Preset, set: &[&str]) -> Result<Preset, String> {
     Ok(preset)
 }
 
-/// The rows of the spec `text`, on `jobs` threads: its columns by name, in order, and the keys of its axes. `problem` stands in place of its preset.
+/// Where the rows go, and which they are.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Wanted {
+    jobs: usize,
+    shard: Option<String>,
+    row_limit: Option<f64>,
+    out: Option<PathBuf>,
+    resume: bool,
+    overwrite: bool,
+}
+
+/// Rows as they are handed over: their numbers, the cells of each column, their faults.
+#[derive(Default)]
+struct Rows {
+    numbers: Vec<u64>,
+    columns: Vec<Vec<f64>>,
+    faults: Vec<Option<String>>,
+}
+
+/// The columns of a sweep by name, the keys of its axes, and the interrupt that ended it early.
+type Swept<'py> = (Bound<'py, PyDict>, Vec<String>, Option<PyErr>);
+
+/// The rows of the spec `text` as columns. `problem` stands in place of its preset.
 #[pyfunction]
 pub fn sweep<'py>(
     py: Python<'py>,
     text: &str,
-    folder: std::path::PathBuf,
+    folder: PathBuf,
     problem: Option<&Bound<'py, Problem>>,
-    jobs: usize,
+    wanted: Wanted,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
+) -> PyResult<Swept<'py>> {
     let given = problem.map(|problem| problem.get().preset.clone());
     let presets = |name: &str, set: &[&str]| match &given {
         Some(problem) => assigned(problem, set),
         None => preset(&folder, name, set),
     };
     let spec = Spec::read(&presets, "spec", text).map_err(|error| errors::of_spec(py, &error))?;
-    let rows = usize::try_from(spec.rows).map_err(|_| PyMemoryError::new_err("too many rows"))?;
-    let (made, said) = py.detach(|| run(&spec, rows, jobs, progress))?;
-    if let Some(error) = said {
-        return Err(error);
-    }
-    let axes = spec.axes.iter().map(|axis| axis.key.clone()).collect();
-    Ok((columns(py, &spec, &made)?, axes))
-}
-
-/// Computes all rows; less than all where Python said no.
-fn run(
-    spec: &Spec,
-    rows: usize,
-    jobs: usize,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(Vec<Measured>, Option<PyErr>)> {
-    let (next, done, stopped) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
-    let stop = || stopped.load(Ordering::Relaxed);
-    let work = || {
-        let mut own = Vec::new();
-        while !stop() {
-            let row = next.fetch_add(1, Ordering::Relaxed);
-            if row >= spec.rows {
-                break;
-            }
-            let measured = catch_unwind(AssertUnwindSafe(|| spec.measure(row, &stop)))
-                .unwrap_or_else(|payload| Some(spec.lost(Fault::of_panic(payload.as_ref()))));
-            let Some(measured) = measured else { break };
-            own.push((row, measured));
-            done.fetch_add(1, Ordering::Relaxed);
-        }
-        own
+    let shard = wanted.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
+    let shard: Shard = shard.map_err(|error| errors::of_shard(py, &format!("shard: {error}")))?;
+    let row_limit = wanted.row_limit.map(Duration::try_from_secs_f64).transpose();
+    let row_limit = row_limit.map_err(|error| errors::of_shard(py, &format!("row_limit: {error}")))?;
+    let means = Means { jobs: wanted.jobs, row_limit };
+    let (made, said) = py.detach(|| {
+        let listener = Listener::new(progress);
+        let made = match &wanted.out {
+            Some(out) => to_file(&spec, shard, means, out, &wanted, &listener),
+            None => in_memory(&spec, shard, means, &listener),
+        };
+        (made, listener.said())
+    });
+    let made = made.map_err(|sentence| errors::of_output(py, &sentence))?;
+    // An exception of `progress` is the caller's own; an interrupt leaves what is done.
+    let interrupt = match said {
+        Some(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Some(error),
+        Some(error) => return Err(error),
+        None => None,
     };
-    let listener = Listener::new(progress);
-    let mut all: Vec<Option<Measured>> = vec![None; rows];
-    thread::scope(|scope| {
-        let mut threads = Vec::new();
-        for number in 0..jobs {
-            let named = thread::Builder::new().name(format!("sweep-{number}"));
-            match named.spawn_scoped(scope, work) {
-                Ok(thread) => threads.push(thread),
-                // With fewer threads it takes longer, and that is all.
-                Err(error) if threads.is_empty() => {
-                    return Err(PyRuntimeError::new_err(format!("cannot start a thread: {error}")));
-                }
-                Err(_) => break,
-            }
-        }
-        while !threads.iter().all(thread::ScopedJoinHandle::is_finished) {
-            listener.report(done.load(Ordering::Relaxed) as f64 / spec.rows as f64);
-            if listener.stop() {
-                stopped.store(true, Ordering::Relaxed);
-            }
-            // A short sweep does not wait a whole pause for its end.
-            thread::park_timeout(if done.load(Ordering::Relaxed) == 0 { PAUSE / 50 } else { PAUSE / 5 });
-        }
-        for thread in threads {
-            for (row, measured) in thread.join().unwrap_or_default() {
-                if let Some(cell) = usize::try_from(row).ok().and_then(|row| all.get_mut(row)) {
-                    *cell = Some(measured);
-                }
-            }
-        }
-        Ok(())
-    })?;
-    Ok((all.into_iter().flatten().collect(), listener.said()))
+    let axes = spec.axes.iter().map(|axis| axis.key.clone()).collect();
+    Ok((columns(py, &spec, &made)?, axes, interrupt))
 }
 
-fn columns<'py>(py: Python<'py>, spec: &Spec, made: &[Measured]) -> PyResult<Bound<'py, PyDict>> {
+/// Asks `listener` while rows are handed over on its own thread, and tells all threads what it said.
+struct Stop(AtomicBool);
+
+impl Stop {
+    fn ask(&self, listener: &Listener, done: u64, of: u64) {
+        listener.report(if of > 0 { done as f64 / of as f64 } else { 1.0 });
+        if listener.stop() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Progress for Stop {
+    fn stop(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// The rows of a part; those before the end where Python said no.
+fn in_memory(spec: &Spec, shard: Shard, means: Means, listener: &Listener) -> Result<Rows, String> {
+    let (stop, of) = (Stop(AtomicBool::new(false)), shard.len(spec.rows));
+    let mut made = Rows { columns: vec![Vec::new(); spec.columns.len()], ..Rows::default() };
+    let make = |row: u64, measured: Measured| (row, measured);
+    let write = |item: Option<(u64, Measured)>| {
+        if let Some((row, measured)) = item {
+            made.numbers.push(row);
+            for (at, column) in made.columns.iter_mut().enumerate() {
+                column.push(match measured.cells.get(at).copied().flatten() {
+                    Some(Cell::Number(x)) => x,
+                    Some(Cell::Count(n)) => n as f64,
+                    None => f64::NAN,
+                });
+            }
+            made.faults.push(measured.fault.as_ref().map(ToString::to_string));
+        }
+        stop.ask(listener, made.numbers.len() as u64, of);
+        Ok::<(), OutputError>(())
+    };
+    rows(spec, shard, 0..of, means, &stop, &make, write).map_err(|error| error.to_string())?;
+    Ok(made)
+}
+
+/// The rows of a part through its file, as the program writes it: those that were there before too.
+fn to_file(
+    spec: &Spec,
+    shard: Shard,
+    means: Means,
+    out: &Path,
+    wanted: &Wanted,
+    listener: &Listener,
+) -> Result<Rows, String> {
+    let words = |error: OutputError| error.to_string();
+    if is_stream(out) {
+        return Err(format!("{}: results are read back, so they go to a file", show_path(out)));
+    }
+    let is_there = out.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0);
+    if is_there && !wanted.resume && !wanted.overwrite {
+        return Err(format!(
+            "{}: exists already; resume=True goes on with it, overwrite=True replaces it",
+            show_path(out)
+        ));
+    }
+    let existing = if wanted.overwrite { Existing::Overwrite } else { Existing::GoOn };
+    let output = Output::open(out, spec, shard, existing).map_err(words)?;
+    let (stop, of) = (Stop(AtomicBool::new(false)), shard.len(spec.rows));
+    run(spec, shard, output, means, &stop, |done, _| stop.ask(listener, done, of)).map_err(words)?;
+    read_back(spec, out)
+}
+
+/// The rows of the results in a file.
+fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
+    let results = Results::open(out).map_err(|error| error.to_string())?;
+    let names: Vec<String> = spec.columns.iter().map(pulloff_engine::sweep::Column::name).collect();
+    let names = std::iter::once("row").chain(names.iter().map(String::as_str)).chain(["error"]);
+    let mut texts = results.texts(&names.collect::<Vec<_>>()).map_err(|error| error.to_string())?;
+    let wrong = || format!("{}: was changed while it was written", show_path(out));
+    let faults = texts.pop().ok_or_else(wrong)?;
+    let mut columns = texts.into_iter();
+    let numbers = columns.next().ok_or_else(wrong)?;
+    let numbers: Option<Vec<u64>> = numbers.iter().map(|row| row.parse().ok()).collect();
+    let cell = |text: &String| if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
+    let columns: Option<Vec<Vec<f64>>> =
+        columns.map(|column| column.iter().map(cell).collect::<Option<Vec<f64>>>()).collect();
+    Ok(Rows {
+        numbers: numbers.ok_or_else(wrong)?,
+        columns: columns.ok_or_else(wrong)?,
+        faults: faults.into_iter().map(|fault| Some(fault).filter(|fault| !fault.is_empty())).collect(),
+    })
+}
+
+fn columns<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
-    let rows = || 0..made.len() as u64;
-    all.set_item("row", PyArray1::from_iter(py, rows().map(u64::cast_signed)))?;
-    let values: Vec<Vec<Value>> = rows().map(|row| spec.values(row)).collect();
+    all.set_item("row", PyArray1::from_iter(py, made.numbers.iter().map(|row| row.cast_signed())))?;
+    let values: Vec<Vec<Value>> = made.numbers.iter().map(|row| spec.values(*row)).collect();
     for (at, SweepAxis { key, .. }) in spec.axes.iter().enumerate() {
         let axis = || values.iter().filter_map(|row| row.get(at));
         let whole = |value: &Value| if let Value::Integer(n) = value { Some(*n) } else { None };
@@ -160,15 +232,9 @@ fn columns<'py>(py: Python<'py>, spec: &Spec, made: &[Measured]) -> PyResult<Bou
             all.set_item(key, PyList::new(py, axis().map(ToString::to_string))?)?;
         }
     }
-    for (at, column) in spec.columns.iter().enumerate() {
-        let cell = |measured: &Measured| match measured.cells.get(at).copied().flatten() {
-            Some(Cell::Number(x)) => x,
-            Some(Cell::Count(n)) => n as f64,
-            None => f64::NAN,
-        };
-        all.set_item(column.name(), PyArray1::from_iter(py, made.iter().map(cell)))?;
+    for (column, cells) in spec.columns.iter().zip(&made.columns) {
+        all.set_item(column.name(), PyArray1::from_slice(py, cells))?;
     }
-    let faults = made.iter().map(|measured| measured.fault.as_ref().map(ToString::to_string));
-    all.set_item("error", PyList::new(py, faults)?)?;
+    all.set_item("error", PyList::new(py, &made.faults)?)?;
     Ok(all)
 }

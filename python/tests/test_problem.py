@@ -1,3 +1,5 @@
+import functools
+
 import numpy as np
 import pytest
 
@@ -48,7 +50,7 @@ def test_a_profile_beside_its_preset_is_read(tmp_path):
     (tmp_path / "scan.csv").write_text(f"r,h\n{rows}\n")
     text = "[material]\neffective_modulus=1\nwork_of_adhesion=0.01\n[gap]\nshape='profile'\nfile='scan.csv'\n[path]\nstart_contact_radius=0.4\n"
     (tmp_path / "p.toml").write_text(text)
-    assert len(pulloff.Problem(tmp_path / "p.toml").unload()) == 1
+    assert pulloff.Problem(tmp_path / "p.toml").unload().row_count == 1
     (tmp_path / "p.toml").write_text(text.replace("scan", "none"))
     with pytest.raises(pulloff.PresetError) as caught:
         pulloff.Problem(tmp_path / "p.toml")
@@ -124,7 +126,7 @@ def test_a_function_is_certified_or_refused():
     before = len(calls)
     ours, exact = problem.unload(), formula.unload()
     assert len(calls) == before, "it is sampled once"
-    assert ours.kind.tolist() == exact.kind.tolist() and len(ours) > 3
+    assert ours.kind.tolist() == exact.kind.tolist() and ours.row_count > 3
     assert ours.before_force == pytest.approx(exact.before_force, rel=1e-5)
     for refused in (lambda r: np.abs(r), lambda r: r**2 / 2 + 1e-3 * np.cos(2e4 * r)):
         with pytest.raises(pulloff.NotCertified) as caught:
@@ -135,3 +137,116 @@ def test_a_function_is_certified_or_refused():
             pulloff.Problem.from_gap(0.8, wrong, **of)
     with pytest.raises(ZeroDivisionError):
         pulloff.Problem.from_gap(0.8, lambda r: 1 / 0, **of)
+
+
+OF = dict(effective_modulus=1.0, work_of_adhesion=0.004, start_contact_radius=0.3)
+R = np.linspace(0.0, 1.0, 200)
+
+
+def test_problems_are_equal_where_all_their_data_are():
+    ours = [
+        pulloff.Problem.from_gap(R, R**2 / 2, **OF),
+        pulloff.Problem.from_gap(R, R**2 / 3, **OF),
+        pulloff.Problem.from_gap(R, np.where(R == R[100], R**2 / 2 + 1e-9, R**2 / 2), **OF),
+        pulloff.Problem.from_gap(R[:-1], R[:-1] ** 2 / 2, **OF),
+        pulloff.Problem.from_gap(0.8, lambda r: r**2 / 2, **OF),
+    ]
+    for i, a in enumerate(ours):
+        for j, b in enumerate(ours):
+            assert (a == b) == (i == j) and (hash(a) == hash(b)) == (i == j)
+    again = pulloff.Problem.from_gap(R.copy(), R**2 / 2, **OF)
+    assert again == ours[0] and hash(again) == hash(ours[0]) and {again: 1}[ours[0]] == 1
+    assert ours[0] != "text" and ours[0] != ours[0].to_toml()
+    calls = []
+
+    @functools.lru_cache
+    def pull_off(problem):
+        calls.append(problem)
+        return problem.unload("force", areas=False, admissibility=False).before_force[-1]
+
+    forces = [pull_off(problem) for problem in (ours[0], ours[1], again)]
+    assert forces[0] != forces[1] and forces[2] == forces[0] and len(calls) == 2
+    # 1.5 π γ R of a sphere.
+    assert forces[:2] == pytest.approx([-1.5 * np.pi * 0.004, -1.5 * np.pi * 0.004 * 1.5], rel=1e-4)
+
+
+def test_problems_with_other_curves_are_others(tmp_path):
+    rows = "\n".join(f"{0.01 * i},{0.001 * i}" for i in range(20))
+    made = []
+    for name, more in (("a.csv", ""), ("b.csv", ""), ("c.csv", "\n0.5,0.9")):
+        (tmp_path / name).write_text(f"approach,force\n{rows}{more}\n")
+        (tmp_path / "p.toml").write_text(TEXT + f"[data]\nfile = '{name}'\n")
+        made.append(pulloff.Problem(tmp_path / "p.toml"))
+    # The same points from another file are the same.
+    assert made[0] == made[1] and hash(made[0]) == hash(made[1])
+    assert made[2] != made[0] and hash(made[2]) != hash(made[0])
+
+
+def test_every_problem_opens_again_from_its_text(tmp_path, monkeypatch):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "scan.csv").write_text("r [um], h [nm]\n" + "\n".join(f"{x},{x * x}" for x in range(40)))
+    preset = TEXT[: TEXT.index("[gap]")].replace("\n", "\nunits = 'SI'\n", 1) + (
+        "[gap]\nshape = 'profile'\nfile = 'scan.csv'\n[path]\nstart_contact_radius = '15 um'\n"
+    )
+    (tmp_path / "data" / "p.toml").write_text(preset.replace("= 1.0", "= '1 MPa'"))
+    every = [pulloff.Problem(name) for name in pulloff.presets()]
+    every += [
+        pulloff.Problem(tmp_path / "data" / "p.toml"),
+        pulloff.Problem.from_gap(R, R**2 / 2, **OF),
+        pulloff.Problem.from_gap(R * 1e-3, R**2 / 2e3, units="SI", **{**OF, "start_contact_radius": 3e-4}),
+    ]
+    monkeypatch.chdir(tmp_path)
+    for number, problem in enumerate(every):
+        text = problem.to_toml()
+        assert pulloff.Problem(text) == problem, problem
+        file = tmp_path / "saved" / f"n{number}.toml"
+        file.parent.mkdir(exist_ok=True)
+        problem.save(file)
+        assert pulloff.Problem(file) == problem, problem
+        with pytest.raises(pulloff.OutputError, match="overwrite=True replaces it"):
+            problem.save(file)
+        problem.save(file, overwrite=True)
+        assert pulloff.Problem(str(file)) == problem
+        # By hand: the files under the names that the text has for them.
+        folder = tmp_path / f"by-hand-{number}"
+        folder.mkdir()
+        for name, content in text.files.items():
+            (folder / name).write_bytes(content)
+        (folder / "p.toml").write_text(text)
+        assert pulloff.Problem(folder / "p.toml") == problem
+    arrays = every[-2]
+    assert list(arrays.to_toml().files) == ["arrays"] and (tmp_path / "saved").exists()
+    with pytest.raises(pulloff.OutputError):
+        arrays.save(tmp_path / "no folder" / "x.toml")
+
+
+def test_repr_says_what_was_changed(fig_9, tmp_path):
+    assert repr(fig_9) == "pulloff.Problem('fig-9')"
+    changed = fig_9.replace({"gap.amplitude": 3e-3}).replace({"path.control": "force"})
+    assert repr(changed) == "pulloff.Problem('fig-9', {'gap.amplitude': 0.003, 'path.control': 'force'})"
+    assert eval(repr(changed)) == changed
+    assert repr(changed.replace({"gap.amplitude": 0.0025, "path.control": "displacement"})) == repr(fig_9)
+    fig_9.save(tmp_path / "mine.toml")
+    mine = pulloff.Problem(tmp_path / "mine.toml", {"gap.amplitude": 1e-3})
+    assert eval(repr(mine)) == mine and "mine.toml" in repr(mine)
+    arrays = pulloff.Problem.from_gap(R, R**2 / 2, **OF).replace({"material.work_of_adhesion": 0.01})
+    assert "from_gap" in repr(arrays) and "{'material.work_of_adhesion': 0.01}" in repr(arrays)
+    assert "a text" in repr(pulloff.Problem(TEXT)) and "{" not in repr(pulloff.Problem(TEXT))
+
+
+def test_arrays_of_any_make_are_taken():
+    wanted = pulloff.Problem.from_gap(R, R**2 / 2, **OF)
+    record = np.zeros(R.size, dtype=np.dtype([("flag", "i1"), ("r", "f8"), ("h", "f8")]))
+    record["r"], record["h"] = R, R**2 / 2
+    assert not record["r"].flags.aligned
+    other = np.stack([R, R**2 / 2])
+    for r, h in [
+        (record["r"], record["h"]),
+        (np.asfortranarray(other)[0], other.T[:, 1]),
+        (R.astype(">f8"), (R**2 / 2).astype(">f8")),
+        (R.tolist(), tuple((R**2 / 2).tolist())),
+        (R[::-1][::-1], np.ma.masked_array(R**2 / 2)),
+    ]:
+        assert pulloff.Problem.from_gap(r, h, **OF) == wanted
+    pressure = wanted.pressure(0.2, record["r"])
+    assert np.array_equal(pressure, wanted.pressure(0.2, R), equal_nan=True)

@@ -1,7 +1,10 @@
 import json
+import math
 import os
 import subprocess
 import sys
+import warnings
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -12,10 +15,10 @@ import pulloff
 def test_columns_are_those_of_the_document(fig_9):
     curve = fig_9.trace()
     document = curve.to_dict()
-    assert document["schema"] == 1 and len(document["points"]) == len(curve)
+    assert document["schema"] == 1 and len(document["points"]) == curve.row_count
     for name in ("force", "approach", "contact_radius", "energy"):
         array = getattr(curve, name)
-        assert array.dtype == np.float64 and array.shape == (len(curve),)
+        assert array.dtype == np.float64 and array.shape == (curve.row_count,)
         assert array.tolist() == [point[name] for point in document["points"]]
     assert curve.stable_chosen.dtype == np.bool_ and curve.step.dtype == np.int64
     assert curve.stable_force.tolist() == [point["stable"]["force"] for point in document["points"]]
@@ -27,6 +30,41 @@ def test_columns_are_those_of_the_document(fig_9):
         curve.nothing
     with pytest.raises(KeyError, match="contact_radius"):
         curve["nothing"]
+
+
+def test_results_are_mappings(fig_9):
+    curve = fig_9.trace()
+    assert isinstance(curve, Mapping) and isinstance(curve, pulloff.Table)
+    assert "force" in curve and "nothing" not in curve and 3 not in curve and None not in curve
+    assert list(curve) == list(curve.keys()) == curve.columns and len(curve) == len(curve.columns)
+    assert curve.get("nothing", 7) == 7 and all(values is curve[name] for name, values in curve.items())
+    assert dict(curve)["force"] is curve.force and [len(values) for values in curve.values()] == [curve.row_count] * len(curve)
+    assert {**curve}.keys() == curve.keys() and bool(curve)
+    again = fig_9.trace()
+    assert again == curve and not again != curve and again is not curve
+    assert curve == dict(curve) and dict(curve).keys() == again.keys()
+    assert curve != fig_9.replace({"gap.amplitude": 3e-3}).trace() and curve != fig_9.unload()
+    assert curve != {**curve, "force": -curve.force} and curve != {"force": curve.force} and curve != 3
+    # NaN and None are equal to themselves, as nobody would expect of floats alone.
+    quick = dict(areas=False, admissibility=False)
+    assert fig_9.unload(**quick) == fig_9.unload(**quick)
+    with pytest.raises(TypeError):
+        hash(curve)
+    for wrong in (0, None, ["force"]):
+        with pytest.raises(KeyError, match="no column is called"):
+            curve[wrong]
+    pandas = pytest.importorskip("pandas")
+    assert list(pandas.DataFrame(dict(curve)).columns) == list(curve)
+
+
+def test_the_exact_solution_stands_beside_a_trace(fig_9, tmp_path):
+    exact = fig_9.replace({"basis.kind": "exact"}).trace(theory=True)
+    assert {"exact_approach", "exact_force", "exact_energy", "exact_relative_difference"} <= set(exact)
+    assert exact.force == pytest.approx(exact.exact_force, rel=1e-8, abs=1e-12)
+    rings = fig_9.trace(theory=True)
+    off = (rings.force - rings.exact_force) / np.abs(rings.exact_force)
+    assert rings.exact_relative_difference == pytest.approx(off, rel=1e-9) and np.abs(off).max() > 1e-6
+    assert "exact_force" not in fig_9.trace()
 
 
 def test_the_documents_are_those_of_the_program(fig_9, tmp_path):
@@ -51,7 +89,7 @@ def test_unloading(fig_9):
     quick = fig_9.unload(areas=False, admissibility=False)
     assert quick.before_force.tolist() == whole.before_force.tolist()
     assert quick.dissipated.tolist() == whole.dissipated.tolist()
-    assert np.isnan(quick.dissipated_by_area).all() and quick.admissible.tolist() == [None] * len(quick)
+    assert np.isnan(quick.dissipated_by_area).all() and quick.admissible.tolist() == [None] * quick.row_count
     force = fig_9.unload(control="force")
     assert force.to_dict()["control"] == "force" and np.isnan(force.dissipated[-1])
     assert fig_9.unload(control=0.15).to_dict()["control"] == {"stiffness": 0.15}
@@ -68,6 +106,47 @@ def test_cycle():
         pulloff.Problem("fig-9-cycle").cycle(to_force=1.0, to_radius=0.2)
 
 
+def test_a_loop_turns_round_at_a_control_value():
+    loop = pulloff.Problem("fig-9-cycle")
+    turned = loop.cycle(to_control=0.03, areas=False)
+    assert turned.to_dict()["turn"]["asked"] in (0.03, {"control": 0.03}) or turned.control_value.max() == pytest.approx(0.03, rel=1e-6)
+    assert turned.control_value.max() == pytest.approx(loop.cycle(to_approach=0.03, areas=False).control_value.max(), rel=1e-6)
+    force = loop.cycle("force", to_control=0.002, areas=False)
+    assert force.control_value.max() == pytest.approx(0.002, rel=1e-6) and force.to_dict()["control"] == "force"
+    for turns in ({"to_control": 0.03, "to_force": 1.0}, {"to_control": np.nan}, {"to_control": -np.inf}):
+        with pytest.raises(pulloff.PresetError):
+            loop.cycle(**turns)
+
+
+def test_a_map_over_all_devices(fig_9):
+    """From fixed grips to a dead load: the last column of a map over the compliance is force control."""
+    devices = fig_9.map(("compliance", 0.0, math.inf), ("gap.amplitude", 1e-3, 3e-3), cells=(4, 3))
+    counts = devices.counts
+    assert counts["x"][0] == 0.0 and counts["x"][-1] == np.inf and np.isfinite(counts["x"][:-1]).all()
+    for column, control in ((0, "displacement"), (-1, "force")):
+        snaps = [
+            fig_9.replace({"gap.amplitude": y, "basis.kind": "exact"}).unload(control).row_count - 1 for y in counts["y"].tolist()
+        ]
+        assert counts["snaps"][:, column].tolist() == snaps
+    assert not np.isnan(devices.x).any()
+    folds = fig_9.map(("compliance", 0.0, math.inf), "force")
+    assert np.isinf(folds.x).any()
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    for drawn in (devices, folds):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            axes = drawn.plot()
+            axes.figure.canvas.draw()
+        labels = [label.get_text() for label in axes.get_xticklabels()]
+        assert labels[0] == "0" and labels[-1] == "∞" and len(axes.lines) > 0
+        ends = np.concatenate([line.get_xdata() for line in axes.lines])
+        assert np.isfinite(ends).all() and ends.min() >= 0.0 and ends.max() <= 1.0
+        if drawn is folds:
+            assert ends.max() == 1.0
+        matplotlib.pyplot.close("all")
+
+
 def test_map(fig_9):
     folds = fig_9.map(("gap.amplitude", 1e-3, 3e-3), "approach")
     assert set(folds.kind) <= {"fold", "cusp", "landing"} and folds.counts is None
@@ -79,7 +158,7 @@ def test_map(fig_9):
     counted = fig_9.map(("gap.amplitude", 1e-3, 3e-3), ("path.start_contact_radius", 0.3, 0.4), cells=(4, 3))
     assert counted.counts["snaps"].shape == (4, 5) and counted.counts["x"].shape == (5,)
     snaps = [
-        len(fig_9.replace({"gap.amplitude": x, "basis.kind": "exact", "path.start_contact_radius": counted.counts["y"][0]}).unload()) - 1
+        fig_9.replace({"gap.amplitude": x, "basis.kind": "exact", "path.start_contact_radius": counted.counts["y"][0]}).unload().row_count - 1
         for x in counted.counts["x"].tolist()
     ]
     assert counted.counts["snaps"][0].tolist() == snaps
@@ -91,7 +170,7 @@ def test_map(fig_9):
 
 def test_stability(fig_9):
     law = fig_9.stability(control="force", samples=500)
-    assert (np.diff(law.contact_radius) >= 0.0).all() and len(law) == 500 + (law.kind != "sample").sum()
+    assert (np.diff(law.contact_radius) >= 0.0).all() and law.row_count == 500 + (law.kind != "sample").sum()
     assert law.contact_radius[-1] == pytest.approx(fig_9["path.start_contact_radius"]) and law.critical_force.dtype == np.float64
     assert law.critical_chosen.tolist() == law.critical_force.tolist()
     assert law.work_of_adhesion == fig_9["material.work_of_adhesion"]
@@ -123,7 +202,7 @@ def test_the_stability_of_the_smooth_sphere_is_that_of_jkr():
     )
     law = sphere.stability(0.4, samples=50)
     s = law.contact_radius
-    assert set(law.kind) == {"sample"} and len(law) == 50
+    assert set(law.kind) == {"sample"} and law.row_count == 50
     known = ~np.isnan(law.critical_displacement)
     assert known.sum() > 40
     fixed = (8 * modulus / np.pi * s**3)[known]
@@ -147,10 +226,42 @@ def test_a_state_of_the_smooth_sphere_is_that_of_jkr():
     angle, t = np.arcsin(s / r), np.sqrt(r**2 - s**2)
     expected = r**2 / 2 + ((2 * s**2 - r**2) * angle + s * t) / np.pi - 2 / np.pi * tension * angle - (s**2 - tension)
     assert sphere.gap(s, r) == pytest.approx(expected, abs=1e-12)
-    assert np.isnan(sphere.pressure(s, r)).all()
+    assert np.isnan(sphere.pressure(s, r[1:])).all()
     for s, r in [(-1.0, 0.1), (np.nan, 0.1), (0.1, -1.0), (0.1, np.inf)]:
         with pytest.raises(pulloff.NoState):
             sphere.pressure(s, r)
+
+
+def test_far_radii_cost_the_near_ones_nothing(fig_9):
+    near = [0.31, 0.4, 0.9]
+    gaps = fig_9.gap(0.3, [*near, 1e9])
+    assert gaps[:3].tolist() == fig_9.gap(0.3, near).tolist() and np.isfinite(gaps).all()
+    # Far out the bodies have their own shape, shifted by δ.
+    assert gaps[3] == pytest.approx(1e18 / 2, rel=1e-9)
+    r = np.linspace(0.0, 1.0, 60)
+    measured = pulloff.Problem.from_gap(r, r**2 / 2, effective_modulus=1.0, work_of_adhesion=0.004, start_contact_radius=0.3)
+    gaps = measured.gap(0.2, [0.1, 0.3, 0.5, 1.0, 1.5])
+    assert gaps[0] == 0.0 and (gaps[1:4] > 0.0).all() and np.isnan(gaps[4])
+    assert fig_9.gap(0.3, [0.4, 1e9])[0] == fig_9.gap(0.3, 0.4) == fig_9.gap(0.3, [0.301, 0.4])[1]
+    for s in (1e9, 1e30, 1e31):
+        with pytest.raises((pulloff.GapError, pulloff.NoState)):
+            fig_9.gap(s, 2e30)
+
+
+def test_the_edge_pulls_with_all_its_might(fig_9):
+    si = pulloff.Problem("fig-9-si")
+    for problem, s in ((fig_9, 0.3), (fig_9, 0.1234567), (si, 0.3 * si["gap.radius_of_curvature"])):
+        r = np.linspace(0.0, s, 11)
+        rounded = [s, np.nextafter(s, 0.0), np.nextafter(s, 1.0), s * (1 - 3e-16), 3 * (s / 3), r[-1]]
+        assert (problem.pressure(s, rounded) == -np.inf).all()
+        inside = problem.pressure(s, s * (1.0 - np.array([1e-3, 1e-6, 1e-9, 1e-12])))
+        assert np.isfinite(inside).all() and (np.diff(inside) < 0.0).all()
+        # −√(γE*/(π(s − r))) towards the edge.
+        gamma, modulus = problem["material.work_of_adhesion"], problem["material.effective_modulus"]
+        assert inside[-1] == pytest.approx(-np.sqrt(gamma * modulus / (np.pi * 1e-12 * s)), rel=1e-3)
+        assert np.isnan(problem.pressure(s, 1.001 * s))
+    hertz = fig_9.replace({"gap.amplitude": 0.0, "material.work_of_adhesion": 0.0})
+    assert hertz.pressure(0.3, 0.3) == 0.0
 
 
 def test_units_are_kept():
@@ -168,7 +279,7 @@ def test_notebook_and_optional_packages(fig_9):
     sweep = pulloff.sweep({"preset": fig_9, "axis": [{"key": "gap.amplitude", "values": [1e-3, 2e-3]}]})
     for result in (fig_9.trace(), fig_9.unload(), pulloff.Problem("fig-9-cycle").cycle(areas=False), fig_9.stability(), sweep):
         page = result._repr_html_()
-        assert page.count("<tr>") == min(len(result), 12) + 1 and "<script" not in page
+        assert page.count("<tr>") == min(result.row_count, 12) + 1 and "<script" not in page
         axes = result.plot()
         assert axes.lines and axes.get_xlabel() and axes.get_ylabel()
         assert result.plot(ax=axes) is axes

@@ -19,8 +19,8 @@ WORK = {
     "stability": "while True: problem.stability(progress=told)",
     "fit": "fit()",
     "sweep": f"pulloff.sweep({MANY}, progress=told)",
-    # So far out that the table takes minutes.
-    "gap": "told(0.0), problem.gap(0.3, 3000.0)",
+    # A contact so large that its table takes long.
+    "gap": "told(0.0), [problem.replace({'gap.amplitude': 1e-3 * (1 + 1e-6 * i)}).gap(2000.0, 2001.0) for i in range(10**6)]",
 }
 
 
@@ -56,6 +56,44 @@ def test_ctrl_c_ends_it(name):
         finally:
             process.kill()
     assert out == "interrupted\n" and process.returncode == 0
+
+
+@pytest.mark.parametrize("out", ["", "rows.csv"])
+def test_ctrl_c_leaves_the_rows_that_are_done(out, tmp_path):
+    code = f"""
+        import numpy, pickle, pulloff, sys
+        done = []
+        def told(share):
+            done.append(share)
+            if share > 20 / 1000000:
+                print("begun", flush=True) if len(done) < 10**6 else None
+                done.extend([0.0] * 10**6)
+        try:
+            pulloff.sweep({MANY}, progress=told{", out='rows.csv'" if out else ""})
+        except KeyboardInterrupt as stopped:
+            assert type(stopped) is pulloff.Interrupted and not isinstance(stopped, Exception)
+            rows = stopped.result
+            assert rows.row.tolist() == list(range(rows.row_count)) and rows.row_count > 10
+            assert set(rows.error) == {{None}} and not numpy.isnan(rows["gap.amplitude"]).any()
+            again = pickle.loads(pickle.dumps(stopped))
+            assert again.result == rows and str(again) == str(stopped)
+            few = [{{"key": "gap.amplitude", "values": rows["gap.amplitude"][:10].tolist()}}]
+            assert pulloff.sweep({{"preset": "fig-9", "axis": few}}).pull_off_force.tolist() == rows.pull_off_force[:10].tolist()
+            print(rows.row_count, stopped, flush=True)
+    """
+    call = [sys.executable, "-c", textwrap.dedent(code)]
+    with subprocess.Popen(call, stdout=subprocess.PIPE, text=True, cwd=tmp_path) as process:
+        try:
+            assert process.stdout.readline() == "begun\n"
+            process.send_signal(signal.SIGINT)
+            said, _ = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    count, words = said.strip().split(" ", 1)
+    assert words.startswith(f"stopped with {count} rows") and process.returncode == 0
+    if out:
+        assert (tmp_path / out).read_text().count("\n") == int(count) + 1
+        assert "the same call goes on from there" in words
 
 
 def test_an_exception_of_progress_ends_it(fig_9):

@@ -1,3 +1,6 @@
+import os
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -18,7 +21,7 @@ def test_rows_are_those_of_single_problems(fig_9):
         problem = fig_9.replace({"gap.amplitude": amplitude})
         unloading = problem.unload()
         assert swept.pull_off_force[row] == unloading.before_force[-1]
-        assert swept.snaps[row] == len(unloading) - 1
+        assert swept.snaps[row] == unloading.row_count - 1
         assert swept.pull_off_force_force[row] == problem.unload("force").before_force[-1]
 
 
@@ -46,7 +49,7 @@ def test_jobs_change_nothing():
         "axis": [{"key": "gap.amplitude", "distribution": {"log-uniform": [1e-4, 4e-3]}}],
     }
     one, four = pulloff.sweep(spec, jobs=1), pulloff.sweep(spec, jobs=4)
-    assert one.to_dict() == four.to_dict() and len(one) == 20
+    assert one.to_dict() == four.to_dict() and one.row_count == 20
 
 
 def test_a_row_that_cannot_be_computed_says_why():
@@ -82,3 +85,73 @@ def test_quantities_are_listed():
     assert pulloff.quantities()[0].of_control
     with pytest.raises(pulloff.SpecError, match="jobs"):
         pulloff.sweep({"preset": "fig-9", "axis": [AXIS]}, jobs=0)
+
+
+SPEC = {
+    "preset": "fig-9",
+    "quantities": ["pull_off_force", "snaps"],
+    "axis": [
+        {"key": "gap.amplitude", "linear": {"from": 1e-3, "to": 3e-3, "count": 5}},
+        {"key": "path.end_contact_radius", "values": [0.1, 0.9]},
+    ],
+}
+
+
+def test_rows_go_to_the_file_of_the_program(tmp_path):
+    wanted = pulloff.sweep(SPEC)
+    assert any(wanted.error) and not all(wanted.error)
+    out = tmp_path / "rows.csv"
+    assert pulloff.sweep(SPEC, out=out) == wanted
+    before = out.read_bytes()
+    assert before.count(b"\n") == 11 and (tmp_path / "rows.csv.spec.toml").exists()
+    # Nothing is computed twice, and a torn line is cut off.
+    assert pulloff.sweep(SPEC, out=out) == wanted and out.read_bytes() == before
+    out.write_bytes(before[: len(before) // 2])
+    assert pulloff.sweep(SPEC, out=str(out), jobs=2) == wanted and out.read_bytes() == before
+    other = {**SPEC, "quantities": ["snaps"]}
+    with pytest.raises(pulloff.OutputError, match="another sweep.*overwrite=True replaces"):
+        pulloff.sweep(other, out=out)
+    with pytest.raises(pulloff.OutputError, match="resume=True goes on with it, overwrite=True replaces it"):
+        pulloff.sweep(SPEC, out=out, resume=False)
+    assert out.read_bytes() == before
+    assert pulloff.sweep(other, out=out, overwrite=True).columns == [c for c in wanted if c != "pull_off_force"]
+    assert pulloff.sweep(SPEC, out=tmp_path / "new.csv", resume=False) == wanted
+    for refused in (tmp_path, tmp_path / "none" / "x.csv", "-", "/dev/null", "\x00"):
+        with pytest.raises((pulloff.OutputError, ValueError)):
+            pulloff.sweep(SPEC, out=refused)
+
+
+def test_shards_make_the_whole(tmp_path):
+    whole = pulloff.sweep(SPEC)
+    parts = [pulloff.sweep(SPEC, shard=(i, 3)) for i in (1, 2, 3)]
+    rows = sorted((int(row), repr(part["pull_off_force"][at])) for part in parts for at, row in enumerate(part.row))
+    assert rows == [(int(row), repr(force)) for row, force in zip(whole.row, whole.pull_off_force)]
+    assert parts[1].row.tolist() == [1, 4, 7] and parts[1]["gap.amplitude"][0] == whole["gap.amplitude"][1]
+    for i, part in enumerate(parts, 1):
+        assert pulloff.sweep(SPEC, out=tmp_path / f"{i}.csv", shard=f"{i}/3") == part
+    with pytest.raises(pulloff.OutputError, match="shard 1/3, not 2/3"):
+        pulloff.sweep(SPEC, out=tmp_path / "1.csv", shard=(2, 3))
+    program = os.environ.get("PULLOFF_PROGRAM")
+    if program is not None:
+        files = [str(tmp_path / f"{i}.csv") for i in (1, 2, 3)]
+        subprocess.run([program, "sweep", "merge", *files, "-o", str(tmp_path / "all.csv")], check=True)
+        assert pulloff.sweep(SPEC, out=tmp_path / "all.csv") == whole
+    for shard in ((0, 3), (4, 3), "3", "a/b", (1, 2, 3)):
+        with pytest.raises(pulloff.SpecError, match="shard"):
+            pulloff.sweep(SPEC, shard=shard)
+
+
+def test_a_row_is_given_up_when_its_time_is():
+    slow = {"preset": "fig-9-cycle", "quantities": ["cycle_loss"], "axis": [{"key": "gap.amplitude", "values": [2e-3]}]}
+    swept = pulloff.sweep(slow, row_limit=1e-6)
+    assert "row limit" in swept.error[0] and np.isnan(swept.cycle_loss[0])
+    for limit in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(pulloff.SpecError, match="row_limit"):
+            pulloff.sweep(slow, row_limit=limit)
+
+
+def test_a_sweep_is_a_mapping():
+    swept = pulloff.sweep(SPEC)
+    assert list(swept) == ["row", "gap.amplitude", "path.end_contact_radius", "pull_off_force", "snaps", "error"]
+    assert "snaps" in swept and len(swept) == 6 and swept.row_count == 10 and dict(swept)["snaps"] is swept.snaps
+    assert swept == pulloff.sweep(SPEC, jobs=2) and swept != pulloff.sweep(SPEC, shard=(1, 2))

@@ -1,0 +1,72 @@
+"""A gap of one's own: arrays, or a function sampled until a smooth curve gives it back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Callable, Tuple
+
+from . import _engine
+from .errors import NotCertified, PresetError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+else:
+    from ._numpy import np
+
+# A function is sampled at so many radii at first and at most: as many as the engine takes as knots.
+_SAMPLES = (65, 3841)
+
+
+def plain(values: ArrayLike) -> NDArray[np.float64]:
+    """An array as the engine takes it: a field of a record, or what came from another process, may lie between two addresses."""
+    return np.require(values, np.float64, ["C", "A"])
+
+
+def column(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """A column of a profile."""
+    column = plain(values)
+    if column.ndim != 1:
+        raise PresetError(f"{name} has {column.ndim} dimensions: it must have one", key="gap.file")
+    return column
+
+
+def sampled(
+    h: Callable[[NDArray[np.float64]], ArrayLike], radius: float, tolerance: float
+) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Samples of a function out to ``radius``: as many as give it back between them."""
+    if not (np.isfinite(radius) and radius > 0.0):
+        raise PresetError(f"r = {radius!r} is out of range: a function is known to a radius above 0", key="gap.file")
+    if not 0.0 < tolerance < 1.0:
+        raise PresetError(f"tolerance = {tolerance!r} is out of range: it must be above 0 and below 1")
+
+    def of(radii: NDArray[np.float64]) -> NDArray[np.float64]:
+        # A copy: the function may write into it.
+        gaps = np.asarray(h(radii.copy()), dtype=float)
+        if gaps.shape != radii.shape:
+            raise PresetError(f"h returned the shape {gaps.shape} for radii of the shape {radii.shape}", key="gap.file")
+        wrong = np.flatnonzero(~np.isfinite(gaps))
+        if wrong.size:
+            raise PresetError(f"h({radii[wrong[0]]!r}) is {gaps[wrong[0]]!r}, no number", key="gap.file")
+        return gaps
+
+    count, most = _SAMPLES
+    while True:
+        radii = np.linspace(0.0, radius, count)
+        gaps = of(radii)
+        # Two radii between each pair, the second where no finer grid has one: what waves at a grid's own rate is seen too.
+        share = np.array([0.5, 0.381966])
+        between = (radii[:-1, None] + share * np.diff(radii)[:, None]).reshape(-1)
+        truth = of(between) - gaps[0]
+        missed = np.abs(np.asarray(_engine.between(radii, gaps, between)) - truth)
+        allowed = tolerance * float(np.ptp(gaps))
+        if missed.max() <= allowed:
+            return radii, gaps
+        if count >= most:
+            at = int(missed.argmax())
+            raise NotCertified(
+                f"the gap is not resolved: a smooth curve through {count} samples misses it by {missed[at]:.3g} at "
+                f"r = {between[at]:.6g}, more than {allowed:.3g}; a corner or a finer wave needs a formula, or arrays",
+                radius=float(between[at]),
+                difference=float(missed[at]),
+            )
+        count = min(2 * count - 1, most)

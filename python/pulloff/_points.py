@@ -1,0 +1,76 @@
+"""What a fit is asked for, as the engine takes it: points as the text of a table, ranges, draws."""
+
+from __future__ import annotations
+
+import os
+from operator import index
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
+
+from . import _engine
+from .errors import DataError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+else:
+    from ._numpy import np
+
+Range = Tuple[Optional[float], Optional[float]]
+
+
+def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
+    """The name and the text of the table that the engine reads."""
+    if isinstance(data, Mapping):
+        columns = dict(data)
+    elif hasattr(data, "columns") and hasattr(data, "__getitem__"):
+        columns = {name: data[name] for name in data.columns}
+    elif isinstance(data, (str, bytes, os.PathLike)):
+        name = os.fsdecode(data)
+        return name, _engine.read_file(name)
+    else:
+        raise DataError(f"data is of the type {type(data).__name__}: it is a file, a DataFrame or a dict of columns")
+    arrays = {str(name): np.asarray(values) for name, values in columns.items()}
+    lengths = {array.size for array in arrays.values() if array.ndim == 1}
+    if len(lengths) != 1 or any(array.ndim != 1 for array in arrays.values()):
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise DataError(f"the columns must have one dimension and one length: {shapes or 'there are none'}")
+    units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
+    header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
+    rows = (",".join(row) for row in zip(*(_cells(array) for array in arrays.values())))
+    return "data", "\n".join([header, *rows, ""]).encode(errors="replace")
+
+
+def _bare(text: str) -> str:
+    """A text without what parts cells and lines."""
+    return " ".join(text.translate(dict.fromkeys(map(ord, ',;"\t\r\n'), " ")).split())
+
+
+def _cells(array: NDArray[Any]) -> Sequence[str]:
+    """The cells of a column: numbers with every digit, else texts."""
+    if array.dtype.kind in "iufb":
+        return [repr(x) for x in array.tolist()]
+    return [repr(float(x)) if isinstance(x, (int, float, np.number)) else _bare(str(x)) or "-" for x in array.tolist()]
+
+
+def range_of(name: str, given: Optional[Range]) -> Optional[Tuple[float, float]]:
+    if given is None:
+        return None
+    try:
+        lo, hi = given
+        lo, hi = (float("-inf") if lo is None else float(lo)), (float("inf") if hi is None else float(hi))
+    except (TypeError, ValueError) as error:
+        raise DataError(f"{name} = {given!r}: a range is (from, to)") from error
+    if not lo < hi:
+        raise DataError(f"{name} = {given!r} is empty: a range is (from, to), from below to")
+    return lo, hi
+
+
+def draws_of(bootstrap: Optional[int], seed: int) -> Optional[Tuple[int, int]]:
+    if bootstrap is None:
+        return None
+    bootstrap, seed = index(bootstrap), index(seed)
+    if not 10 <= bootstrap <= 100_000:
+        raise DataError(f"bootstrap = {bootstrap} is out of range: it must be from 10 to 100000")
+    if not 0 <= seed < 2**64:
+        raise DataError(f"seed = {seed} is out of range: it must be from 0 to 2**64 - 1")
+    return bootstrap, seed
