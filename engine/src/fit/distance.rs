@@ -17,6 +17,8 @@ pub struct Nearest {
     pub piece: usize,
     /// Where on it.
     pub foot: Foot,
+    /// That place of the path.
+    pub at: Place,
     /// The distances along the normals, one in a plane, two in space.
     pub residuals: [f64; 2],
     /// The derivatives of the residuals by the scaled point.
@@ -28,16 +30,20 @@ pub struct Nearest {
 pub struct Scaled<'a> {
     path: &'a Path,
     corners: Vec<Place>,
+    /// The derivatives by s at the corners.
+    slopes: Vec<Place>,
     /// The ends of the boxes around [`BOXED`] stretches each.
     boxes: Vec<[Place; 2]>,
+    /// Those around [`BOXED`] boxes each.
+    chests: Vec<[Place; 2]>,
     weights: Place,
 }
 
 /// The way along a curve at which the foot is found, in units of noise.
 const FOUND: f64 = 1e-8;
 const STEPS: usize = 60;
-/// Stretches of the polyline that are passed over together where their box is too far away.
-const BOXED: usize = 16;
+/// Stretches of the polyline that are passed over together where their box is too far away, and boxes where the one around them is.
+const BOXED: usize = 8;
 
 fn minus(a: Place, b: Place) -> Place {
     std::array::from_fn(|i| a[i] - b[i])
@@ -63,35 +69,50 @@ fn from_box(m: Place, [lo, hi]: &[Place; 2]) -> f64 {
     dot(off, off)
 }
 
+/// The box around some.
+fn around(some: impl Iterator<Item = [Place; 2]>) -> [Place; 2] {
+    some.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[lo, hi], ends| {
+        [std::array::from_fn(|i| lo[i].min(ends[0][i])), std::array::from_fn(|i| hi[i].max(ends[1][i]))]
+    })
+}
+
 impl<'a> Scaled<'a> {
     /// `path` with the coordinates times `weights`, 1/σ, or 0 for one that is not measured.
     #[must_use]
     pub fn new(path: &'a Path, weights: Place) -> Self {
         let corners: Vec<Place> = path.vertices.iter().map(|vertex| scaled(vertex.at, weights)).collect();
-        let around = |from: usize| {
-            let some = &corners[from..(from + BOXED + 1).min(corners.len())];
-            some.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[lo, hi], at| {
-                [std::array::from_fn(|i| lo[i].min(at[i])), std::array::from_fn(|i| hi[i].max(at[i]))]
+        let slopes = path.vertices.iter().map(|vertex| scaled(vertex.slopes, weights)).collect();
+        let boxes: Vec<[Place; 2]> = (0..corners.len().saturating_sub(1))
+            .step_by(BOXED)
+            .map(|from| {
+                around(corners[from..(from + BOXED + 1).min(corners.len())].iter().map(|at| [*at; 2]))
             })
-        };
-        let boxes = (0..corners.len().saturating_sub(1)).step_by(BOXED).map(around).collect();
-        Self { path, corners, boxes, weights }
+            .collect();
+        let chests = boxes.chunks(BOXED).map(|some| around(some.iter().copied())).collect();
+        Self { path, corners, slopes, boxes, chests, weights }
     }
 
-    /// The foot of the point `m`, in units of noise; `None` where the path is nothing.
+    /// The foot of the point `m`, in units of noise; `None` where the path is nothing. `box_of_last` is the box that holds the foot of the
+    /// point before, where it is looked for first: rows that follow each other lie near each other.
     #[must_use]
-    pub fn nearest(&self, m: Place) -> Option<Nearest> {
+    pub fn nearest(&self, m: Place, box_of_last: &mut usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let mut best = (f64::INFINITY, 0, 0.0);
-        let away: Vec<f64> = self.boxes.iter().map(|ends| from_box(m, ends)).collect();
-        let first = (0..away.len()).min_by(|&a, &b| away[a].total_cmp(&away[b]))?;
+        let first = *box_of_last;
         self.search(m, first, &mut best);
-        for (i, away) in away.iter().enumerate() {
-            // Of places that are equally near the first on the path counts.
-            if i != first && *away <= best.0 {
-                self.search(m, i, &mut best);
+        for (chest, ends) in self.chests.iter().enumerate() {
+            if from_box(m, ends) > best.0 {
+                continue;
+            }
+            let boxes = self.boxes.iter().enumerate().skip(chest * BOXED).take(BOXED);
+            for (i, ends) in boxes {
+                // Of places that are equally near the first on the path counts.
+                if i != first && from_box(m, ends) <= best.0 {
+                    self.search(m, i, &mut best);
+                }
             }
         }
+        *box_of_last = best.1 / BOXED;
         let (distance, at, share) = best;
         if !distance.is_finite() {
             return None;
@@ -105,10 +126,10 @@ impl<'a> Scaled<'a> {
                     share if share >= 1.0 => Foot::Inner,
                     share => Foot::Share(1.0 - share),
                 };
-                let c = scaled(self.path.foot(piece, foot)?, self.weights);
-                self.told(piece, foot, minus(m, c), along)
+                let at = self.path.foot(piece, foot)?;
+                told(self.weights, piece, (foot, at), minus(m, scaled(at, self.weights)), along)
             }
-            Piece::Arc(_) => self.on_arc(m, at, share),
+            Piece::Arc(_) => self.on_arc(m, at),
         }
     }
 
@@ -131,54 +152,54 @@ impl<'a> Scaled<'a> {
     }
 
     /// The foot on an arc near the stretch from the corner `at` inward.
-    fn on_arc(&self, m: Place, at: usize, share: f64) -> Option<Nearest> {
+    fn on_arc(&self, m: Place, at: usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let piece = vertices[at].piece;
         // Half the slope of the squared distance, outward.
-        let look = |s: f64| -> Option<(f64, Place, Place)> {
-            let (place, slopes) = self.path.at(s)?;
-            let (off, along) = (minus(m, scaled(place, self.weights)), scaled(slopes, self.weights));
-            Some((-dot(off, along), off, along))
-        };
+        let slope = |vertex: usize| -dot(minus(m, self.corners[vertex]), self.slopes[vertex]);
         let same = |i: usize| vertices.get(i).is_some_and(|vertex: &Vertex| vertex.piece == piece);
-        let (mut outer, mut inner) = (at, at + 1);
         let clamped = |vertex: usize, foot: Foot, is_edge: bool| {
-            let s = vertices[vertex].along;
-            let (_, off, along) = look(s)?;
-            self.told(piece, if is_edge { Foot::Radius(s) } else { foot }, off, along)
+            let Vertex { at, along, .. } = vertices[vertex];
+            let foot = if is_edge { Foot::Radius(along) } else { foot };
+            told(self.weights, piece, (foot, at), minus(m, self.corners[vertex]), self.slopes[vertex])
         };
-        let mut hi = vertices[outer].along;
-        while look(hi)?.0 < 0.0 {
+        let (mut outer, mut inner) = (at, at + 1);
+        while slope(outer) < 0.0 {
             if outer == 0 || !same(outer - 1) {
                 return clamped(outer, Foot::Outer, piece == 0);
             }
             inner = outer;
             outer -= 1;
-            hi = vertices[outer].along;
         }
-        let mut lo = vertices[inner].along;
-        while look(lo)?.0 > 0.0 {
+        while slope(inner) > 0.0 {
             if !same(inner + 1) {
                 return clamped(inner, Foot::Inner, piece + 1 == self.path.pieces.len());
             }
-            hi = lo;
+            outer = inner;
             inner += 1;
-            lo = vertices[inner].along;
         }
-        let mut s = hi + (lo - hi) * if inner == at + 1 { share } else { 0.5 };
+        let bridge = Bridge {
+            ends: [self.corners[inner], self.corners[outer]],
+            slopes: [self.slopes[inner], self.slopes[outer]],
+            way: vertices[outer].along - vertices[inner].along,
+        };
+        let (mut lo, mut hi) = (vertices[inner].along, vertices[outer].along);
+        let share = bridge.foot(m);
+        let mut s = lo + share * bridge.way;
         let mut last: Option<(f64, f64)> = None;
-        for _ in 0..STEPS {
-            let (slope, off, along) = look(s)?;
-            let length = dot(along, along);
+        for step in 0..=STEPS {
+            let (place, slopes) = self.path.at(s)?;
+            let (off, along) = (minus(m, scaled(place, self.weights)), scaled(slopes, self.weights));
+            let (slope, length) = (-dot(off, along), dot(along, along));
             if slope > 0.0 {
                 hi = s;
             } else {
                 lo = s;
             }
-            // By the curve's own bend after the first step.
+            // By the bend of the bridge, and by the curve's own after the first step.
             let bend = match last {
                 Some((t, before)) => (slope - before) / (s - t),
-                None => length,
+                None => length - dot(off, bridge.bend(share)),
             };
             // Of two places that are one it is no number.
             let bend = if bend > 0.1 * length { bend } else { length };
@@ -187,39 +208,101 @@ impl<'a> Scaled<'a> {
                 next = 0.5 * (lo + hi);
             }
             let way = (next - s).abs();
-            if way * length.sqrt() <= FOUND || way <= 4.0 * f64::EPSILON * s {
-                return self.told(piece, Foot::Radius(s), off, along);
+            if step == STEPS || way * length.sqrt() <= FOUND || way <= 4.0 * f64::EPSILON * s {
+                return told(self.weights, piece, (Foot::Radius(s), place), off, along);
             }
             last = Some((s, slope));
             s = next;
         }
-        let (_, off, along) = look(s)?;
-        self.told(piece, Foot::Radius(s), off, along)
+        None
+    }
+}
+
+/// The cubic between two corners of an arc, with the slopes of the curve at both: next to the curve itself, and had without it.
+struct Bridge {
+    /// The inner end, and the outer.
+    ends: [Place; 2],
+    slopes: [Place; 2],
+    /// The way of s between them.
+    way: f64,
+}
+
+impl Bridge {
+    /// The place at a share of the way and its first two derivatives by the share.
+    fn at(&self, t: f64) -> [Place; 3] {
+        let [a, b] = self.ends;
+        let weights = [
+            [t * (1.0 - t) * (1.0 - t), t * t * (t - 1.0), t * t * (3.0 - 2.0 * t)],
+            [(1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0), 6.0 * t * (1.0 - t)],
+            [6.0 * t - 4.0, 6.0 * t - 2.0, 6.0 - 12.0 * t],
+        ];
+        let mut places = weights.map(|[inner, outer, there]| {
+            std::array::from_fn(|i| {
+                self.way * (inner * self.slopes[0][i] + outer * self.slopes[1][i]) + there * (b[i] - a[i])
+            })
+        });
+        places[0] = sum(1.0, places[0], 1.0, a);
+        places
     }
 
-    /// The distances of `off` along the normals of `along`.
-    fn told(&self, piece: usize, foot: Foot, off: Place, along: Place) -> Option<Nearest> {
-        let length = dot(along, along).sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            return None;
-        }
-        let t = along.map(|x| x / length);
-        let flat = hypot(t[0], t[1]);
-        let first = [-t[1] / flat, t[0] / flat, 0.0];
-        let space = self.weights[2] > 0.0;
-        // t × first: with it the three are a frame.
-        let second = if space {
-            [-t[2] * first[1], t[2] * first[0], t[0] * first[1] - t[1] * first[0]]
-        } else {
-            [0.0; 3]
-        };
-        let (r, beside, beyond) = (dot(off, first), dot(off, second), dot(off, t));
-        let is_inside = matches!(foot, Foot::Radius(_) | Foot::Share(_));
-        if is_inside || beyond == 0.0 {
-            return Some(Nearest { piece, foot, residuals: [r, beside], normals: [first, second] });
-        }
-        let whole = hypot(r, beyond).copysign(r);
-        let normal = sum(r / whole, first, beyond / whole, t);
-        Some(Nearest { piece, foot, residuals: [whole, beside], normals: [normal, second] })
+    /// The second derivative by s.
+    fn bend(&self, t: f64) -> Place {
+        self.at(t)[2].map(|x| x / (self.way * self.way))
     }
+
+    /// The share of the way at which the point `m` has its foot.
+    fn foot(&self, m: Place) -> f64 {
+        const TIMES: usize = 20;
+        const NEAR: f64 = 1e-12;
+        let (mut lo, mut hi, mut t) = (0.0, 1.0, 0.5);
+        for _ in 0..TIMES {
+            let [place, along, bend] = self.at(t);
+            let off = minus(m, place);
+            let slope = -dot(off, along);
+            if slope > 0.0 {
+                hi = t;
+            } else {
+                lo = t;
+            }
+            let rise = dot(along, along) - dot(off, bend);
+            let mut next = t - slope / rise;
+            if !(next > lo && next < hi) {
+                next = 0.5 * (lo + hi);
+            }
+            if (next - t).abs() <= NEAR {
+                return next;
+            }
+            t = next;
+        }
+        t
+    }
+}
+
+/// The distances of `off` along the normals of `along`.
+fn told(
+    weights: Place,
+    piece: usize,
+    (foot, at): (Foot, Place),
+    off: Place,
+    along: Place,
+) -> Option<Nearest> {
+    let length = dot(along, along).sqrt();
+    if !(length > 0.0 && length.is_finite()) {
+        return None;
+    }
+    let t = along.map(|x| x / length);
+    let flat = hypot(t[0], t[1]);
+    let first = [-t[1] / flat, t[0] / flat, 0.0];
+    let space = weights[2] > 0.0;
+    // t × first: with it the three are a frame.
+    let second =
+        if space { [-t[2] * first[1], t[2] * first[0], t[0] * first[1] - t[1] * first[0]] } else { [0.0; 3] };
+    let (r, beside, beyond) = (dot(off, first), dot(off, second), dot(off, t));
+    let is_inside = matches!(foot, Foot::Radius(_) | Foot::Share(_));
+    if is_inside || beyond == 0.0 {
+        return Some(Nearest { piece, foot, at, residuals: [r, beside], normals: [first, second] });
+    }
+    let whole = hypot(r, beyond).copysign(r);
+    let normal = sum(r / whole, first, beyond / whole, t);
+    Some(Nearest { piece, foot, at, residuals: [whole, beside], normals: [normal, second] })
 }

@@ -23,11 +23,26 @@ pub struct Evaluated {
 
 /// What is fitted.
 pub trait LeastSquares {
-    /// The residuals at `u`; `None` where there are none.
-    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>>;
+    /// What residuals are made of, from which their derivatives are had.
+    type Look;
 
-    /// The same with derivatives.
-    fn evaluate(&self, u: &[f64]) -> Option<Evaluated>;
+    /// The residuals at `u`; `None` where there are none.
+    fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Self::Look)>;
+
+    /// The derivatives at `u`, of what was seen there.
+    fn derivatives(&self, u: &[f64], look: &Self::Look) -> Option<DMatrix<f64>>;
+
+    /// The residuals at `u` alone.
+    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>> {
+        self.look(u).map(|(residuals, _)| residuals)
+    }
+
+    /// The residuals at `u` with derivatives.
+    fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
+        let (residuals, look) = self.look(u)?;
+        let jacobian = self.derivatives(u, &look)?;
+        Some(Evaluated { residuals, jacobian })
+    }
 
     /// How often each residual counts; none counts once.
     fn counts(&self) -> Option<&[f64]> {
@@ -151,9 +166,20 @@ impl Factored {
 }
 
 /// Minimizes from `start`, as long as `progress` answers yes before each round; `None` where there is nothing at the start.
-pub fn minimize(
-    problem: &dyn LeastSquares,
+pub fn minimize<P: LeastSquares>(
+    problem: &P,
     start: &[f64],
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Option<Minimum> {
+    minimize_from(problem, start, problem.evaluate(start)?, settings, progress)
+}
+
+/// The same where the residuals and derivatives at the start, `at`, are known.
+pub fn minimize_from<P: LeastSquares>(
+    problem: &P,
+    start: &[f64],
+    mut at: Evaluated,
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Option<Minimum> {
@@ -167,7 +193,6 @@ pub fn minimize(
     let c = settings.huber;
     let counts = problem.counts();
     let mut u = start.to_vec();
-    let mut at = problem.evaluate(&u)?;
     let mut best = cost(&at.residuals, counts, c);
     if !best.is_finite() {
         return None;
@@ -197,12 +222,15 @@ pub fn minimize(
             let size = (2.0 * best).sqrt() + settings.resolution * (at.residuals.len() as f64).sqrt();
             let is_last = moved <= settings.tolerance * size;
             let next: Vec<f64> = u.iter().zip(step.iter()).map(|(u, h)| u + h).collect();
-            let found = problem.residuals(&next).map(|r| cost(&r, counts, c)).filter(|cost| cost.is_finite());
+            let found = problem.look(&next).map(|(r, look)| (cost(&r, counts, c), r, look));
+            let found = found.filter(|(cost, ..)| cost.is_finite());
             let predicted = moved * moved + 2.0 * mu * step.component_mul(&scales).norm_squared();
-            let gain = found.map_or(-1.0, |cost| 2.0 * (best - cost) / predicted);
-            if let Some(cost) = found.filter(|cost| *cost < best || (is_last && *cost <= best))
-                && let Some(evaluated) = problem.evaluate(&next)
+            let gain = found.as_ref().map_or(-1.0, |(cost, ..)| 2.0 * (best - cost) / predicted);
+            if let Some((cost, residuals, look)) =
+                found.filter(|(cost, ..)| *cost < best || (is_last && *cost <= best))
+                && let Some(jacobian) = problem.derivatives(&next, &look)
             {
+                let evaluated = Evaluated { residuals, jacobian };
                 idle = if best - cost <= f64::max(SHOWN * best, settings.nothing) { idle + 1 } else { 0 };
                 (u, at, best) = (next, evaluated, cost);
                 mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));

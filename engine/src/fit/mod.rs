@@ -6,7 +6,8 @@
 //! | [`way`] | the ways of a device along a curve with snaps |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
-//! | [`problem`] | parameters, data, residuals, derivatives |
+//! | [`problem`] | parameters, data, the paths of values |
+//! | [`derivatives`] | residuals and their derivatives |
 //! | `rings` | loading with rings of contact, which is left out |
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
 //! | [`pose`] | points and parameters of what is asked for |
@@ -24,6 +25,7 @@
 //! pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
 pub mod chance;
+pub mod derivatives;
 pub mod determined;
 pub mod distance;
 pub mod fitted;

@@ -12,12 +12,14 @@ struct Set {
 }
 
 impl LeastSquares for Set {
-    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>> {
+    type Look = ();
+
+    fn look(&self, u: &[f64]) -> Option<(DVector<f64>, ())> {
         let r = self.x.iter().zip(&self.y).map(|(x, y)| y - (self.model)(*x, u));
-        Some(DVector::from_iterator(self.x.len(), r))
+        Some((DVector::from_iterator(self.x.len(), r), ()))
     }
 
-    fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
+    fn derivatives(&self, u: &[f64], (): &()) -> Option<DMatrix<f64>> {
         let jacobian = DMatrix::from_fn(self.x.len(), u.len(), |i, j| {
             let h = 1e-6 * u[j].abs();
             let at = |h: f64| {
@@ -27,7 +29,7 @@ impl LeastSquares for Set {
             };
             -(at(h) - at(-h)) / (2.0 * h)
         });
-        Some(Evaluated { residuals: self.residuals(u)?, jacobian })
+        Some(jacobian)
     }
 }
 

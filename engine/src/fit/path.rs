@@ -14,6 +14,7 @@ use crate::problem::{Control, Reduced, Units};
 use crate::progress::Unwatched;
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::{Curve, Detail, Sample};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// x, P and s.
@@ -32,6 +33,17 @@ pub enum Foot {
     Share(f64),
 }
 
+/// What moves a path at a held contact radius by a closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mover {
+    /// E*.
+    Modulus,
+    /// γ.
+    Adhesion,
+    /// k.
+    Stiffness,
+}
+
 /// A piece of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {
@@ -46,10 +58,21 @@ pub enum Piece {
 pub struct Vertex {
     /// Where it is.
     pub at: Place,
+    /// The derivatives by s; nothing at the ends of a line.
+    pub slopes: Place,
     /// Its piece.
     pub piece: usize,
     /// s on an arc, the share on a line.
     pub along: f64,
+}
+
+/// A corner of the polyline before its piece is known.
+struct Corner {
+    at: Place,
+    slopes: Place,
+    along: f64,
+    /// Which way the curve goes there, in units of its ranges.
+    direction: Option<[f64; 2]>,
 }
 
 /// What a path must reach.
@@ -73,6 +96,8 @@ pub struct Path {
     abscissa: Abscissa,
     /// 1/k; 0 where x is no way of a spring.
     compliance: f64,
+    /// E* and γ.
+    material: [f64; 2],
     /// Its pieces, running inward.
     pub pieces: Vec<Piece>,
     /// Its corners, running inward.
@@ -133,6 +158,7 @@ impl Path {
             units,
             abscissa,
             compliance,
+            material: [preset.material.effective_modulus, preset.material.work_of_adhesion],
             pieces: Vec::new(),
             vertices: Vec::new(),
             outermost: outermost * units.length,
@@ -185,22 +211,30 @@ impl Path {
             ends[1] - ends[0]
         });
         for (piece, what) in self.pieces.iter().enumerate() {
-            let mut add = |at: Place, along: f64| vertices.push(Vertex { at, piece, along });
+            let mut add = |corner: &Corner| {
+                let Corner { at, slopes, along, .. } = *corner;
+                vertices.push(Vertex { at, slopes, piece, along });
+            };
             match what {
-                Piece::Line([before, after]) => {
-                    add(*before, 1.0);
-                    add(*after, 0.0);
+                Piece::Line(ends) => {
+                    for (at, along) in ends.iter().zip([1.0, 0.0]) {
+                        add(&Corner { at: *at, slopes: [0.0; 3], along, direction: None });
+                    }
                 }
                 Piece::Arc([outer, inner]) => {
-                    let on = |s: &f64| s < outer && s > inner;
-                    let radii = curve.samples.iter().map(|sample| sample.contact_radius * self.units.length);
-                    let radii: Vec<f64> =
-                        [*outer].into_iter().chain(radii.filter(on)).chain([*inner]).collect();
-                    for pair in radii.windows(2) {
-                        add(self.at(pair[0]).map_or([f64::NAN; 3], |(at, _)| at), pair[0]);
-                        self.bend([pair[0], pair[1]], ranges, DEEPEST, &mut add);
+                    let within = |sample: &&Sample| {
+                        let s = sample.contact_radius * self.units.length;
+                        s < *outer && s > *inner
+                    };
+                    let drawn =
+                        curve.samples.iter().filter(within).map(|sample| self.of_sample(sample, ranges));
+                    let [outer, inner] = [outer, inner].map(|s| self.corner(*s, ranges));
+                    let corners: Vec<Corner> = [outer].into_iter().chain(drawn).chain([inner]).collect();
+                    for pair in corners.windows(2) {
+                        add(&pair[0]);
+                        self.bend([&pair[0], &pair[1]], ranges, DEEPEST, &mut add);
                     }
-                    add(self.at(*inner).map_or([f64::NAN; 3], |(at, _)| at), *inner);
+                    corners.last().into_iter().for_each(&mut add);
                 }
             }
         }
@@ -208,34 +242,53 @@ impl Path {
         self.vertices = vertices;
     }
 
-    /// Adds corners between two radii where the curve turns: at a limit point it may turn back within a step.
+    /// The corner at the contact radius `s`; no number where there is no equilibrium.
+    fn corner(&self, s: f64, ranges: [f64; 2]) -> Corner {
+        let none = Corner { at: [f64::NAN; 3], slopes: [f64::NAN; 3], along: s, direction: None };
+        self.local(s).map_or(none, |(local, by_radius)| {
+            self.drawn(s, [local.approach, local.force], by_radius, ranges)
+        })
+    }
+
+    /// The corner at a state of the curve, which is there already.
+    fn of_sample(&self, sample: &Sample, ranges: [f64; 2]) -> Corner {
+        let s = sample.contact_radius * self.units.length;
+        let by_radius = [sample.slopes.approach, sample.slopes.force];
+        // On the outer side of a corner of the gap there are none.
+        if by_radius.iter().any(|slope| !slope.is_finite()) {
+            return self.corner(s, ranges);
+        }
+        self.drawn(s, [sample.approach, sample.force], by_radius, ranges)
+    }
+
+    /// The corner of a reduced state with its derivatives by the radius.
+    fn drawn(&self, s: f64, [delta, force]: [f64; 2], by_radius: [f64; 2], ranges: [f64; 2]) -> Corner {
+        let [x, p] = [by_radius[0] / ranges[0], by_radius[1] / ranges[1]];
+        let length = hypot(x, p);
+        let direction = (length > 0.0).then_some([x / length, p / length]);
+        Corner { at: self.place(s, delta, force), slopes: self.slopes(by_radius), along: s, direction }
+    }
+
+    /// Adds corners between two of them where the curve turns: at a limit point it may turn back within a step.
     fn bend(
         &self,
-        [outer, inner]: [f64; 2],
+        [outer, inner]: [&Corner; 2],
         ranges: [f64; 2],
         depth: usize,
-        add: &mut dyn FnMut(Place, f64),
+        add: &mut dyn FnMut(&Corner),
     ) {
-        let direction = |s: f64| {
-            let place =
-                self.curve.solution.place((s / self.units.length).min(self.curve.solution.reach()))?;
-            let local = self.curve.solution.at(place);
-            let [x, p] = [local.slopes[0] / ranges[0], local.slopes[1] / ranges[1]];
-            let length = hypot(x, p);
-            (length > 0.0).then_some([x / length, p / length])
-        };
         if depth == 0 {
             return;
         }
-        if let (Some(a), Some(b)) = (direction(outer), direction(inner))
+        if let (Some(a), Some(b)) = (outer.direction, inner.direction)
             && a[0] * b[0] + a[1] * b[1] < STRAIGHT
         {
-            let middle = 0.5 * (outer + inner);
-            self.bend([outer, middle], ranges, depth - 1, add);
-            if let Some((at, _)) = self.at(middle) {
-                add(at, middle);
+            let middle = self.corner(0.5 * (outer.along + inner.along), ranges);
+            self.bend([outer, &middle], ranges, depth - 1, add);
+            if middle.at[0].is_finite() {
+                add(&middle);
             }
-            self.bend([middle, inner], ranges, depth - 1, add);
+            self.bend([&middle, inner], ranges, depth - 1, add);
         }
     }
 
@@ -246,17 +299,39 @@ impl Path {
         [x, force, s]
     }
 
-    /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
-    pub fn at(&self, s: f64) -> Option<(Place, Place)> {
+    /// The reduced equilibrium of the contact radius `s`, with dδ/ds and dP/ds; `None` beyond what is known.
+    fn local(&self, s: f64) -> Option<(Local, [f64; 2])> {
         // The outermost radius may be rounded beyond what is known.
         let reduced = (s / self.units.length).min(self.curve.solution.reach());
-        let place = self.curve.solution.place(reduced)?;
-        let local = self.curve.solution.at(place);
-        let by_radius = local.slopes.map(|slope| slope / local.stretch);
-        let delta = by_radius[0];
-        let force = by_radius[1] * self.units.force / self.units.length;
+        let local = self.curve.solution.at(self.curve.solution.place(reduced)?);
+        Some((local, local.slopes.map(|slope| slope / local.stretch)))
+    }
+
+    /// The derivatives of x, P and s by s, of those of the reduced δ and P.
+    fn slopes(&self, [delta, force]: [f64; 2]) -> Place {
+        let force = force * self.units.force / self.units.length;
         let x = if self.abscissa == Abscissa::Radius { 1.0 } else { delta + self.compliance * force };
-        Some((self.place(s, local.approach, local.force), [x, force, 1.0]))
+        [x, force, 1.0]
+    }
+
+    /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
+    pub fn at(&self, s: f64) -> Option<(Place, Place)> {
+        let (local, by_radius) = self.local(s)?;
+        Some((self.place(s, local.approach, local.force), self.slopes(by_radius)))
+    }
+
+    /// How the equilibrium `at` moves for each unit of the logarithm of a value, its contact radius held.
+    #[must_use]
+    pub fn moves(&self, mover: Mover, [_, force, s]: Place) -> Place {
+        let [e, gamma] = self.material;
+        let root = (TAU * gamma * s / e).sqrt();
+        let [delta, force] = match mover {
+            Mover::Modulus => [0.5 * root, force + e * s * root],
+            Mover::Adhesion => [-0.5 * root, -e * s * root],
+            Mover::Stiffness => return [-self.compliance * force, 0.0, 0.0],
+        };
+        let x = if self.abscissa == Abscissa::Radius { 0.0 } else { delta + self.compliance * force };
+        [x, force, 0.0]
     }
 
     /// δ at the contact radius `s`.

@@ -1,7 +1,6 @@
 //! What is fitted: parameters, data, residuals and their derivatives.
 
 use super::distance::{Nearest, Scaled};
-use super::least_squares::{Evaluated, LeastSquares};
 use super::path::{Path, Place, Reach};
 use super::way::Way;
 use crate::elementary::{exp, ln};
@@ -9,7 +8,10 @@ use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
+use std::num::NonZero;
+use std::panic::resume_unwind;
+use std::thread::available_parallelism;
 
 /// What a parameter is.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,9 +123,6 @@ pub struct Problem {
     pub counts: Option<Vec<f64>>,
 }
 
-/// The step of a derivative, in u.
-const STEP: f64 = 1e-5;
-
 /// The paths of the two branches, which are one unless their adhesions or their ways differ.
 pub struct Paths {
     retraction: Path,
@@ -217,7 +216,7 @@ impl Problem {
     }
 
     /// The paths at `u`, each beginning where that of `paths` does.
-    fn beside(&self, u: &[f64], paths: &Paths) -> Option<Paths> {
+    pub(super) fn beside(&self, u: &[f64], paths: &Paths) -> Option<Paths> {
         self.paths_from(u, &|segment| Some(paths.of(segment).outermost))
     }
 
@@ -242,20 +241,39 @@ impl Problem {
 
     /// The feet of all attached points, nothing for free ones; `None` where one has none.
     pub(super) fn feet(&self, paths: &Paths, at: &Instrument) -> Option<Vec<Option<Nearest>>> {
+        /// Rows from which threads are worth their beginning.
+        const MANY: usize = 20_000;
         let weights = self.weights();
         let scaled = [Segment::Approach, Segment::Retraction].map(|of| Scaled::new(paths.of(of), weights));
-        let foot = |datum: &Datum| {
-            if datum.free {
-                return Some(None);
-            }
-            let of = &scaled[usize::from(datum.segment == Segment::Retraction)];
-            of.nearest(self.corrected(datum, at)).map(Some)
+        let part = &|part: &[Datum]| -> Option<Vec<Option<Nearest>>> {
+            let mut boxes = [0; 2];
+            let foot = |datum: &Datum| {
+                if datum.free {
+                    return Some(None);
+                }
+                let of = usize::from(datum.segment == Segment::Retraction);
+                scaled[of].nearest(self.corrected(datum, at), &mut boxes[of]).map(Some)
+            };
+            part.iter().map(foot).collect()
         };
-        self.data.iter().map(foot).collect()
+        if self.data.len() < MANY {
+            return part(&self.data);
+        }
+        let threads = available_parallelism().map_or(1, NonZero::get);
+        // Each foot is found for itself: how many threads there are changes nothing.
+        std::thread::scope(|scope| {
+            let parts = self.data.chunks(self.data.len().div_ceil(threads));
+            let parts: Vec<_> = parts.map(|rows| scope.spawn(move || part(rows))).collect();
+            let mut feet = Vec::with_capacity(self.data.len());
+            for part in parts {
+                feet.extend(part.join().unwrap_or_else(|panic| resume_unwind(panic))?);
+            }
+            Some(feet)
+        })
     }
 
     /// The residuals of given feet: one of each point, two in space, where free points have a second one that is zero.
-    fn told(&self, feet: &[Option<Nearest>], at: &Instrument) -> DVector<f64> {
+    pub(super) fn told(&self, feet: &[Option<Nearest>], at: &Instrument) -> DVector<f64> {
         let per = self.per_point();
         let mut residuals = DVector::zeros(per * self.data.len());
         for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
@@ -265,76 +283,5 @@ impl Problem {
             }
         }
         residuals
-    }
-}
-
-impl LeastSquares for Problem {
-    fn residuals(&self, u: &[f64]) -> Option<DVector<f64>> {
-        let (paths, at) = (self.paths(u)?, self.instrument_at(u));
-        Some(self.told(&self.feet(&paths, &at)?, &at))
-    }
-
-    fn evaluate(&self, u: &[f64]) -> Option<Evaluated> {
-        let (paths, at) = (self.paths(u)?, self.instrument_at(u));
-        let feet = self.feet(&paths, &at)?;
-        let residuals = self.told(&feet, &at);
-        let (per, weights) = (self.per_point(), self.weights());
-        let mut jacobian = DMatrix::zeros(residuals.len(), u.len());
-        for (j, parameter) in self.parameters.iter().enumerate() {
-            // How the scaled point moves against its foot, per unit of u.
-            let shift: Option<fn(&Datum) -> Place> = match parameter.target {
-                Target::Offset => Some(|_| [-1.0, 0.0, 0.0]),
-                Target::Baseline => Some(|_| [0.0, -1.0, 0.0]),
-                Target::Tilt => Some(|datum| [0.0, -datum.point.x, 0.0]),
-                _ => None,
-            };
-            if let (Some(shift), Some(scale)) = (shift, parameter.scale) {
-                for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
-                    let moved = shift(datum);
-                    match foot {
-                        Some(foot) => (0..per).for_each(|k| {
-                            let along: f64 =
-                                (0..3).map(|axis| foot.normals[k][axis] * moved[axis] * weights[axis]).sum();
-                            jacobian[(per * i + k, j)] = along * scale;
-                        }),
-                        None => jacobian[(per * i, j)] = moved[1] * weights[1] * scale,
-                    }
-                }
-                continue;
-            }
-            let beside = |h: f64| {
-                let mut u = u.to_vec();
-                u[j] += h;
-                let found = self.beside(&u, &paths)?;
-                let same = [Segment::Approach, Segment::Retraction]
-                    .iter()
-                    .all(|of| found.of(*of).pieces.len() == paths.of(*of).pieces.len());
-                same.then_some(found)
-            };
-            let (above, below) = (beside(STEP), beside(-STEP));
-            let (first, second, width) = match (&above, &below) {
-                (Some(above), Some(below)) => (below, above, 2.0 * STEP),
-                (Some(above), None) => (&paths, above, STEP),
-                (None, Some(below)) => (below, &paths, STEP),
-                (None, None) => return None,
-            };
-            for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
-                let Some(foot) = foot else { continue };
-                let place = |paths: &Paths| paths.of(datum.segment).foot(foot.piece, foot.foot);
-                let (a, b) = (place(first)?, place(second)?);
-                for k in 0..per {
-                    let along: f64 = (0..3)
-                        .filter(|axis| weights[*axis] > 0.0)
-                        .map(|axis| foot.normals[k][axis] * (b[axis] - a[axis]) * weights[axis])
-                        .sum();
-                    jacobian[(per * i + k, j)] = -along / width;
-                }
-            }
-        }
-        jacobian.iter().all(|x| x.is_finite()).then_some(Evaluated { residuals, jacobian })
-    }
-
-    fn counts(&self) -> Option<&[f64]> {
-        self.counts.as_deref()
     }
 }

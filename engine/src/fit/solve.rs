@@ -1,6 +1,6 @@
 //! One fit from one start, its noise measured by its own residuals.
 
-use super::least_squares::{Ending, Minimum, Settings, minimize};
+use super::least_squares::{Ending, LeastSquares, Minimum, Settings, minimize_from};
 use super::problem::Problem;
 use crate::measured::branches::median;
 use crate::progress::Progress;
@@ -21,6 +21,16 @@ pub struct Solved {
 }
 
 impl Problem {
+    /// The same with at most `most` points, evenly taken from those in contact and those apart.
+    pub(super) fn thinned(&self, most: usize) -> Self {
+        let mut thinned = self.clone();
+        let step = self.data.len().div_ceil(most).max(1);
+        let keep =
+            |free: bool| self.data.iter().filter(move |datum| datum.free == free).step_by(step).copied();
+        thinned.data = keep(false).chain(keep(true)).collect();
+        thinned
+    }
+
     /// The residuals that are there: in space those of free points have no second part.
     pub(super) fn real(&self, residuals: &DVector<f64>) -> Vec<f64> {
         let per = self.per_point();
@@ -37,8 +47,28 @@ impl Problem {
     }
 }
 
-/// Fits from `start`: rounds of a minimization and a new scale, until the scale stays.
+/// Of more rows than this a part is fitted first.
+const MANY: usize = 4000;
+
+/// Fits from `start`: rounds of a minimization and a new scale, until the scale stays. Of many rows a part, evenly taken, leads next to
+/// the end.
 pub fn solve(
+    problem: &Problem,
+    start: &[f64],
+    robust: bool,
+    rounds: usize,
+    progress: &dyn Progress,
+) -> Option<Solved> {
+    if problem.data.len() > MANY && problem.counts.is_none() {
+        let led = solve(&problem.thinned(MANY), start, robust, rounds, progress);
+        let led = led.map_or_else(|| start.to_vec(), |led| led.minimum.parameters);
+        return solve_all(problem, &led, robust, rounds, progress);
+    }
+    solve_all(problem, start, robust, rounds, progress)
+}
+
+/// The same on all rows from the beginning.
+fn solve_all(
     problem: &Problem,
     start: &[f64],
     robust: bool,
@@ -48,29 +78,41 @@ pub fn solve(
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
     const SCALES: usize = 12;
+    /// The tolerance until then, and in the end where there are many rows: a ten-thousandth of an error.
+    const ROUGH: f64 = 1e-4;
+    const FINE_OF_MANY: f64 = 1e-7;
     /// A way of so many standard errors along the best direction is none.
     const NOTHING: f64 = 1e-3;
-    let residuals = super::least_squares::LeastSquares::residuals(problem, start)?;
-    let mut scale = problem.scale(&residuals);
+    let mut at = problem.evaluate(start)?;
+    let mut scale = problem.scale(&at.residuals);
     let mut u = start.to_vec();
     let mut left = rounds;
+    // Nothing is known better than the scale: only once that has settled the end is found to all digits.
+    let fine = if problem.data.len() > MANY { FINE_OF_MANY } else { Settings::default().tolerance };
+    let mut tolerance = if robust { ROUGH } else { fine };
     for turn in 0..SCALES {
         let huber = if robust { HUBER * scale } else { f64::INFINITY };
         let settings = Settings {
             rounds: left.max(1),
+            tolerance,
             huber,
             nothing: 0.5 * (NOTHING * scale).powi(2),
             ..Settings::default()
         };
-        let minimum = minimize(problem, &u, &settings, progress)?;
+        let minimum = minimize_from(problem, &u, at, &settings, progress)?;
         left = left.saturating_sub(minimum.rounds);
         let next = problem.scale(&minimum.at.residuals);
         let same = (next / scale - 1.0).abs() <= SAME;
-        if !robust || same || left == 0 || turn + 1 == SCALES || minimum.ending != Ending::Converged {
+        let is_last = same && tolerance < ROUGH;
+        if !robust || is_last || left == 0 || turn + 1 == SCALES || minimum.ending != Ending::Converged {
             return Some(Solved { minimum, scale: next });
         }
+        if same || turn + 2 == SCALES {
+            tolerance = fine;
+        }
         scale = next;
-        u.clone_from(&minimum.parameters);
+        u = minimum.parameters;
+        at = minimum.at;
     }
     None
 }

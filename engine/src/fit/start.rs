@@ -41,16 +41,6 @@ pub struct Tried {
 }
 
 impl Problem {
-    /// The same with at most `most` points, evenly taken from those in contact and those apart.
-    fn thinned(&self, most: usize) -> Self {
-        let mut thinned = self.clone();
-        let step = self.data.len().div_ceil(most).max(1);
-        let keep =
-            |free: bool| self.data.iter().filter(move |datum| datum.free == free).step_by(step).copied();
-        thinned.data = keep(false).chain(keep(true)).collect();
-        thinned
-    }
-
     /// The mean distance at `u`.
     fn distance(&self, u: &[f64]) -> Option<f64> {
         let residuals = self.residuals(u)?;

@@ -1,0 +1,151 @@
+//! The residuals of a fit and their derivatives.
+//!
+//! At a held contact radius s, with T = √(2πγs/E*):
+//!
+//! ```text
+//! ∂δ/∂ln E* = T/2     ∂P/∂ln E* = P + E* s T     ∂δ/∂ln γ = −T/2     ∂P/∂ln γ = −E* s T     ∂Δ/∂ln k = −P/k
+//! ```
+//!
+//! So the paths beside one path are needed for values of the gap alone, and where a point lies on a jump or at an end of an arc, which move
+//! with every value.
+
+use super::distance::Nearest;
+use super::least_squares::LeastSquares;
+use super::path::{Foot, Mover, Place};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, Target};
+use crate::measured::Segment;
+use nalgebra::{DMatrix, DVector};
+
+/// The step of a difference, in u.
+const STEP: f64 = 1e-5;
+
+/// The paths at some values, and the feet of the points on them.
+pub struct Look {
+    paths: Paths,
+    feet: Vec<Option<Nearest>>,
+}
+
+/// How the scaled point moves against its foot, per unit of u.
+fn shift(target: &Target) -> Option<fn(&Datum) -> Place> {
+    match target {
+        Target::Offset => Some(|_| [-1.0, 0.0, 0.0]),
+        Target::Baseline => Some(|_| [0.0, -1.0, 0.0]),
+        Target::Tilt => Some(|datum| [0.0, -datum.point.x, 0.0]),
+        _ => None,
+    }
+}
+
+/// What of a path a parameter moves by a closed form, and on which branch alone.
+fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
+    match target {
+        Target::Key(key) if key == "material.effective_modulus" => Some((Mover::Modulus, None)),
+        Target::Key(key) if key == ADHESION => Some((Mover::Adhesion, None)),
+        Target::Key(key) if key == "path.control.stiffness" => Some((Mover::Stiffness, None)),
+        Target::Adhesion(segment) => Some((Mover::Adhesion, Some(*segment))),
+        _ => None,
+    }
+}
+
+/// The derivative of the `k`th residual of a foot that moves by `by` for each unit of u.
+fn moved(foot: &Nearest, by: Place, weights: Place, k: usize) -> f64 {
+    let part = |axis: usize| foot.normals[k][axis] * by[axis] * weights[axis];
+    -(0..3).filter(|axis| weights[*axis] > 0.0).map(part).sum::<f64>()
+}
+
+impl Problem {
+    /// The column of a value between instrument and model.
+    fn of_shift(
+        &self,
+        feet: &[Option<Nearest>],
+        (shift, scale): (fn(&Datum) -> Place, f64),
+        mut put: impl FnMut(usize, f64),
+    ) {
+        let (per, weights) = (self.per_point(), self.weights());
+        for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
+            let moved = shift(datum);
+            match foot {
+                Some(foot) => (0..per).for_each(|k| {
+                    let along: f64 =
+                        (0..3).map(|axis| foot.normals[k][axis] * moved[axis] * weights[axis]).sum();
+                    put(per * i + k, along * scale);
+                }),
+                None => put(per * i, moved[1] * weights[1] * scale),
+            }
+        }
+    }
+
+    /// The paths on either side of `u` in the parameter `j`, with the step between them; where one has other snaps, that of `paths`.
+    fn either_side(&self, u: &[f64], j: usize, paths: &Paths) -> Option<([Option<Paths>; 2], f64)> {
+        let beside = |h: f64| {
+            let mut u = u.to_vec();
+            u[j] += h;
+            let found = self.beside(&u, paths)?;
+            let same = [Segment::Approach, Segment::Retraction]
+                .iter()
+                .all(|of| found.of(*of).pieces.len() == paths.of(*of).pieces.len());
+            same.then_some(found)
+        };
+        match (beside(-STEP), beside(STEP)) {
+            (None, None) => None,
+            (below, above) => {
+                let width = if below.is_some() && above.is_some() { 2.0 * STEP } else { STEP };
+                Some(([below, above], width))
+            }
+        }
+    }
+
+    /// The column of a value of the model.
+    fn of_model(&self, u: &[f64], j: usize, look: &Look, mut put: impl FnMut(usize, f64)) -> Option<()> {
+        let Look { paths, feet } = look;
+        let (per, weights) = (self.per_point(), self.weights());
+        let closed = mover(&self.parameters[j].target);
+        let mut beside = None;
+        for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
+            let Some(foot) = foot else { continue };
+            let by = match (closed, foot.foot) {
+                (Some((_, Some(segment))), _) if segment != datum.segment => continue,
+                (Some((mover, _)), Foot::Radius(_)) => paths.of(datum.segment).moves(mover, foot.at),
+                _ => {
+                    if beside.is_none() {
+                        beside = Some(self.either_side(u, j, paths)?);
+                    }
+                    let ([below, above], width) = beside.as_ref()?;
+                    let place = |side: &Option<Paths>| {
+                        side.as_ref().unwrap_or(paths).of(datum.segment).foot(foot.piece, foot.foot)
+                    };
+                    let (a, b) = (place(below)?, place(above)?);
+                    std::array::from_fn(|axis| (b[axis] - a[axis]) / width)
+                }
+            };
+            (0..per).for_each(|k| put(per * i + k, moved(foot, by, weights, k)));
+        }
+        Some(())
+    }
+}
+
+impl LeastSquares for Problem {
+    type Look = Look;
+
+    fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Look)> {
+        let (paths, at): (Paths, Instrument) = (self.paths(u)?, self.instrument_at(u));
+        let feet = self.feet(&paths, &at)?;
+        Some((self.told(&feet, &at), Look { paths, feet }))
+    }
+
+    fn derivatives(&self, u: &[f64], look: &Look) -> Option<DMatrix<f64>> {
+        let mut jacobian = DMatrix::zeros(self.per_point() * self.data.len(), u.len());
+        for (j, Parameter { target, scale, .. }) in self.parameters.iter().enumerate() {
+            let mut column = jacobian.column_mut(j);
+            let put = |row: usize, derivative: f64| column[row] = derivative;
+            match (shift(target), scale) {
+                (Some(shift), Some(scale)) => self.of_shift(&look.feet, (shift, *scale), put),
+                _ => self.of_model(u, j, look, put)?,
+            }
+        }
+        jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
+    }
+
+    fn counts(&self) -> Option<&[f64]> {
+        self.counts.as_deref()
+    }
+}
