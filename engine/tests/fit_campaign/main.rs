@@ -1,0 +1,30 @@
+//! Fits of made curves, beside what is true: every value is right, or it is said that it is not to be believed.
+//!
+//! The generators share no code with the engine: `bodies` has closed forms, `device` what a device sees of them, `record` the faults
+//! of an instrument and the text of its file, `kinds` the kinds of curves.
+//!
+//! `cargo test -p pulloff-engine --test fit_campaign` tries a few seeds of each kind. The thousand seeds of each of nine kinds, and a hundred of each of the
+//! others:
+//!
+//! ```text
+//! cargo test --release -p pulloff-engine --test fit_campaign -- --ignored --nocapture
+//! ```
+//!
+//! `PULLOFF_CAMPAIGN=17..18` before that line runs those numbers alone, `PULLOFF_KIND=tilt` one kind, and `PULLOFF_FINDINGS=FOLDER` keeps
+//! the curves that are judged wrongly, each with the command that fits it.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small counts")]
+#![allow(clippy::float_cmp, reason = "what is 0 was set to it")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "no code is shared with the engine, its elementary functions neither"
+)]
+
+mod bodies;
+mod campaign;
+mod device;
+mod kinds;
+mod record;
+mod rows;
+mod trial;
