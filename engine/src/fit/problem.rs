@@ -1,4 +1,4 @@
-//! What is fitted: parameters, data, residuals and their derivatives.
+//! What is fitted: parameters, data, the paths of values and the feet of points on them.
 
 use super::distance::{Nearest, Scaled};
 use super::path::{Path, Place, Reach};
