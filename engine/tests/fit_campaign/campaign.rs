@@ -140,7 +140,7 @@ fn values_of_plain_kinds_are_right() {
 }
 
 #[test]
-#[ignore = "a fit has no verdict yet"]
+#[ignore = "clipped, doubled, tared and long-ranged curves are still trusted"]
 fn values_of_some_seeds_are_right_or_said_to_be_none() {
     let failures = campaign(&all(), &asked(0..4), false);
     assert!(failures.is_empty(), "{failures:#?}");
