@@ -156,7 +156,7 @@ CALLS = [
     (lambda: Problem.from_gap(np.asfortranarray(np.stack([R, R]).T)[:, 0], R**2 / 2, **OF), lambda made: made.trace().row_count > 0),
     (lambda: Problem.from_gap(0.8, lambda r: r[:, None] ** 2, **OF), PresetError),
     (lambda: Problem.from_gap(0.8, lambda r: None, **OF), ANY),
-    (lambda: Problem.from_gap(0.8, lambda r: (r.fill(1.0), r**2)[1], **OF), ANY),
+    (lambda: Problem.from_gap(0.8, lambda r: (r.fill(1.0), r**2)[1], **OF), lambda made: made == Problem.from_gap(0.8, np.ones_like, **OF)),
     (lambda: Problem.from_gap(0.8, lambda r: (r.__imul__(r), r / 2)[1], **OF), lambda made: made == Problem.from_gap(0.8, lambda r: r * r / 2, **OF)),
     (lambda: Problem.from_gap(0.8, lambda r: np.random.default_rng(1).random(r.size), **OF), NotCertified),
     (lambda: Problem.from_gap(0.8, lambda r: r**2, tolerance=0.0, **OF), PresetError),
