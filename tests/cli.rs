@@ -593,12 +593,18 @@ fn a_result_goes_to_a_file_whole() {
     let expected = home.quiet(&short("trace", &[]));
     let file = home.path("curve.csv");
     fs::write(&file, "old").unwrap();
-    assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv"])), "");
+    home.refused(
+        &short("trace", &["-o", "curve.csv"]),
+        &["pulloff: -o curve.csv: exists already; --overwrite replaces it"],
+    );
+    assert_eq!(fs::read_to_string(&file).unwrap(), "old");
+    assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv", "--overwrite"])), "");
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
     // Nothing temporary stays behind.
     assert_eq!(names(home.folder()), ["curve.csv"]);
     // A failed run leaves the old file alone.
-    home.refused(&short("trace", &["-o", "curve.csv", "--set", "basis.rings=1"]), &["basis.rings"]);
+    let failed = ["-o", "curve.csv", "--overwrite", "--set", "basis.rings=1"];
+    home.refused(&short("trace", &failed), &["basis.rings"]);
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
 }
 
@@ -614,8 +620,9 @@ fn what_is_read_is_not_written_over() {
         .collect::<Vec<_>>()
         .concat();
     home.file("scan.csv", &rows);
-    for (command, file) in [("trace", "./mine.toml"), ("unload", "mine.toml"), ("trace", "scan.csv")] {
-        home.refused(&[command, "mine.toml", "-o", file], &["that is read"]);
+    std::os::unix::fs::symlink("mine.toml", home.path("mine.csv")).unwrap();
+    for (command, file) in [("trace", "./mine.csv"), ("unload", "mine.csv"), ("trace", "scan.csv")] {
+        home.refused(&[command, "mine.toml", "-o", file, "--overwrite"], &["that is read"]);
     }
     assert_eq!((home.text("mine.toml"), home.text("scan.csv")), (preset.to_owned(), rows));
 }

@@ -18,7 +18,16 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     let home = Home::new();
     let ended = home.run(
         &[
-            &["fit", "shipped:lens.csv", "lens", "--json", "-o", "fitted.toml", "--residuals", "r.csv"],
+            &[
+                "fit",
+                "shipped:lens.csv",
+                "lens",
+                "--format=json",
+                "-o",
+                "fitted.toml",
+                "--residuals",
+                "r.csv",
+            ],
             &FREE[..],
         ]
         .concat(),
@@ -50,7 +59,8 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
 #[test]
 fn what_is_not_determined_has_a_status_of_its_own() {
     let home = Home::new();
-    let ended = home.run(&["fit", "shipped:lens.csv", "lens", "--free", "R,E*,gamma,data.offset", "--json"]);
+    let ended =
+        home.run(&["fit", "shipped:lens.csv", "lens", "--free", "R,E*,gamma,data.offset", "--format=json"]);
     assert_eq!(ended.status, 3, "{}", ended.err);
     let document: Value = serde_json::from_str(&ended.out).unwrap();
     assert!(document["direction"].as_str().unwrap().starts_with("R +10 %, E* −4.7 %, γ −9.1 % together"));
@@ -61,7 +71,7 @@ fn what_is_not_determined_has_a_status_of_its_own() {
 fn a_model_that_does_not_describe_the_points_has_a_status_of_its_own() {
     let home = Home::new();
     let wrong = [
-        &["fit", "shipped:lens.csv", "lens", "--json", "--set", "path.control.stiffness=300 N/m"],
+        &["fit", "shipped:lens.csv", "lens", "--format=json", "--set", "path.control.stiffness=300 N/m"],
         &FREE[..],
     ]
     .concat();

@@ -28,7 +28,8 @@ const PAGES: [&str; 6] = [
     "examples/cluster/README.md",
 ];
 /// The generated parts; each is in some file.
-const PARTS: [&str; 13] = [
+const PARTS: [&str; 14] = [
+    "options",
     "screen",
     "keys",
     "exit statuses",
@@ -122,10 +123,133 @@ fn screen() -> String {
     })
 }
 
+/// The options that many commands have, by their long names.
+const SHARED: [&str; 7] = ["set", "control", "output", "format", "overwrite", "quiet", "strict"];
+
+/// The options of [`SHARED`] that each command has; this is what they are to be.
+const MATRIX: [(&str, &str); 21] = [
+    ("pulloff", "set control"),
+    ("trace", "set control output format overwrite quiet strict"),
+    ("unload", "set control output format overwrite quiet strict"),
+    ("cycle", "set control output format overwrite quiet strict"),
+    ("map", "set control output format overwrite quiet strict"),
+    ("fit", "set control output format overwrite quiet strict"),
+    // A figure has a format of its own, by its ending.
+    ("plot", "set control output overwrite quiet strict"),
+    // Their presets are those of the paper.
+    ("figures", "output overwrite quiet strict"),
+    // Rows are CSV as they come.
+    ("sweep", "set control output overwrite quiet strict"),
+    ("sweep merge", "output overwrite quiet strict"),
+    ("sweep check", "quiet strict"),
+    ("sweep quantities", ""),
+    // It has problems of its own and warns of nothing.
+    ("verify", "output format overwrite"),
+    // The lines of a script name files and formats.
+    ("run", "set control overwrite quiet strict"),
+    ("presets list", ""),
+    ("presets show", ""),
+    ("presets delete", ""),
+    ("presets path", ""),
+    ("sessions list", ""),
+    ("sessions show", "format"),
+    ("sessions delete", ""),
+];
+
+/// Each command of the program with its name behind `pulloff`.
+fn commands() -> Vec<(String, clap::Command)> {
+    let whole = pulloff::cli::command();
+    let mut commands = vec![("pulloff".to_owned(), whole.clone())];
+    for command in whole.get_subcommands().filter(|command| command.get_name() != "help") {
+        let name = command.get_name();
+        let inner = command.get_subcommands().filter(|inner| inner.get_name() != "help");
+        if command.get_arguments().any(|argument| argument.get_id() != "help") || !command.has_subcommands() {
+            commands.push((name.to_owned(), command.clone()));
+        }
+        commands.extend(inner.map(|inner| (format!("{name} {}", inner.get_name()), inner.clone())));
+    }
+    commands
+}
+
+fn option<'a>(command: &'a clap::Command, long: &str) -> Option<&'a clap::Arg> {
+    command.get_arguments().find(|argument| argument.get_long() == Some(long))
+}
+
+/// The table of commands and options; commands with none of these are left out.
+fn options() -> String {
+    let mut text = String::from("| command |");
+    for long in SHARED {
+        let short = if long == "output" { "`-o`, " } else { "" };
+        write!(text, " {short}`--{long}` |").unwrap();
+    }
+    writeln!(text, "\n|---|{}", "---|".repeat(SHARED.len())).unwrap();
+    for (name, command) in commands() {
+        if SHARED.iter().all(|long| option(&command, long).is_none()) {
+            continue;
+        }
+        write!(text, "| `{name}` |").unwrap();
+        for long in SHARED {
+            let cell = match option(&command, long) {
+                None => "",
+                Some(argument) if long == "output" => &*argument.get_value_names().unwrap()[0],
+                Some(_) => "yes",
+            };
+            write!(text, " {cell} |").unwrap();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[test]
+fn every_command_has_the_shared_options_that_it_has_something_for() {
+    let commands = commands();
+    let has = |command: &clap::Command| {
+        let shared = SHARED.into_iter().filter(|long| option(command, long).is_some());
+        shared.collect::<Vec<_>>().join(" ")
+    };
+    for (name, command) in &commands {
+        let wanted = MATRIX.iter().find(|(known, _)| known == name).map_or("", |(_, wanted)| *wanted);
+        assert_eq!(has(command), wanted, "{name}");
+        // What is written can be replaced, what takes values takes a control, and warnings go together.
+        for [one, other] in [["output", "overwrite"], ["set", "control"], ["quiet", "strict"]] {
+            let [one, other] = [one, other].map(|long| option(command, long).is_some());
+            assert!(one == other || name == "run" && other, "{name}");
+        }
+        // One word for one thing.
+        for former in ["json", "csv", "force", "out", "replace", "silent"] {
+            assert!(option(command, former).is_none(), "{name} has --{former}");
+        }
+    }
+    for (name, _) in MATRIX {
+        assert!(commands.iter().any(|(known, _)| known == name), "there is no {name}");
+    }
+    // Everywhere the same words, short form and values.
+    for long in SHARED {
+        let all = commands.iter().filter_map(|(name, command)| Some((name, option(command, long)?)));
+        let own = ["figures", "sweep", "sweep merge"];
+        let all: Vec<_> = all.filter(|(name, _)| long != "output" || !own.contains(&name.as_str())).collect();
+        let said = |argument: &clap::Arg| {
+            let values: Vec<_> =
+                argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+            let help = argument.get_help().map(ToString::to_string);
+            (help, argument.get_short(), values, argument.get_value_names().map(<[_]>::to_vec))
+        };
+        for (name, argument) in &all {
+            assert_eq!(said(argument), said(all[0].1), "--{long} of {name}");
+        }
+    }
+    let formats = option(&commands.iter().find(|(name, _)| name == "fit").unwrap().1, "format").unwrap();
+    let names: Vec<_> =
+        formats.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+    assert_eq!(names, ["table", "csv", "json"]);
+}
+
 /// The text of a generated part.
 fn generated(name: &str) -> String {
     let fenced = |language: &str, text: &str| format!("```{language}\n{text}```\n");
     match name.split_once(": ") {
+        None if name == "options" => options(),
         None if name == "screen" => fenced("text", &screen()),
         None if name == "exit statuses" => pulloff::cli::Status::markdown(),
         None if name == "keys" => pulloff::tui::keymap::markdown(),

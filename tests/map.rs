@@ -177,9 +177,12 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("path.start_contact_radius=0.2..20"), "at most 10 x the radius of curvature"),
         (
             [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.csv".into()]].concat(),
-            "exists already",
+            "-o there.csv: exists already; --overwrite replaces it",
         ),
-        ([over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.txt".into()]].concat(), "there.txt"),
+        (
+            [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.gif".into()]].concat(),
+            "a figure's in .svg, .png or .pdf",
+        ),
     ];
     for (arguments, words) in cases {
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();

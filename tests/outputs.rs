@@ -108,30 +108,34 @@ fn the_ending_of_a_file_is_its_format() {
     home.file("s.toml", SPEC);
     for command in ["trace", "unload"] {
         let json: serde_json::Value = {
-            assert_eq!(home.quiet(&[command, "fig-3-jkr", "-o", "r.json"]), "");
+            assert_eq!(home.quiet(&[command, "fig-3-jkr", "-o", "r.json", "--overwrite"]), "");
             serde_json::from_str(&home.text("r.json")).unwrap()
         };
         assert_eq!(json["schema"], 1);
-        home.quiet(&[command, "fig-3-jkr", "-o", "R.CSV"]);
+        home.quiet(&[command, "fig-3-jkr", "-o", "R.CSV", "--overwrite"]);
         let text = home.text("R.CSV");
         assert!(
             text.lines().next().unwrap().contains(",contact_radius,") || text.starts_with("kind,"),
             "{text}"
         );
+        home.quiet(&[command, "fig-3-jkr", "-o", "none", "--format=csv", "--overwrite"]);
         home.refused(
             &[command, "fig-3-jkr", "-o", "x.json", "--format", "csv"],
             &["-o x.json: its ending says json, --format says csv"],
         );
         home.refused(&[command, "fig-3-jkr", "-o", "x.csv", "--format=json"], &["its ending says csv"]);
         // No ending, or one that says nothing.
-        home.quiet(&[command, "fig-3-jkr", "-o", "r.txt", "--format=json"]);
+        home.quiet(&[command, "fig-3-jkr", "-o", "r.txt", "--format=json", "--overwrite"]);
         assert!(home.text("r.txt").starts_with('{'));
     }
     home.refused(&["unload", "fig-3-jkr", "-o", "x.csv", "--format=table"], &["--format says table"]);
-    home.refused(&["sweep", "s.toml", "-o", "x.json"], &["-o x.json: the results of a sweep are CSV"]);
+    home.refused(
+        &["sweep", "s.toml", "-o", "x.json"],
+        &["-o x.json: is written as CSV, and its file ends in .csv or .txt"],
+    );
     home.refused(
         &["sweep", "merge", "1.csv", "-o", "x.json"],
-        &["-o x.json: the results of a sweep are CSV"],
+        &["-o x.json: is written as CSV, and its file ends in .csv or .txt"],
     );
     home.refused(&["plot", "fig-3-jkr", "-o", "x.json"], &["x.json: a figure's file ends in .svg"]);
     assert!(!home.path("x.json").exists() && !home.path("x.csv").exists());
@@ -149,7 +153,8 @@ fn presets_specs_and_scripts_come_through_pipes() {
                 "wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]",
                 "p.toml\"",
             )
-            .replace("gap.amplitude", "gap.radius_of_curvature"),
+            .replace("gap.amplitude", "gap.radius_of_curvature")
+            .replace("[0.001, 0.002]", "[1, 2]"),
     );
     home.file("walk.pulloff", "step\nexport walk walk.csv replace\n");
     fifo(&home, "pipe.toml");
@@ -208,12 +213,12 @@ fn read_only_files_are_not_replaced() {
     home.file("save.pulloff", "set material.work_of_adhesion=0.005\nsave replace\n");
     home.file("export.pulloff", "export curve out.csv replace\n");
     for line in [
-        "trace fig-3-jkr -o out.csv",
-        "unload fig-3-jkr -o out.csv",
-        "plot fig-3-jkr -o out.svg",
+        "trace fig-3-jkr -o out.csv --overwrite",
+        "unload fig-3-jkr -o out.csv --overwrite",
+        "plot fig-3-jkr -o out.svg --overwrite",
         "sweep s.toml -o out.csv --overwrite",
         "sweep merge 1.csv 2.csv -o out.csv --overwrite",
-        "figures -o fig",
+        "figures -o fig --overwrite",
         "run save.pulloff --preset mine --overwrite --anywhere",
         "run export.pulloff --overwrite",
     ] {

@@ -123,28 +123,21 @@ fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn data_replace_nothing_but_data_of_a_figure() {
+fn a_figure_and_its_data_replace_nothing_unasked() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
-    let results = "row,gap.amplitude,enhancement,error\n0,0.001,1.2,\n";
-    for text in [results, "", "name,curve\n", "r,h\n0,0\n"] {
-        std::fs::write(file("jkr.csv"), text).unwrap();
-        let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "jkr.svg"]);
-        assert_eq!(status, Some(2), "{said}");
-        assert!(
-            said.contains("--data jkr.csv: exists already and does not hold the data of a figure"),
-            "{said}"
-        );
-        assert_eq!(std::fs::read_to_string(file("jkr.csv")).unwrap(), text);
-        assert!(!file("jkr.svg").exists(), "nothing is drawn before");
-    }
-    // Without --data it is none of our business, and our own data are replaced.
+    let with_data = ["fig-3-jkr", "--data", "-o", "jkr.svg"];
+    std::fs::write(file("jkr.csv"), "r,h\n0,0\n").unwrap();
+    let (status, said) = refused(folder.path(), &with_data);
+    assert!(status == Some(2) && said.contains("--data jkr.csv: exists already; --overwrite"), "{said}");
+    assert_eq!(std::fs::read_to_string(file("jkr.csv")).unwrap(), "r,h\n0,0\n");
+    assert!(!file("jkr.svg").exists(), "nothing is drawn before");
+    // Without --data it is none of our business.
     assert_eq!(refused(folder.path(), &["fig-3-jkr", "-o", "jkr.svg"]).0, Some(0));
-    std::fs::remove_file(file("jkr.csv")).unwrap();
-    assert_eq!(refused(folder.path(), &["fig-3-jkr", "--data", "-o", "jkr.svg"]).0, Some(0));
-    let reduced = std::fs::read_to_string(file("jkr.csv")).unwrap();
-    assert_eq!(refused(folder.path(), &["fig-3-jkr", "--raw", "--data", "-o", "jkr.svg"]).0, Some(0));
-    assert_ne!(std::fs::read_to_string(file("jkr.csv")).unwrap(), reduced);
+    let (status, said) = refused(folder.path(), &with_data);
+    assert!(status == Some(2) && said.contains("-o jkr.svg: exists already; --overwrite"), "{said}");
+    assert_eq!(refused(folder.path(), &[&with_data[..], &["--overwrite"]].concat()).0, Some(0));
+    assert!(std::fs::read_to_string(file("jkr.csv")).unwrap().starts_with("name,curve,"));
     let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "-"]);
     assert!(status == Some(2) && said.contains("--data: the data stand beside the file"), "{said}");
     std::fs::create_dir(file("folder.csv")).unwrap();
@@ -166,11 +159,11 @@ fn neither_the_figure_nor_its_data_replace_what_is_read() {
     let preset = String::from_utf8(preset).unwrap();
     let line = preset.lines().find(|line| line.trim_start().starts_with("file = ")).unwrap();
     std::fs::write(file("mine.toml"), preset.replace(line, "file = \"rows.csv\"")).unwrap();
-    let (status, said) = refused(folder.path(), &["./mine.toml", "--data", "-o", "rows.svg"]);
+    let (status, said) = refused(folder.path(), &["./mine.toml", "--data", "-o", "rows.svg", "--overwrite"]);
     assert!(status == Some(2) && said.contains("is the file of the profile that is read"), "{said}");
     assert!(!file("rows.svg").exists());
     std::os::unix::fs::symlink("mine.toml", file("mine.svg")).unwrap();
-    let (status, said) = refused(folder.path(), &["./mine.toml", "-o", "mine.svg"]);
+    let (status, said) = refused(folder.path(), &["./mine.toml", "-o", "mine.svg", "--overwrite"]);
     assert!(
         status == Some(2) && said.contains("-o ") && said.contains("is the file of the preset that"),
         "{said}"

@@ -107,7 +107,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     ] {
         home.fails(script, &[], 2, said);
     }
-    home.fails("open cone", &preset, 2, "--preset and --set would be lost");
+    home.fails("open cone", &preset, 2, "--preset, --set and --control would be lost");
     home.fails("step", &["--preset", "none"], 2, "no preset is called");
     home.fails(&"#\n".repeat(600_000), &[], 2, "more than the 1048576 bytes");
     let output = home.run("step 2\nnext-limit\n", &["--verbose"]);
@@ -192,8 +192,8 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     assert!(outside.exists() && home.at("y.csv").exists());
     // Replacing.
     fs::write(here.join("a.csv"), "mine").unwrap();
-    home.fails("export walk a.csv", &[], 2, "a.csv exists: not exported");
-    home.fails("export walk a.csv replace", &[], 2, "only with --overwrite");
+    home.fails("export walk a.csv", &[], 2, "a.csv: exists already; --overwrite replaces it");
+    home.fails("export walk a.csv replace", &[], 2, "--overwrite replaces it");
     assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
     assert_ne!(fs::read(here.join("a.csv")).unwrap(), b"mine");

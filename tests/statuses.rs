@@ -132,14 +132,14 @@ fn what_the_person_can_mend_is_2() {
         "sweep s.toml -o there/mine.csv",
         "sweep merge 1.csv 2.csv -o there/mine.csv",
         "run exists.pulloff",
-        "trace -o marked.csv",
-        "unload -o marked.csv",
-        "plot -o marked.svg",
+        "trace -o marked.csv --overwrite",
+        "unload -o marked.csv --overwrite",
+        "plot -o marked.svg --overwrite",
         "sweep s.toml -o marked.csv --overwrite",
         "sweep merge 1.csv 2.csv -o marked.csv --overwrite",
         "run marked.pulloff --overwrite",
         "run outside.pulloff",
-        "figures -o marked",
+        "figures -o marked --overwrite",
         // Parts of a sweep that do not fit, and what is not done without a yes.
         "sweep merge 1.csv -o x.csv",
         "sweep merge 1.csv 1.csv -o x.csv",
@@ -284,10 +284,10 @@ fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
         home.file(name, text);
     }
     for line in [
-        "trace fig-9 -o old.csv",
-        "unload random-waves -o old.json",
-        "plot fig-9 -o old.svg",
-        "figures -o figures",
+        "trace fig-9 -o old.csv --overwrite",
+        "unload random-waves -o old.json --overwrite",
+        "plot fig-9 -o old.svg --overwrite",
+        "figures -o figures --overwrite",
         "trace fig-9 >new.csv",
         "trace fig-9 -o /dev/stdout >new.csv",
         "run fine.pulloff --preset fig-9 --overwrite",

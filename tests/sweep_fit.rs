@@ -48,7 +48,7 @@ fn a_row_is_the_fit_of_its_file_and_says_why_there_is_none() {
     assert_eq!(rows.len(), 4, "{text}");
     for (row, file) in rows.iter().zip(["shipped:lens.csv", "half.csv"]) {
         assert_eq!((row[1], row[11]), (file, ""), "{text}");
-        let found = home.run(&["fit", "lens", "--json", "--set", &format!("data.file={file}")]).out;
+        let found = home.run(&["fit", "lens", "--format=json", "--set", &format!("data.file={file}")]).out;
         let found: serde_json::Value = serde_json::from_str(&found).unwrap();
         let of = |key: &str, what: &str| {
             let all = found["parameters"].as_array().unwrap();

@@ -199,7 +199,7 @@ fn the_program_writes_a_table_or_json_and_nothing_else() {
     let rows = GROUPS.iter().map(|group| group.rows.len()).sum::<usize>();
     assert_eq!(table.lines().last(), Some(format!("{rows} of {rows} pass").as_str()));
 
-    let (status, text, error) = run(&["--json", "--only", "smooth sphere"]);
+    let (status, text, error) = run(&["--format=json", "--only", "smooth sphere"]);
     assert_eq!((status, error.as_str()), (0, ""));
     let json: Value = serde_json::from_str(&text).unwrap();
     let keys = |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };

@@ -1,18 +1,23 @@
 //! What assignments on the command line did that their text does not show, on standard error: the values that a group
 //! changed, and bare numbers of an SI preset that may have been meant in another unit.
 
-use super::console::warn;
+use super::console::Console;
 use crate::store::{Source, Store};
 use pulloff_engine::preset::{Preset, Value, groups};
 use pulloff_engine::units::number::short;
 use pulloff_engine::units::parse_quantity;
-use std::io::Write;
 
 /// A bare number further than this factor from the preset's own value is worth a word.
 const FAR: f64 = 1e3;
 
 /// Reports what the assignments made of the preset from `source`, which is now `after`.
-pub(super) fn report(store: &Store, source: &Source, assignments: &[String], after: &Preset) {
+pub(super) fn report(
+    console: &Console,
+    store: &Store,
+    source: &Source,
+    assignments: &[String],
+    after: &Preset,
+) {
     let parted =
         || assignments.iter().filter_map(|text| text.split_once('=')).map(|(key, text)| (key.trim(), text));
     let is_group = |key: &str| groups::row(key).is_some();
@@ -22,12 +27,7 @@ pub(super) fn report(store: &Store, source: &Source, assignments: &[String], aft
             .filter(|text| !is_group(text.split('=').next().unwrap_or_default().trim()))
             .collect();
         if let Ok(before) = store.load(source, &rest) {
-            // Nobody may be listening.
-            let _ = writeln!(
-                std::io::stderr(),
-                "pulloff: note: groups changed {}",
-                changed(&before.preset, after)
-            );
+            console.note(Some(&format!("groups changed {}", changed(&before.preset, after))));
         }
     }
     let bare = |text: &str| parse_quantity(text).is_ok_and(|value| value.unit.is_none());
@@ -35,7 +35,7 @@ pub(super) fn report(store: &Store, source: &Source, assignments: &[String], aft
         && let Ok(own) = store.load(source, &[] as &[&str])
     {
         let far = parted().filter(|(_, text)| bare(text)).filter_map(|(key, _)| far(&own.preset, after, key));
-        warn(&far.collect::<Vec<_>>());
+        console.warn(&far.collect::<Vec<_>>());
     }
 }
 

@@ -16,6 +16,6 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, mut command: Command) -> Result<ExitCode, Failure> {
     let mut text = Vec::new();
     generate(arguments.shell, &mut command, "pulloff", &mut text);
-    output::write(&String::from_utf8_lossy(&text), None)?;
+    output::print(text)?;
     Ok(ExitCode::SUCCESS)
 }

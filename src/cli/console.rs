@@ -1,9 +1,81 @@
-//! What goes to standard error: warnings, notes, questions.
+//! What goes to standard error: warnings, notes, questions, how far a command is; and what `--quiet` and `--strict` make of it.
 
 use super::Failure;
-use pulloff_engine::report::OverlapReport;
+use super::watch::{Bar, Stop};
+use clap::Args;
+use std::cell::Cell;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
+
+/// What is said on standard error, and what a warning means.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub struct Messages {
+    /// Say nothing on standard error but why the command failed: no warnings, no notes, no progress
+    #[arg(long, short)]
+    quiet: bool,
+    /// Exit with status 3 after a warning; the result is written all the same
+    #[arg(long)]
+    strict: bool,
+}
+
+/// Standard error, as a command uses it.
+#[derive(Debug, Default)]
+pub struct Console {
+    messages: Messages,
+    warned: Cell<usize>,
+}
+
+impl Messages {
+    /// For a command that begins now.
+    pub fn open(self) -> Console {
+        Console { messages: self, warned: Cell::new(0) }
+    }
+}
+
+impl Console {
+    /// Writes a line; nobody may be listening.
+    pub fn say(&self, text: &str) {
+        if !self.messages.quiet {
+            let _ = writeln!(std::io::stderr(), "pulloff: {text}");
+        }
+    }
+
+    /// Warnings, one line each, which `--strict` counts.
+    pub fn warn(&self, warnings: &[String]) {
+        self.warned.set(self.warned.get() + warnings.len());
+        for warning in warnings {
+            self.say(&format!("warning: {warning}"));
+        }
+    }
+
+    /// What is worth knowing, where the result has no place for it.
+    pub fn note(&self, text: Option<&str>) {
+        if let Some(text) = text {
+            self.say(&format!("note: {text}"));
+        }
+    }
+
+    /// The share that is done.
+    pub fn bar<'a>(&self, stop: Option<&'a Stop>) -> Bar<'a> {
+        Bar::begin(stop, self.is_quiet())
+    }
+
+    pub fn is_quiet(&self) -> bool {
+        self.messages.quiet
+    }
+
+    /// The end of a command that succeeded and has written its result: with `--strict` a failure after a warning.
+    pub fn end(&self) -> Result<ExitCode, Failure> {
+        if !self.messages.strict || self.warned.get() == 0 {
+            return Ok(ExitCode::SUCCESS);
+        }
+        let warnings = match self.warned.get() {
+            1 => "a warning".to_owned(),
+            count => format!("{count} warnings"),
+        };
+        Err(Failure::Doubtful(format!("the result was written, with {warnings}, which --strict forbids")))
+    }
+}
 
 /// Asks on standard error; any answer but `y` or `yes` is no.
 pub(super) fn ask(question: &str) -> Result<(), Failure> {
@@ -16,28 +88,5 @@ pub(super) fn ask(question: &str) -> Result<(), Failure> {
     match answer.trim() {
         "y" | "yes" if read.is_ok() => Ok(()),
         _ => Err(Failure::Usage("not deleted".to_owned())),
-    }
-}
-
-/// With `--strict` a failure where the result, which has been written, has inadmissible states.
-pub(super) fn admissible(strict: bool, overlaps: &[OverlapReport]) -> Result<ExitCode, Failure> {
-    if strict && !overlaps.is_empty() {
-        let text = "the result was written, but has inadmissible states, which --strict forbids";
-        return Err(Failure::Doubtful(text.to_owned()));
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Writes warnings to standard error, one line each.
-pub(super) fn warn(warnings: &[String]) {
-    for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "pulloff: warning: {warning}");
-    }
-}
-
-/// What is worth knowing, where the result has no place for it.
-pub(super) fn note(text: Option<&str>) {
-    if let Some(text) = text {
-        let _ = writeln!(std::io::stderr(), "pulloff: note: {text}");
     }
 }

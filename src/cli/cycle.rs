@@ -1,10 +1,12 @@
 //! `pulloff cycle`: the whole loop of loading and unloading, with rings of contact.
 
-use super::console::{note, warn};
+use super::Failure;
+use super::console::Messages;
+use super::format::{Format, FormatArgument};
+use super::output::Destination;
 use super::problem::Problem;
-use super::watch::{Bar, Stop};
-use super::{Failure, output};
-use clap::{Args, ValueEnum};
+use super::watch::Stop;
+use clap::Args;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::schema::TURN_KEYS;
@@ -12,7 +14,6 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::cycle::{Areas, Turn};
 use pulloff_engine::report::cycle::COLUMNS;
 use pulloff_engine::report::{CycleReport, columns, cycle_table, json};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The arguments of `pulloff cycle`.
@@ -20,24 +21,17 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
-    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
-    #[arg(long, value_name = "CONTROL")]
-    control: Option<String>,
     #[command(flatten)]
     turn: TurnArguments,
     /// Compute losses by energy alone: faster, and without the balance of energy and areas
     #[arg(long)]
     no_area: bool,
-    /// table is for reading; csv has one row per contact of each state; json has everything [default: by the ending of the
-    /// file, else table]
-    #[arg(long, value_enum)]
-    format: Option<Format>,
-    /// Exit with status 3 where the result carries a warning
-    #[arg(long)]
-    strict: bool,
-    /// Write to this file instead of standard output, which is -
-    #[arg(short, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
 }
 
 /// Where the loop turns round; instead of what the preset says.
@@ -57,13 +51,6 @@ struct TurnArguments {
     /// Turn round at this value of what is controlled: an approach, a force, or the way of the spring's other end
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     to_control: Option<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum Format {
-    Table,
-    Csv,
-    Json,
 }
 
 impl TurnArguments {
@@ -89,36 +76,28 @@ impl TurnArguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let file = arguments.output.as_deref();
-    let format = output::format(arguments.format, file, Format::Table)?;
-    let loaded = arguments.problem.load()?;
-    output::spares(file, "-o", &loaded)?;
+    let console = arguments.messages.open();
+    let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
+    let loaded = arguments.problem.load(&console)?;
+    let sink = arguments.destination.sink(arguments.problem.inputs(&loaded))?;
     let mut preset = loaded.preset;
-    if let Some(control) = &arguments.control {
-        preset
-            .assign("path.control", control)
-            .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
-    }
     let turn = arguments.turn.lay(&mut preset)?;
     let case = Case::new(&preset)?;
     let units = case.units();
     let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
     let areas = if arguments.no_area { Areas::No } else { Areas::Yes };
-    let cycle = case.cycle(case.control, turn, areas, &Bar::begin(Some(&Stop::catch()?)));
+    let stop = Stop::catch()?;
+    let cycle = case.cycle(case.control, turn, areas, &console.bar(Some(&stop)));
     let report = CycleReport::new(&preset, &case, &cycle?);
-    warn(&report.warnings);
+    console.warn(&report.warnings);
     let text = match format {
         Format::Table => cycle_table::cycle(&report),
         Format::Csv => {
-            note(columns::units(COLUMNS, report.control, &preset.units).as_deref());
+            console.note(columns::units(COLUMNS, report.control, &preset.units).as_deref());
             report.csv()?
         }
         Format::Json => json(&report)?,
     };
-    output::write(&text, file)?;
-    if arguments.strict && !report.warnings.is_empty() {
-        let text = "the result was written, but carries a warning, which --strict forbids";
-        return Err(Failure::Doubtful(text.to_owned()));
-    }
-    Ok(ExitCode::SUCCESS)
+    sink.write(text)?;
+    console.end()
 }

@@ -1,6 +1,7 @@
 //! `pulloff`: the explorer.
 
 use super::Failure;
+use super::console::Console;
 use super::problem::Problem;
 use std::path::Path;
 use std::process::ExitCode;
@@ -86,8 +87,8 @@ fn fresh(
 ) -> Result<crate::tui::Opening, Failure> {
     use crate::explorer::archive::ago;
     use crate::tui::Opening;
-    let loaded = Box::new(problem.load()?);
-    let is_plain = problem.preset.is_none() && problem.assignments.is_empty();
+    let loaded = Box::new(problem.load(&Console::default())?);
+    let is_plain = problem.preset.is_none() && problem.changes.is_empty();
     Ok(match archive.cut_off() {
         Ok(None) => Opening::Preset(loaded, None),
         Ok(Some(held)) if is_plain => Opening::Offer(loaded, Box::new(held)),

@@ -1,22 +1,26 @@
 //! `pulloff figures`: every figure of the paper, computed again.
 
-use super::{Failure, output};
+use super::Failure;
+use super::console::Messages;
+use super::output::{Inputs, OUTPUT, Outputs, Replacing, Sink, shown};
 use crate::plot::{Width, paper, svg, table};
 #[cfg(feature = "png")]
 use crate::print::Format;
-use crate::store::{Overwrite, stream, write_atomically};
+use crate::store::stream;
 use clap::Args;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The arguments of `pulloff figures`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The folder they are written to: for each figure its numbers as CSV and its picture as SVG, and captions.md
-    #[arg(short, value_name = "DIR", default_value = "figures")]
+    #[arg(short, long, value_name = "DIR", default_value = "figures")]
     output: PathBuf,
+    #[command(flatten)]
+    replacing: Replacing,
     /// Write the pictures as PNG too
     #[cfg(feature = "png")]
     #[arg(long)]
@@ -25,44 +29,71 @@ pub struct Arguments {
     #[cfg(feature = "pdf")]
     #[arg(long)]
     pdf: bool,
+    #[command(flatten)]
+    messages: Messages,
 }
 
 /// The captions, in this file.
 const CAPTIONS: &str = "captions.md";
 
+/// Where the files of a figure go.
+struct Files {
+    numbers: Sink,
+    picture: Sink,
+    #[cfg(feature = "png")]
+    png: Option<Sink>,
+    #[cfg(feature = "pdf")]
+    pdf: Option<Sink>,
+}
+
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let console = arguments.messages.open();
     let folder = &arguments.output;
     if stream::is_stream(folder) {
-        let text = format!("-o {}: the figures are many files; name a folder", output::shown(folder));
+        let text = format!("{OUTPUT} {}: the figures are many files; name a folder", shown(folder));
         return Err(Failure::Usage(text));
     }
     std::fs::create_dir_all(folder)
-        .map_err(|cause| Failure::System { what: format!("-o {}", output::shown(folder)), cause })?;
-    let sheets = paper::sheets(|name| {
-        let _ = writeln!(std::io::stderr(), "pulloff: {name}");
-    })?;
+        .map_err(|cause| Failure::System { what: format!("{OUTPUT} {}", shown(folder)), cause })?;
+    let mut outputs = Outputs::beside(Inputs::default(), arguments.replacing);
+    let mut files = BTreeMap::new();
+    for name in paper::NAMES {
+        files.insert(name, arguments.files(&mut outputs, name)?);
+    }
+    let last = outputs.file(OUTPUT, &folder.join(CAPTIONS))?;
+    let sheets = paper::sheets(|name| console.say(name))?;
     let mut captions = String::from("# The figures of the paper, computed again\n");
     for sheet in &sheets {
-        let file = |ending: &str| folder.join(sheet.name).with_extension(ending);
-        save(&file("csv"), table::csv(&sheet.figure)?.as_bytes())?;
+        let missing = || Failure::Incomplete(format!("{}: its files were not looked at", sheet.name));
+        let files = files.get(sheet.name).ok_or_else(missing)?;
+        files.numbers.write(table::csv(&sheet.figure)?)?;
         let picture = svg::svg(&sheet.figure, Width::ONE_COLUMN);
-        save(&file("svg"), picture.as_bytes())?;
+        files.picture.write(&picture)?;
         #[cfg(feature = "png")]
-        if arguments.png {
-            save(&file("png"), &Format::Png.bytes(&picture)?)?;
+        if let Some(png) = &files.png {
+            png.write(Format::Png.bytes(&picture)?)?;
         }
         #[cfg(feature = "pdf")]
-        if arguments.pdf {
-            save(&file("pdf"), &Format::Pdf.bytes(&picture)?)?;
+        if let Some(pdf) = &files.pdf {
+            pdf.write(Format::Pdf.bytes(&picture)?)?;
         }
         // Writing to a String cannot fail.
         let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);
     }
-    save(&folder.join(CAPTIONS), captions.as_bytes())?;
-    Ok(ExitCode::SUCCESS)
+    last.write(captions)?;
+    console.end()
 }
 
-fn save(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    write_atomically(path, bytes, Overwrite::Always)?;
-    Ok(())
+impl Arguments {
+    fn files(&self, outputs: &mut Outputs, name: &str) -> Result<Files, Failure> {
+        let mut file = |ending: &str| outputs.file(OUTPUT, &self.output.join(name).with_extension(ending));
+        Ok(Files {
+            numbers: file("csv")?,
+            picture: file("svg")?,
+            #[cfg(feature = "png")]
+            png: self.png.then(|| file("png")).transpose()?,
+            #[cfg(feature = "pdf")]
+            pdf: self.pdf.then(|| file("pdf")).transpose()?,
+        })
+    }
 }

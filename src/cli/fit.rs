@@ -4,10 +4,14 @@ mod files;
 mod table;
 
 use self::table::Table;
-use super::console::{note, warn};
+use super::console::{Console, Messages};
+use super::format::{self, Format, FormatArgument};
 use super::measured::{attach, columns, typed};
-use super::watch::{Bar, Stop};
-use super::{Failure, Status, output, problem};
+use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown};
+use super::problem::Changes;
+use super::watch::Stop;
+use super::{Failure, Status, problem};
+use crate::store::atomic::folder_of;
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::{Args, ValueEnum};
@@ -23,7 +27,6 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub struct Arguments {
     /// Files with measured curves, and behind them a preset's name or file (ending in .toml), the wavy sphere when left out; or
     /// a preset alone that names its curve in data.file
@@ -31,13 +34,12 @@ pub struct Arguments {
     paths: Vec<OsString>,
     /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma; also
     /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt; those
-    /// of the preset's data.free when left out
+    /// of the preset's data.free when left out. What --set gives data.offset, data.baseline and data.tilt is held unless it is
+    /// free
     #[arg(long, value_name = "KEY,...", value_delimiter = ',')]
     free: Option<Vec<String>>,
-    /// Give a key of the preset another value before (repeatable); data.offset, data.baseline and data.tilt are held unless
-    /// they are free
-    #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
-    assignments: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Fit this key for approach and retraction apart
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
@@ -77,18 +79,27 @@ pub struct Arguments {
     /// Exit with 0, not 4, where the model does not describe the points; the verdict stays
     #[arg(long)]
     accept: bool,
-    /// Write JSON instead of text
-    #[arg(long)]
-    json: bool,
-    /// Write the preset with the fitted values to this file; of one file of points alone
-    #[arg(short, value_name = "FITTED.toml")]
-    output: Option<PathBuf>,
     /// Write the points with their residuals to this file; of one file of points alone
     #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
-    /// Write one row for each file to this table; a rerun goes on where it ended
+    /// Write one row for each file to this table; a rerun goes on where it ended, with --overwrite it begins anew
     #[arg(long, value_name = "RESULTS.csv")]
     table: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+/// Where all goes that is written.
+struct Sinks {
+    report: Sink,
+    format: Format,
+    fitted: Option<Sink>,
+    residuals: Option<Sink>,
+    table: Option<Table>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -114,30 +125,29 @@ enum Robust {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let (files, loaded, options) = arguments.read()?;
+    let console = arguments.messages.open();
+    let (files, loaded, options) = arguments.read(&console)?;
+    let mut sinks = arguments.sinks(&files, &loaded)?;
+    let table = &mut sinks.table;
     let stop = Stop::catch()?;
-    let mut table = match &arguments.table {
-        Some(path) => Some(Table::open(path, &arguments.fingerprint(&loaded.preset))?),
-        None => None,
-    };
     let said = arguments.said()?;
     let mut reports = Vec::new();
     let mut worst = Status::Done;
     for path in &files {
         let shown = show_path(path);
         if let Some(state) = table.as_ref().and_then(|table| table.state(path)) {
-            note(Some(&format!("{shown}: is in the table already: {state}")));
+            console.note(Some(&format!("{shown}: is in the table already: {state}")));
             worst = worst.max(status_of(state));
             continue;
         }
-        let found = match one(path, &loaded, &said, &options, &stop) {
+        let found = match one(path, &loaded, &said, &options, &console, &stop) {
             Ok(done) => done,
             Err(_) if stop.signal().is_some() => break,
             // One bad file among many is told, and the others are fitted.
             Err(failure) if files.len() > 1 => {
-                warn(&[failure.to_string()]);
+                console.warn(&[failure.to_string()]);
                 worst = worst.max(failure.status());
-                if let Some(table) = &mut table {
+                if let Some(table) = table {
                     table.add(path, None, &failed(shown, &failure))?;
                 }
                 continue;
@@ -145,21 +155,20 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             Err(failure) => return Err(failure),
         };
         let report = FitReport::new(&shown, &found, arguments.poisson);
-        warn(&report.doubts);
+        console.warn(&report.doubts);
         // What was cut off is computed again by a rerun.
         if let Some(table) = table.as_mut().filter(|_| stop.signal().is_none()) {
             let fingerprint = table.fingerprint(path);
             table.add(path, Some(&fingerprint), &report.row())?;
         }
-        if let Some(file) = &arguments.residuals {
-            output::write(&residuals(&found.residuals), Some(file))?;
+        if let Some(sink) = &sinks.residuals {
+            sink.write(residuals(&found.residuals))?;
         }
-        if let Some(file) = &arguments.output {
-            let folder = file.parent().unwrap_or(Path::new("."));
-            let mut preset = found.preset.placed_in(folder);
+        if let Some(sink) = &sinks.fitted {
+            let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));
             let free = Value::Text(options.free.join(","));
             preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
-            output::write(&write(&preset), Some(file))?;
+            sink.write(write(&preset))?;
         }
         worst = worst.max(status_of(report.verdict.word()));
         reports.push(report);
@@ -167,12 +176,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             break;
         }
     }
-    let text = match (arguments.json, reports.as_slice()) {
-        (true, [report]) if files.len() == 1 => json(report)?,
-        (true, reports) => json(&serde_json::json!({ "schema": 1, "fits": reports }))?,
-        (false, reports) => reports.iter().map(FitReport::text).collect::<Vec<_>>().join("\n"),
-    };
-    output::write(&text, None)?;
+    sinks.report.write(match (sinks.format, reports.as_slice()) {
+        (Format::Json, [report]) if files.len() == 1 => json(report)?,
+        (Format::Json, reports) => json(&serde_json::json!({ "schema": 1, "fits": reports }))?,
+        (Format::Csv, reports) => table::csv(&reports.iter().map(FitReport::row).collect::<Vec<_>>())?,
+        (Format::Table, reports) => reports.iter().map(FitReport::text).collect::<Vec<_>>().join("\n"),
+    })?;
     if let Some(signal) = stop.signal() {
         let text = if table.is_some() {
             "stopped: the table has the files that are done; the same command goes on from there"
@@ -185,7 +194,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Interrupted { signal, text });
     }
     match worst {
-        Status::Done => Ok(ExitCode::SUCCESS),
+        Status::Done => console.end(),
         Status::Doubtful => {
             let text = "the points do not determine all values; the result says which";
             Err(Failure::Doubtful(text.to_owned()))
@@ -228,13 +237,14 @@ fn one(
     loaded: &Loaded,
     said: &[(&'static str, Value)],
     options: &Options,
+    console: &Console,
     stop: &Stop,
 ) -> Result<Fit, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
     let mut preset = loaded.preset.clone();
     let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
     attach(&mut preset, other, said)?;
-    let fitted = fit_own(&preset, options, &Bar::begin(Some(stop)));
+    let fitted = fit_own(&preset, options, &console.bar(Some(stop)));
     fitted.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
         error => Failure::Usage(named(&error)),
@@ -248,14 +258,14 @@ fn own(preset: &Preset) -> Option<PathBuf> {
 
 impl Arguments {
     /// The files, the preset and what is asked for.
-    fn read(&self) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
+    fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, files) = match self.paths.split_last() {
             Some((last, files)) if is_preset(last) => (Some(last.clone()), files),
             _ => (None, &self.paths[..]),
         };
         let mut files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        let loaded = problem::Problem { preset, assignments: self.assignments.clone() }.load()?;
-        files = files::measured(files)?;
+        let loaded = problem::Problem { preset, changes: self.changes.clone() }.load(console)?;
+        files = files::measured(files, console)?;
         if files.is_empty() {
             files.extend(own(&loaded.preset));
         }
@@ -264,18 +274,6 @@ impl Arguments {
                 "fit needs a file with a measured curve before the preset, or a preset that names one in data.file"
                     .to_owned(),
             ));
-        }
-        for (file, option) in
-            [(&self.output, "-o"), (&self.residuals, "--residuals"), (&self.table, "--table")]
-        {
-            if file.is_some() && option != "--table" && files.len() > 1 {
-                return Err(Failure::Usage(format!(
-                    "{option}: is of one file of points, and {} are given",
-                    files.len()
-                )));
-            }
-            output::spares(file.as_deref(), option, &loaded)?;
-            files::spared(&files, file.as_deref(), option)?;
         }
         if let Some(nu) = self.poisson.filter(|nu| !(-1.0..=0.5).contains(nu)) {
             return Err(Failure::Usage(format!("--poisson {nu}: Poisson's ratio is from -1 to 0.5")));
@@ -288,6 +286,43 @@ impl Arguments {
     fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         let segment = self.segment.map(|branch| (data::SEGMENT, Value::Text(branch.word().to_owned())));
         Ok(columns(self.columns.as_deref())?.into_iter().chain(segment).collect())
+    }
+
+    /// Looks at all outputs. What ends in .toml is the preset with the fitted values, and the report goes to standard output.
+    fn sinks(&self, files: &[PathBuf], loaded: &Loaded) -> Result<Sinks, Failure> {
+        let preset = self.paths.last().map(Path::new);
+        let inputs = Inputs::default().with_problem(preset, loaded);
+        let inputs = files.iter().fold(inputs, |inputs, file| inputs.with("the points", file));
+        let output = self.destination.path();
+        let is_fitted = format::ending(output).is_some_and(|ending| ending == "toml");
+        let of_one = [(OUTPUT, is_fitted), ("--residuals", self.residuals.is_some())];
+        if let Some((option, _)) = of_one.into_iter().find(|(_, is_given)| *is_given && files.len() > 1) {
+            return Err(Failure::Usage(format!(
+                "{option}: is of one file of points, and {} are given",
+                files.len()
+            )));
+        }
+        let report = if is_fitted { Path::new(stream::STANDARD) } else { output };
+        let format = self.format.of(report, Format::Table)?;
+        for (option, file) in [("--residuals", &self.residuals), ("--table", &self.table)] {
+            file.as_ref().map_or(Ok(()), |file| format::only(option, file, Format::Csv))?;
+        }
+        let mut outputs = Outputs::beside(inputs, self.destination.replacing);
+        let report = outputs.file(OUTPUT, report)?;
+        let fitted = is_fitted.then(|| outputs.file(OUTPUT, output)).transpose()?;
+        let residuals = self.residuals.as_ref().map(|file| outputs.file("--residuals", file)).transpose()?;
+        let table = match &self.table {
+            Some(file) if stream::is_stream(file) => {
+                let what = "is written again after each fit; name a file";
+                return Err(Failure::Usage(format!("--table {}: {what}", shown(file))));
+            }
+            Some(file) => {
+                let sink = outputs.kept("--table", file)?;
+                Some(Table::open(file, sink, self.destination.replacing, &self.fingerprint(&loaded.preset))?)
+            }
+            None => None,
+        };
+        Ok(Sinks { report, format, fitted, residuals, table })
     }
 
     fn options(&self, preset: &Preset) -> Result<Options, Failure> {
@@ -349,10 +384,10 @@ impl Arguments {
 
     /// What decides the rows of a table, but for the files themselves.
     fn fingerprint(&self, preset: &Preset) -> String {
-        let Self { free, assignments, separate, columns, range, segment, sigma_x, sigma_force, .. } = self;
+        let Self { free, changes, separate, columns, range, segment, sigma_x, sigma_force, .. } = self;
         let Self { robust, no_scan, .. } = self;
         let said = format!(
-            "{free:?} {assignments:?} {separate:?} {columns:?} {range:?} {segment:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
+            "{free:?} {changes:?} {separate:?} {columns:?} {range:?} {segment:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 pub fn run(command: Command) -> Result<ExitCode, Failure> {
     let page =
         page(command).map_err(|cause| Failure::System { what: "the manual page".to_owned(), cause })?;
-    output::write(&String::from_utf8_lossy(&page), None)?;
+    output::print(page)?;
     Ok(ExitCode::SUCCESS)
 }
 

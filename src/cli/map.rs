@@ -1,18 +1,20 @@
 //! `pulloff map`: where snaps begin, as lines in two numbers, or the limit points over one.
 
-use super::console::{note, warn};
+use super::Failure;
+use super::console::Messages;
+use super::format::{Format, FormatArgument};
+use super::output::{Destination, shown};
 use super::problem::Problem;
-use super::watch::{Bar, Stop};
-use super::{Failure, output};
+use super::watch::Stop;
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Width, lines, svg};
 use crate::print::Format as Print;
-use crate::store::{Overwrite, stream, write_atomically};
+use crate::store::stream;
 use crate::sweep::Results;
 use clap::Args;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::map::Ordinate;
-use pulloff_engine::report::{MapReport, json};
+use pulloff_engine::report::{MapReport, json, table};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,9 +34,6 @@ pub struct Arguments {
     /// Instead of a number, the limit points over the x axis: their control, approach or force
     #[arg(long, value_enum, conflicts_with = "y_key")]
     y: Option<Curve>,
-    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
-    #[arg(long, value_name = "CONTROL")]
-    control: Option<String>,
     /// Draw the lines over the map of a sweep over the same two keys
     #[arg(long, value_name = "RESULTS.csv", requires = "y_key")]
     over: Option<PathBuf>,
@@ -44,12 +43,12 @@ pub struct Arguments {
     /// The width of a figure on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = super::plot::width)]
     width: Width,
-    /// Replace the file if it is there
-    #[arg(long, requires = "output")]
-    overwrite: bool,
-    /// Write to this file, by its ending as CSV, JSON, SVG, PNG or PDF, instead of CSV to standard output, which is -
-    #[arg(short, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
 }
 
 /// What stands over a number.
@@ -65,22 +64,19 @@ const CELLS: [u32; 2] = [48, 36];
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Format {
-    Csv,
-    Json,
+enum Written {
+    Rows(Format),
     Figure(Print),
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let format = arguments.format()?;
-    let loaded = arguments.problem.load()?;
-    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
-    let mut preset = loaded.preset;
-    if let Some(control) = &arguments.control {
-        preset
-            .assign("path.control", control)
-            .map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
-    }
+    let console = arguments.messages.open();
+    let written = arguments.written()?;
+    let loaded = arguments.problem.load(&console)?;
+    let inputs = arguments.problem.inputs(&loaded);
+    let inputs = arguments.over.iter().fold(inputs, |inputs, path| inputs.with_results(path));
+    let sink = arguments.destination.sink(inputs)?;
+    let preset = loaded.preset;
     let x = axis("--x-key", &arguments.x_key, &preset)?;
     let y = match (&arguments.y_key, arguments.y) {
         (Some(key), _) => Ordinate::Key(axis("--y-key", key, &preset)?),
@@ -89,19 +85,21 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (None, _) => Ordinate::Control,
     };
     let over = arguments.over(&preset, &x, &y)?;
-    let report = MapReport::compute(&preset, x, &y, CELLS, &Bar::begin(Some(&Stop::catch()?)))?;
-    warn(&report.notes);
+    let stop = Stop::catch()?;
+    let report = MapReport::compute(&preset, x, &y, CELLS, &console.bar(Some(&stop)))?;
+    console.warn(&report.notes);
     if let Some(onset) = &report.onset {
         let smallest = onset.amplitude_over_wavelength;
-        note(Some(&format!(
+        console.note(Some(&format!(
             "under {} control this preset snaps from A/lambda = {smallest:.6} on",
             onset.control
         )));
     }
-    let bytes = match format {
-        Format::Csv => report.csv()?.into_bytes(),
-        Format::Json => json(&report)?.into_bytes(),
-        Format::Figure(print) => {
+    sink.write(match written {
+        Written::Rows(Format::Table) => table::rows(&report.table()?).into_bytes(),
+        Written::Rows(Format::Csv) => report.csv()?.into_bytes(),
+        Written::Rows(Format::Json) => json(&report)?.into_bytes(),
+        Written::Figure(print) => {
             let figure = lines::figure(&report, &preset);
             let picture = match over {
                 Some(map) => Map { lines: figure.lines, ..map }.svg(arguments.width),
@@ -109,36 +107,25 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             };
             print.bytes(&picture)?
         }
-    };
-    match arguments.output.as_deref().filter(|path| !stream::is_stream(path)) {
-        Some(path) => {
-            let overwrite = if arguments.overwrite { Overwrite::Always } else { Overwrite::Never };
-            write_atomically(path, &bytes, overwrite)?;
-        }
-        None => output::write_bytes(&bytes, arguments.output.as_deref())?,
-    }
-    Ok(ExitCode::SUCCESS)
+    })?;
+    console.end()
 }
 
 impl Arguments {
     /// By the ending of the file; a figure where results are drawn under it.
-    fn format(&self) -> Result<Format, Failure> {
-        let file = self.output.as_deref().filter(|path| !stream::is_stream(path));
-        let ending =
-            file.and_then(|path| path.extension()).map(|ending| ending.to_string_lossy().to_lowercase());
-        let format = match (ending.as_deref(), file) {
-            (Some("csv"), _) => Format::Csv,
-            (Some("json"), _) => Format::Json,
-            (_, Some(path)) => Format::Figure(Print::of(path)?),
-            (_, None) if self.over.is_some() => Format::Figure(Print::Svg),
-            (_, None) => Format::Csv,
-        };
-        if self.over.is_some() && matches!(format, Format::Csv | Format::Json) {
+    fn written(&self) -> Result<Written, Failure> {
+        let file = self.destination.path();
+        let figure = self.format.of_figure(file)?;
+        let is_drawn = self.over.is_some() && self.format.format.is_none() && stream::is_stream(file);
+        if let Some(print) = figure.or(is_drawn.then_some(Print::Svg)) {
+            return Ok(Written::Figure(print));
+        }
+        if self.over.is_some() {
             let what =
                 "--over: results of a sweep are drawn under the lines of a figure: -o FILE.svg, .png or .pdf";
             return Err(Failure::Usage(what.to_owned()));
         }
-        Ok(format)
+        Ok(Written::Rows(self.format.beside_figures(file, Format::Csv)?))
     }
 
     /// The map of a sweep, whose axes must be those of the lines.
@@ -155,7 +142,7 @@ impl Arguments {
         if results.axes != [x.key.as_str(), y.name()] {
             return Err(Failure::Usage(format!(
                 "--over {}: is a sweep over {}, not over {} and {}",
-                output::shown(path),
+                shown(path),
                 results.axes.join(" and "),
                 x.key,
                 y.name()

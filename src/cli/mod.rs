@@ -11,6 +11,7 @@ mod explore;
 mod failure;
 mod figures;
 mod fit;
+mod format;
 mod man;
 mod map;
 mod measured;
@@ -48,7 +49,7 @@ struct Cli {
     problem: Problem,
     /// Go on with a session that was left or cut off: the newest, or the one of this name
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["preset", "assignments"])]
+          conflicts_with_all = ["preset", "assignments", "control"])]
     resume: Option<String>,
     /// Take the settings of the explorer from this file; pulloff/config.toml in the configuration folder when left out
     #[arg(long, value_name = "FILE")]
@@ -95,6 +96,13 @@ enum Command {
 fn outlive_the_limit() {
     // A signal that is caught lets the write return. Should it not be caught, it kills as ever.
     let _ = flag::register(SIGXFSZ, Arc::default());
+}
+
+/// The whole command line, as its help, its completions and the book have it.
+pub fn command() -> clap::Command {
+    let mut command = Cli::command();
+    command.build();
+    command
 }
 
 /// Runs the command line of this process.

@@ -1,9 +1,10 @@
 //! `pulloff plot`: a view of the explorer as a figure for print.
 
-use super::console::{note, warn};
+use super::Failure;
+use super::console::{Console, Messages};
 use super::measured::{attach, columns, typed};
+use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown as shown_path};
 use super::problem::Problem;
-use super::{Failure, output};
 use crate::explorer::fitting::FitWish;
 use crate::explorer::maps::{MapAxes, MapWish};
 use crate::explorer::profile::{Ask, Inside};
@@ -15,8 +16,7 @@ use crate::figure::{Figure, Range, Sign, Subject};
 use crate::plot::map::{Map, MapError};
 use crate::plot::{Width, series, svg, table};
 use crate::print::{Format, FormatError};
-use crate::store::file::{first_line, kind_of};
-use crate::store::{Loaded, Overwrite, WriteError, stream, write_atomically};
+use crate::store::stream;
 use crate::sweep::Results;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::{Preset, data};
@@ -26,7 +26,6 @@ use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, LazyLock};
@@ -37,7 +36,7 @@ pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
     /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
-    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "view", "theory", "raw", "contact_radius"])]
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius"])]
     sweep: Option<PathBuf>,
     /// The column of the results that is drawn [default: enhancement]
     #[arg(long, value_name = "COLUMN")]
@@ -75,12 +74,19 @@ pub struct Arguments {
     /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
     width: Width,
-    /// Write the data beside the figure too, to FILE.csv; a file there that holds anything else is kept, and refused
+    /// Write the data beside the figure too, to FILE.csv
     #[arg(long, requires = "output")]
     data: bool,
-    /// Write to this file, as SVG, PNG or PDF by its ending, instead of SVG to standard output, which is -
-    #[arg(short, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+/// Where the figure and its data go.
+struct Sinks {
+    figure: Sink,
+    data: Option<Sink>,
 }
 
 /// The column of the results that is drawn when none is named.
@@ -116,31 +122,33 @@ pub(super) fn width(text: &str) -> Result<Width, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let format = format(arguments.output.as_deref())?;
+    let console = arguments.messages.open();
+    let format = format(arguments.destination.path())?;
     if let Some(path) = &arguments.sweep {
+        let sinks = arguments.sinks(Inputs::default().with_results(path))?;
         let (picture, data) = arguments.of_sweep(path)?;
-        output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
-        if let Some(((path, overwrite), data)) = arguments.data_file(None)?.zip(data) {
-            write_atomically(&path, data.as_bytes(), overwrite)?;
+        sinks.figure.write(format.bytes(&picture)?)?;
+        if let Some((sink, data)) = sinks.data.zip(data) {
+            sink.write(data)?;
         }
-        return Ok(ExitCode::SUCCESS);
+        return console.end();
     }
     if arguments.quantity.is_some() {
         let what = "--quantity: is a column of the results of a sweep, which --sweep RESULTS.csv names";
         return Err(Failure::Usage(what.to_owned()));
     }
-    let loaded = arguments.problem.load()?;
-    output::spares(arguments.output.as_deref(), "-o", &loaded)?;
-    let data = arguments.data_file(Some(&loaded))?;
+    let loaded = arguments.problem.load(&console)?;
+    let inputs = arguments.problem.inputs(&loaded);
+    let measured = arguments.measured.iter();
+    let sinks =
+        arguments.sinks(measured.fold(inputs, |inputs, path| inputs.with("the measured curve", path)))?;
     let mut preset = loaded.preset;
-    arguments.lay_points(&mut preset)?;
+    arguments.lay_points(&console, &mut preset)?;
+    arguments.fits(&preset)?;
     let curve = CurveData::compute(&preset, &Staged::unwatched())?;
     let curve = Arc::new(curve.checked(&Unwatched).unwrap_or(curve));
-    warn(&curve.base.warnings);
+    console.warn(&curve.base.warnings);
     let view = arguments.view.0;
-    if let Some(why) = no_spring(&preset).filter(|_| view == View::ForcePosition) {
-        return Err(Failure::Usage(format!("--view {}: {why}", view.name())));
-    }
     let inside = if view.is_state() {
         Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
     } else if arguments.contact_radius.is_some() {
@@ -153,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let cycle =
         if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &Unwatched)?) } else { None };
-    warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
+    console.warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
     let wish = || MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
     let found = (view == View::Map).then(|| wish().run(&Unwatched)).flatten();
     let map = found.as_ref().map(|map| map.report());
@@ -172,22 +180,25 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         ..Subject::alone(&curve, overlays)
     };
     let figure = subject.figure(view);
+    if let Some(why) = &figure.missing {
+        return Err(Failure::Usage(format!("--view {}: {why}", view.name())));
+    }
     let is_drawn = figure.marks.iter().any(|mark| matches!(mark.sign, Sign::Measured { .. }));
     if arguments.measured.is_some() && !is_drawn {
         return Err(Failure::Usage(format!("--measured: the file has not the columns of {}", view.name())));
     }
     let figure = arguments.part(figure)?;
     let picture = svg::svg(&figure, arguments.width);
-    output::write_bytes(&format.bytes(&picture)?, arguments.output.as_deref())?;
-    if let Some((path, overwrite)) = data {
-        write_atomically(&path, table::csv(&figure)?.as_bytes(), overwrite)?;
+    sinks.figure.write(format.bytes(&picture)?)?;
+    if let Some(sink) = sinks.data {
+        sink.write(table::csv(&figure)?)?;
     }
-    Ok(ExitCode::SUCCESS)
+    console.end()
 }
 
 impl Arguments {
     /// Gives the preset the measured curve that is asked for, and says what was found in its own.
-    fn lay_points(&self, preset: &mut Preset) -> Result<(), Failure> {
+    fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
         let said = columns(self.columns.as_deref())?;
         attach(preset, self.measured.as_deref(), said.as_slice())?;
         for (flag, key, text) in
@@ -198,11 +209,11 @@ impl Arguments {
             preset.set(key, number.into()).map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
         }
         let Some(source) = &preset.data.source else { return Ok(()) };
-        let wrong = |error: String| Failure::Usage(format!("{}: {error}", output::shown(&source.path())));
+        let wrong = |error: String| Failure::Usage(format!("{}: {error}", shown_path(&source.path())));
         let measured = source.measured(&preset.data.columns).map_err(wrong)?;
         let branches = source.branches(&preset.reading()).map_err(wrong)?;
         for text in measured.notes.iter().chain(&branches.notes) {
-            note(Some(text));
+            console.note(Some(text));
         }
         Ok(())
     }
@@ -244,44 +255,31 @@ impl Arguments {
         Ok(figure)
     }
 
-    /// The file of the data, and whether there is one to be replaced: only data of a figure are.
-    fn data_file(&self, loaded: Option<&Loaded>) -> Result<Option<(PathBuf, Overwrite)>, Failure> {
-        let Some(figure) = self.output.as_ref().filter(|_| self.data) else { return Ok(None) };
-        if stream::is_stream(figure) {
+    /// Refuses a view that this preset has nothing for.
+    fn fits(&self, preset: &Preset) -> Result<(), Failure> {
+        let view = self.view.0;
+        let why = match view {
+            View::ForcePosition => no_spring(preset),
+            View::Residuals if preset.data.source.is_none() => Some(
+                "there are no measured points: --measured FILE or data.file of the preset names them"
+                    .to_owned(),
+            ),
+            _ => None,
+        };
+        why.map_or(Ok(()), |why| Err(Failure::Usage(format!("--view {}: {why}", view.name()))))
+    }
+
+    /// Where all goes that is written.
+    fn sinks(&self, inputs: Inputs) -> Result<Sinks, Failure> {
+        let mut outputs = Outputs::beside(inputs, self.destination.replacing);
+        let path = self.destination.path();
+        let figure = outputs.file(OUTPUT, path)?;
+        if self.data && stream::is_stream(path) {
             let what = "--data: the data stand beside the file of the figure, which -o FILE names";
             return Err(Failure::Usage(what.to_owned()));
         }
-        let path = figure.with_extension("csv");
-        if let Some(loaded) = loaded {
-            output::spares(Some(&path), "--data", loaded)?;
-        }
-        let overwrite = match header_of(&path)? {
-            None => Overwrite::Never,
-            Some(line) if table::is_header(&line) => Overwrite::Always,
-            Some(_) => {
-                return Err(Failure::Usage(format!(
-                    "--data {}: exists already and does not hold the data of a figure; name the figure otherwise, \
-                     or move that file away",
-                    output::shown(&path)
-                )));
-            }
-        };
-        Ok(Some((path, overwrite)))
-    }
-}
-
-/// The first line of a file; `None` where there is no file.
-fn header_of(path: &Path) -> Result<Option<String>, Failure> {
-    let failed = |cause| Failure::System { what: format!("--data {}", output::shown(path)), cause };
-    match path.metadata() {
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(failed(error)),
-        // A pipe would wait for its writer.
-        Ok(metadata) if !metadata.is_file() => {
-            let (path, what) = (output::shown(path), kind_of(&metadata));
-            Err(WriteError::NotRegular { path, what }.into())
-        }
-        Ok(_) => first_line(path).map(Some).map_err(failed),
+        let beside = self.data.then(|| outputs.file("--data", &path.with_extension("csv")));
+        Ok(Sinks { figure, data: beside.transpose()? })
     }
 }
 
@@ -316,8 +314,7 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
 }
 
 /// The format that is asked for; standard output and descriptors have no ending.
-fn format(path: Option<&Path>) -> Result<Format, Failure> {
-    let Some(path) = path else { return Ok(Format::Svg) };
+fn format(path: &Path) -> Result<Format, Failure> {
     match Format::of(path) {
         Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(Format::Svg),
         format => Ok(format?),

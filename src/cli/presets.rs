@@ -55,13 +55,13 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             if let Some(notice) = &listing.notice {
                 let _ = writeln!(std::io::stderr(), "pulloff: {notice}");
             }
-            output::write(&text, None)?;
+            output::print(text)?;
         }
         Command::Show { name } => {
             let source = super::problem::source(&store, name)?;
             // Loaded first: a file that is no preset is an error, not text to print.
             let loaded = store.load(&source, &[] as &[&str])?;
-            output::write(&loaded.text, None)?;
+            output::print(loaded.text)?;
         }
         Command::Delete { name, yes } => {
             let path = store.own(name)?;
@@ -72,7 +72,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             let _ = writeln!(std::io::stderr(), "pulloff: deleted {}", show_path(&path));
         }
         Command::Path => match store.folder() {
-            Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,
+            Some(folder) => output::print(format!("{}\n", show_path(folder)))?,
             None => return Err(Failure::Usage("no home folder is known: set XDG_CONFIG_HOME".to_owned())),
         },
     }

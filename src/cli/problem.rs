@@ -1,5 +1,7 @@
 //! The problem that a command line names: a preset, and other values for some of its keys.
 
+use super::console::Console;
+use super::output::Inputs;
 use super::{Failure, assigned};
 use crate::store::file::LARGEST;
 use crate::store::stream::{self, STANDARD};
@@ -33,18 +35,62 @@ pub struct Problem {
     /// A preset's name, or a preset file (with a '/' or ending in .toml; - is standard input); the wavy sphere when left out
     #[arg(value_name = "PRESET|FILE.toml")]
     pub preset: Option<OsString>,
+    #[command(flatten)]
+    pub changes: Changes,
+}
+
+/// Other values for keys of a preset.
+#[derive(Debug, Clone, Default, Args)]
+pub struct Changes {
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
     ///
     /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
     /// changes what it follows from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`, `groups.adhesion`.
     /// An SI preset is shown in the units of its display keys: display.force=mN.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub assignments: Vec<String>,
+    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
+    #[arg(long, value_name = "CONTROL")]
+    pub control: Option<String>,
+}
+
+/// The key that `--control` sets.
+const CONTROL: &str = "path.control";
+
+impl Changes {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.assignments.is_empty() && self.control.is_none()
+    }
+
+    /// All as assignments.
+    pub fn all(&self) -> Vec<String> {
+        let control = self.control.as_ref().map(|control| format!("{CONTROL}={control}"));
+        self.assignments.iter().cloned().chain(control).collect()
+    }
 }
 
 impl Problem {
-    pub fn load(&self) -> Result<Loaded, Failure> {
-        load(self.preset.as_ref(), &self.assignments)
+    /// The preset with the changes; what they did that their text does not show is told.
+    pub fn load(&self, console: &Console) -> Result<Loaded, Failure> {
+        let store = store();
+        let source = match &self.preset {
+            Some(argument) => source(&store, argument)?,
+            None => store.resolve(crate::store::shipped::DEFAULT)?,
+        };
+        let Changes { assignments, control } = &self.changes;
+        let mut loaded = store.load(&source, assignments)?;
+        assigned::report(console, &store, &source, assignments, &loaded.preset);
+        if let Some(control) = control {
+            let assigned = loaded.preset.assign(CONTROL, control);
+            assigned.map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
+        }
+        Ok(loaded)
+    }
+
+    /// The files that it is read from.
+    pub fn inputs(&self, loaded: &Loaded) -> Inputs {
+        Inputs::default().with_problem(self.preset.as_deref().map(Path::new), loaded)
     }
 }
 
@@ -64,15 +110,4 @@ pub(super) fn source(store: &Store, preset: &OsStr) -> Result<Source, Failure> {
     }
     let (name, text) = stream::read_text(path, LARGEST).map_err(StoreError::from)?;
     Ok(Source::Piped { name, text: text.into() })
-}
-
-fn load(preset: Option<&OsString>, assignments: &[String]) -> Result<Loaded, Failure> {
-    let store = store();
-    let source = match preset {
-        Some(argument) => source(&store, argument)?,
-        None => store.resolve(crate::store::shipped::DEFAULT)?,
-    };
-    let loaded = store.load(&source, assignments)?;
-    assigned::report(&store, &source, assignments, &loaded.preset);
-    Ok(loaded)
 }

@@ -1,13 +1,18 @@
 //! `pulloff run`: a script of the explorer's commands, without a terminal.
 
 use super::Failure;
-use super::problem::{Problem, store};
-use crate::explorer::command::by_name;
+use super::console::Messages;
+use super::output::{Inputs, Outputs, Replacing};
+use super::problem::{Changes, Problem, store};
+use crate::explorer::command::{Command, by_name, row_of};
 use crate::explorer::export::{Page, Picture};
+use crate::explorer::files::target;
 use crate::explorer::script::{self, Permission, ScriptLine, play};
 use crate::explorer::{Inline, Model, open};
 use crate::plot::picture::picture;
+use crate::store::place::Place;
 use crate::store::stream::{self, STANDARD};
+use crate::store::{Loaded, Store};
 use crate::tui::copy::screen;
 use clap::Args;
 use pulloff_engine::text::sanitize;
@@ -24,22 +29,18 @@ pub struct Arguments {
     /// The preset it begins with, by name or file; - reads standard input; the wavy sphere when left out
     #[arg(long, value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
-    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
-    ///
-    /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
-    /// changes what it follows from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`, `groups.adhesion`.
-    /// An SI preset is shown in the units of its display keys: display.force=mN.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    assignments: Vec<String>,
-    /// Let the script replace files
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    changes: Changes,
+    #[command(flatten)]
+    replacing: Replacing,
     /// Let the script write files outside the current folder
     #[arg(long)]
     anywhere: bool,
     /// Say on standard error what became of each line
-    #[arg(long, short)]
+    #[arg(long, short, conflicts_with = "quiet")]
     verbose: bool,
+    #[command(flatten)]
+    messages: Messages,
 }
 
 /// Longest account of a line.
@@ -54,14 +55,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let (name, text) = stream::read_given(&arguments.script, script::LARGEST)?;
     let lines = script::read(&name, &text).map_err(|error| Failure::Usage(error.to_string()))?;
-    let chosen = arguments.preset.is_some() || !arguments.assignments.is_empty();
+    let console = arguments.messages.open();
+    let chosen = arguments.preset.is_some() || !arguments.changes.is_empty();
     if chosen && lines.first().is_some_and(|line| script::play::opens(&line.command)) {
-        let text = format!("{name}: opens a preset of its own: --preset and --set would be lost");
+        let text = format!("{name}: opens a preset of its own: --preset, --set and --control would be lost");
         return Err(Failure::Usage(text));
     }
-    let problem = Problem { preset: arguments.preset.clone(), assignments: arguments.assignments.clone() };
-    let (mut model, effects) = open(problem.load()?);
-    let permission = Permission { overwrite: arguments.overwrite, anywhere: arguments.anywhere };
+    let problem = Problem { preset: arguments.preset.clone(), changes: arguments.changes.clone() };
+    let loaded = problem.load(&console)?;
+    let inputs = problem.inputs(&loaded).with("the script", &arguments.script);
+    look(&name, &lines, inputs, arguments.replacing)?;
+    let (mut model, effects) = open(loaded);
+    let permission = Permission { overwrite: arguments.replacing.overwrite, anywhere: arguments.anywhere };
     let mut told = |line: &ScriptLine, model: &Model| {
         if arguments.verbose {
             account(line, model);
@@ -69,7 +74,42 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     play(&mut model, &Inline::new(store()), effects, &lines, permission, &drawn, &mut told)
         .map_err(|failed| Failure::Script { text: format!("{name}:{failed}"), reason: failed.reason })?;
-    Ok(ExitCode::SUCCESS)
+    console.end()
+}
+
+/// Looks at all files that the lines of a script name, before any is done.
+fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) -> Result<(), Failure> {
+    let store = store();
+    let opened = lines.iter().filter_map(|line| opened(&store, &line.command));
+    let mut outputs =
+        Outputs::beside(opened.fold(inputs, |all, preset| all.with_problem(None, &preset)), replacing);
+    let mut written = Vec::new();
+    for line in lines {
+        let (Command::Export { path, replace, .. } | Command::Picture { path, replace, .. }) = &line.command
+        else {
+            continue;
+        };
+        let option = format!("{name}:{}: {}", line.number, row_of(line.command.id()).name);
+        let path = target(path);
+        // What a line of the same script wrote, another replaces where it says so.
+        let place = Place::written(&path);
+        if *replace && written.contains(&place) {
+            continue;
+        }
+        written.push(place);
+        if line.may_fail {
+            outputs.tried(&option, &path)?;
+        } else {
+            outputs.file(&option, &path)?;
+        }
+    }
+    Ok(())
+}
+
+/// The preset that a line of a script opens, where it can be opened now.
+fn opened(store: &Store, command: &Command) -> Option<Loaded> {
+    let (Command::Open(name) | Command::OpenWith { name, .. }) = command else { return None };
+    store.load(&store.resolve(name).ok()?, &[] as &[&str]).ok()
 }
 
 /// What a screen would show, drawn.

@@ -1,7 +1,9 @@
 //! `pulloff sessions`: list, show and delete what the explorer keeps of a session.
 
+use super::Failure;
 use super::console::ask;
-use super::{Failure, output};
+use super::format::{Format, FormatArgument};
+use super::output;
 use crate::explorer::archive::{Archive, ArchiveError, ago};
 use crate::explorer::session::{Document, Summary};
 use clap::Subcommand;
@@ -20,9 +22,8 @@ pub enum Command {
     Show {
         /// Its name
         name: String,
-        /// Write the whole session as JSON
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        format: FormatArgument,
     },
     /// Delete sessions
     Delete {
@@ -44,14 +45,20 @@ const REASON: usize = 90;
 pub fn run(command: &Command) -> Result<ExitCode, Failure> {
     let archive = Archive::open();
     match command {
-        Command::List => output::write(&list(&archive)?, None)?,
-        Command::Show { name, json: true } => {
-            let bytes = archive.bytes(name)?;
-            // Read first: a file that is no session is an error, not text to print.
-            archive.summary(name)?;
-            output::write(&String::from_utf8_lossy(&bytes), None)?;
-        }
-        Command::Show { name, json: false } => output::write(&shown(&archive, name)?, None)?,
+        Command::List => output::print(list(&archive)?)?,
+        Command::Show { name, format } => output::print(match format.format {
+            Some(Format::Json) => {
+                let bytes = archive.bytes(name)?;
+                // Read first: a file that is no session is an error, not text to print.
+                archive.summary(name)?;
+                bytes
+            }
+            Some(Format::Csv) => {
+                let text = "--format csv: a session is shown as table or json";
+                return Err(Failure::Usage(text.to_owned()));
+            }
+            Some(Format::Table) | None => shown(&archive, name)?.into_bytes(),
+        })?,
         Command::Delete { names, yes } => {
             for name in names {
                 if !yes {
@@ -61,7 +68,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             }
         }
         Command::Path => match archive.folder() {
-            Some(folder) => output::write(&format!("{}\n", show_path(folder)), None)?,
+            Some(folder) => output::print(format!("{}\n", show_path(folder)))?,
             None => return Err(ArchiveError::NoFolder.into()),
         },
     }

@@ -1,12 +1,16 @@
 //! `pulloff sweep`: many problems into one file, and shards of it joined.
 
-use super::sweep_status::Reporter;
+use super::Failure;
+use super::console::{Console, Messages};
+use super::format::{self, Format};
+use super::output::{self, Inputs, OUTPUT, Outputs, Replacing, Sink};
+use super::problem::Changes;
+use super::sweep_status::{Reporter, Subject};
 use super::watch::Stop;
-use super::{Failure, output};
 use crate::store::stream;
-use crate::sweep::check::Checked;
+use crate::sweep::output::Faults;
 use crate::sweep::{
-    Existing, Means, Output, OutputError, Shard, Summary, check, merge, run as compute, spec,
+    Existing, Means, Output, OutputError, Shard, Summary, check, merge, run as compute, sidecar, spec,
 };
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -16,7 +20,6 @@ use pulloff_engine::sweep::spec::Design;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::text::{quote, show_name, show_path};
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -41,32 +44,45 @@ enum Command {
         /// The results of each shard, in any order
         #[arg(required = true, value_name = "PART.csv")]
         parts: Vec<PathBuf>,
-        /// Write to this file; - is standard output
-        #[arg(short, value_name = "RESULTS.csv")]
-        output: PathBuf,
-        /// Replace results that are there
-        #[arg(long)]
-        overwrite: bool,
+        #[command(flatten)]
+        results: Results,
+        #[command(flatten)]
+        messages: Messages,
     },
     /// Look at results without computing: whether they are whole and of the sweep beside them
     Check {
         /// The results, of a sweep or of a shard
         #[arg(value_name = "RESULTS.csv")]
         results: PathBuf,
+        #[command(flatten)]
+        messages: Messages,
     },
     /// List the quantities that a sweep can compute
     Quantities,
 }
 
-/// What is swept, and where to.
+/// Where the rows go.
 #[derive(Debug, Args)]
+struct Results {
+    /// Write to this file; where it holds a part of the same rows, a sweep goes on with it; - is standard output
+    #[arg(short, long, value_name = "RESULTS.csv")]
+    output: PathBuf,
+    #[command(flatten)]
+    replacing: Replacing,
+}
+
+/// What is swept, and where to.
+// Of a struct with groups in it clap knows no arguments; this one is always there.
+#[derive(Debug, Args)]
+#[group(args = ["spec"])]
 struct Sweep {
     /// The spec: a preset, axes, quantities; - is standard input
     #[arg(value_name = "SPEC.toml")]
     spec: PathBuf,
-    /// Write to this file, where a rerun goes on; - is standard output, where it begins anew
-    #[arg(short, value_name = "RESULTS.csv")]
-    output: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
+    #[command(flatten)]
+    results: Results,
     /// Threads, at most 1024 [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -79,12 +95,11 @@ struct Sweep {
     /// Say in this file how far it is: JSON, replaced as a whole about every second
     #[arg(long, value_name = "FILE")]
     status: Option<PathBuf>,
-    /// Replace results that are there
-    #[arg(long)]
-    overwrite: bool,
     /// Wait while another pulloff writes the results, instead of giving up
     #[arg(long)]
     wait: bool,
+    #[command(flatten)]
+    messages: Messages,
 }
 
 /// How often a sweep that waits for another looks whether it has ended.
@@ -93,21 +108,11 @@ const PAUSE: Duration = Duration::from_millis(200);
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match (&arguments.command, &arguments.sweep) {
         (Some(Command::Quantities), _) => {
-            output::write(&quantities(), None)?;
+            output::print(quantities())?;
             Ok(ExitCode::SUCCESS)
         }
-        (Some(Command::Merge { parts, output, overwrite }), _) => {
-            output::csv_only(output)?;
-            let merged = merge(parts, output, existing(*overwrite))?;
-            let (rows, shards) = (merged.rows, parts.len());
-            say(&format!("{rows} rows of {shards} shards in {}", stream::shown(output)));
-            fruitful(merged.failures < rows)
-        }
-        (Some(Command::Check { results }), _) => {
-            let found = check(results)?;
-            output::write(&checked(results, &found), None)?;
-            fruitful(!found.is_failure())
-        }
+        (Some(Command::Merge { parts, results, messages }), _) => merged(parts, results, &messages.open()),
+        (Some(Command::Check { results, messages }), _) => checked(results, &messages.open()),
         (None, Some(sweep)) => sweep.run(),
         // clap asks for the arguments first.
         (None, None) => Err(Failure::Usage("sweep needs SPEC.toml and -o RESULTS.csv".to_owned())),
@@ -130,8 +135,41 @@ fn time(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero()).ok_or_else(wrong)
 }
 
-/// What results are, in words.
-fn checked(results: &Path, found: &Checked) -> String {
+/// Joins parts.
+fn merged(parts: &[PathBuf], results: &Results, console: &Console) -> Result<ExitCode, Failure> {
+    let Results { output, .. } = results;
+    let inputs = parts.iter().fold(Inputs::default(), |inputs, part| inputs.with_results(part));
+    let mut outputs = Outputs::beside(inputs, results.replacing);
+    format::only(OUTPUT, output, Format::Csv)?;
+    outputs.file(OUTPUT, output)?;
+    if !stream::is_stream(output) {
+        outputs.file(OUTPUT, &sidecar::path(output))?;
+    }
+    let merged = merge(parts, output, results.existing())?;
+    console.say(&format!("{} rows of {} shards in {}", merged.rows, parts.len(), stream::shown(output)));
+    with_an_error(&merged.faults, console);
+    fruitful(merged.faults.failures < merged.rows, console)
+}
+
+/// Warns of rows with an error.
+fn with_an_error(faults: &Faults, console: &Console) {
+    if faults.total() > 0 {
+        let reasons: Vec<String> = faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
+        console.warn(&[format!("{} with an error: {}", faults.total(), reasons.join(", "))]);
+    }
+}
+
+/// Success where some row has a quantity.
+fn fruitful(is_fruitful: bool, console: &Console) -> Result<ExitCode, Failure> {
+    if is_fruitful {
+        return console.end();
+    }
+    Err(Failure::Incomplete("every row failed; the column error says why".to_owned()))
+}
+
+/// Says what results are.
+fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
+    let found = check(results)?;
     let shard =
         if found.shard == Shard::WHOLE { String::new() } else { format!(" of shard {}", found.shard) };
     let state = if found.rows == found.of { "complete" } else { "the same command goes on from there" };
@@ -149,23 +187,18 @@ fn checked(results: &Path, found: &Checked) -> String {
     if found.is_torn {
         text.push_str("The last line is torn: the next run cuts it off.\n");
     }
-    text
-}
-
-/// Success where some row has a quantity.
-fn fruitful(is_fruitful: bool) -> Result<ExitCode, Failure> {
-    if is_fruitful {
-        return Ok(ExitCode::SUCCESS);
+    output::print(text)?;
+    with_an_error(&found.faults, console);
+    if found.rows < found.of {
+        return Err(Failure::Incomplete(format!("{} of {} rows are there", found.rows, found.of)));
     }
-    Err(Failure::Incomplete("every row failed; the column error says why".to_owned()))
+    fruitful(!found.is_failure(), console)
 }
 
-fn existing(overwrite: bool) -> Existing {
-    if overwrite { Existing::Overwrite } else { Existing::GoOn }
-}
-
-fn say(text: &str) {
-    let _ = writeln!(io::stderr(), "pulloff: {text}");
+impl Results {
+    fn existing(&self) -> Existing {
+        if self.replacing.overwrite { Existing::Overwrite } else { Existing::GoOn }
+    }
 }
 
 /// The table of quantities as text.
@@ -187,16 +220,23 @@ fn quantities() -> String {
 
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
-        output::csv_only(&self.output)?;
-        let spec = spec::load(&super::problem::store(), &self.spec)?;
-        let results = self.open(&spec)?;
+        let console = self.messages.open();
+        format::only(OUTPUT, &self.results.output, Format::Csv)?;
+        let loaded = spec::load(&super::problem::store(), &self.spec, &self.changes.all())?;
+        let subject = Subject {
+            results: output::shown(&self.results.output),
+            identity: spec::identity(&loaded.spec),
+            shard: self.shard,
+        };
+        let status = self.look(&loaded, &subject)?;
+        let spec = loaded.spec;
+        let results = self.open(&spec, &console)?;
         let stop = Stop::catch()?;
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let jobs = self.jobs.map_or_else(cores, usize::from);
         let [before, of] = [results.rows, self.shard.len(spec.rows)];
-        let files = [&*self.spec, &*self.output];
-        let mut status = Reporter::begin(self.status.as_deref(), files, self.shard, [before, of])?;
-        let bar = bar(of, before);
+        let mut status = Reporter::begin(status, subject, [before, of])?;
+        let bar = bar(of, before, console.is_quiet());
         let begun = Instant::now();
         let means = Means { jobs, row_limit: self.row_limit };
         let summary = compute(&spec, self.shard, results, means, &stop, |rows, faults| {
@@ -210,15 +250,15 @@ impl Sweep {
         let summary = summary?;
         status.end(&summary);
         if let Some(trouble) = &status.trouble {
-            say(&format!("warning: the status is not that of the end: {trouble}"));
+            console.warn(&[format!("the status is not that of the end: {trouble}")]);
         }
-        self.tell(&spec, &summary, jobs, begun.elapsed());
+        self.tell(&spec, &summary, jobs, begun.elapsed(), &console);
         match stop.signal().filter(|_| !summary.is_complete()) {
             // A shard of failures alone may be a part of a good sweep.
-            None => fruitful(self.shard != Shard::WHOLE || !summary.is_failure()),
+            None => fruitful(self.shard != Shard::WHOLE || !summary.is_failure(), &console),
             Some(signal) => {
                 let rows = summary.before + summary.now;
-                let kept = if stream::is_stream(&self.output) {
+                let kept = if stream::is_stream(&self.results.output) {
                     ""
                 } else {
                     ", all kept; the same command goes on from there"
@@ -229,14 +269,35 @@ impl Sweep {
         }
     }
 
+    /// Looks at all outputs; the status where there is one.
+    fn look(&self, loaded: &spec::Loaded, subject: &Subject) -> Result<Option<Sink>, Failure> {
+        let inputs = Inputs::default().with("the spec", &self.spec);
+        let inputs = loaded.preset.iter().fold(inputs, |inputs, file| inputs.with("the preset", file));
+        let inputs = spec::presets(&loaded.spec).fold(inputs, |inputs, preset| inputs.with_data(&preset));
+        // The axis would win, without a word.
+        let changes = self.changes.all();
+        let keys = changes.iter().filter_map(|change| change.split_once('=')).map(|(key, _)| key.trim());
+        if let Some(key) = keys.into_iter().find(|key| loaded.spec.axes.iter().any(|axis| axis.key == **key))
+        {
+            return Err(Failure::Usage(format!("--set {key}: is an axis of this sweep", key = quote(key))));
+        }
+        let Results { output, replacing } = &self.results;
+        let mut outputs = Outputs::beside(inputs, *replacing);
+        outputs.kept(OUTPUT, output)?;
+        if !stream::is_stream(output) {
+            outputs.kept(OUTPUT, &sidecar::path(output))?;
+        }
+        self.status.as_ref().map(|file| subject.sink(file, &mut outputs, *replacing)).transpose()
+    }
+
     /// The results, once nobody else writes them.
-    fn open(&self, spec: &Spec) -> Result<Output, Failure> {
+    fn open(&self, spec: &Spec, console: &Console) -> Result<Output, Failure> {
         let mut has_told = false;
         loop {
-            match Output::open(&self.output, spec, self.shard, existing(self.overwrite)) {
+            match Output::open(&self.results.output, spec, self.shard, self.results.existing()) {
                 Err(OutputError::Busy { path }) if self.wait => {
                     if !has_told {
-                        say(&format!("{path}: another pulloff is writing it; waiting for its end"));
+                        console.say(&format!("{path}: another pulloff is writing it; waiting for its end"));
                         has_told = true;
                     }
                     sleep(PAUSE);
@@ -247,11 +308,12 @@ impl Sweep {
     }
 
     /// The summary on standard error.
-    fn tell(&self, spec: &Spec, summary: &Summary, jobs: usize, took: Duration) {
+    fn tell(&self, spec: &Spec, summary: &Summary, jobs: usize, took: Duration, console: &Console) {
         let rows = summary.before + summary.now;
         let kept =
             if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };
-        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&self.output));
+        let mut text =
+            format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&self.results.output));
         let seconds = took.as_secs_f64();
         if summary.now > 0 && seconds > 0.0 {
             let rate = summary.now as f64 / seconds;
@@ -259,19 +321,14 @@ impl Sweep {
             // Writing to a String cannot fail.
             let _ = write!(text, "; {} s, {} rows/s on {threads}", short(seconds, 3), significant(rate, 3));
         }
-        say(&text);
-        let faults = summary.faults.total();
-        if faults > 0 {
-            let reasons: Vec<String> =
-                summary.faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
-            say(&format!("{faults} with an error: {}", reasons.join(", ")));
-        }
+        console.say(&text);
+        with_an_error(&summary.faults, console);
         if summary.is_complete()
             && self.shard == Shard::WHOLE
-            && !stream::is_stream(&self.output)
-            && let Some(line) = how_to_plot(spec, &self.output)
+            && !stream::is_stream(&self.results.output)
+            && let Some(line) = how_to_plot(spec, &self.results.output)
         {
-            say(&line);
+            console.say(&line);
         }
     }
 }
@@ -292,8 +349,9 @@ fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
 }
 
 /// The progress on standard error; none where that is no terminal.
-fn bar(rows: u64, before: u64) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::stderr_with_hz(5));
+fn bar(rows: u64, before: u64, hidden: bool) -> ProgressBar {
+    let target = if hidden { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(5) };
+    let bar = ProgressBar::with_draw_target(Some(rows), target);
     let style = "{wide_bar} {pos}/{len} rows  {per_sec}  {eta} left  {msg}";
     let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
     bar.set_style(style.progress_chars("=> "));

@@ -1,11 +1,13 @@
 //! How far a sweep is, as a small file that another program may read at any time.
 
 use super::Failure;
-use crate::store::{Overwrite, write_atomically};
+use super::format::{self, Format};
+use super::output::{Outputs, Replacing, Sink, shown};
+use crate::store::file::{LARGEST, read_text};
+use crate::store::stream;
 use crate::sweep::{Shard, Summary};
-use pulloff_engine::text::show_path;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// The file is replaced so often at most.
@@ -18,6 +20,8 @@ struct Status<'a> {
     /// `running`, `complete` or `stopped`.
     state: &'a str,
     results: &'a str,
+    /// The hash of all that the numbers follow from.
+    identity: &'a str,
     shard: String,
     /// The rows that are there, of all of the shard.
     rows: u64,
@@ -31,12 +35,47 @@ struct Status<'a> {
     process: u32,
 }
 
+/// Of what a status file tells.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// How messages call the results.
+    pub results: String,
+    pub identity: String,
+    pub shard: Shard,
+}
+
+impl Subject {
+    /// Whether `text` is a status of this very part of this very sweep, whatever its rows.
+    fn is_of(&self, text: &str) -> bool {
+        let Ok(status) = serde_json::from_str::<serde_json::Value>(text) else { return false };
+        let has = |name: &str, value: &str| status.get(name).and_then(|found| found.as_str()) == Some(value);
+        has("identity", &self.identity) && has("shard", &self.shard.to_string())
+    }
+
+    /// Looks at the file of the status before anything is computed.
+    /// Errors: There is another file, and it is not to be replaced.
+    pub fn sink(&self, file: &Path, outputs: &mut Outputs, replacing: Replacing) -> Result<Sink, Failure> {
+        let refused = |what: &str| Failure::Usage(format!("--status {}: {what}", shown(file)));
+        format::only("--status", file, Format::Json)?;
+        if stream::is_stream(file) {
+            return Err(refused("is replaced as a whole again and again; name a file"));
+        }
+        let sink = outputs.kept("--status", file)?;
+        let is_ours = || read_text(file, LARGEST).is_ok_and(|(text, _)| self.is_of(&text));
+        if file.exists() && !replacing.overwrite && !is_ours() {
+            return Err(refused(
+                "exists already, and is not the status of this sweep; --overwrite replaces it",
+            ));
+        }
+        Ok(sink)
+    }
+}
+
 /// The file, while a sweep runs.
 #[derive(Debug)]
 pub struct Reporter {
-    file: Option<PathBuf>,
-    results: String,
-    shard: Shard,
+    sink: Option<Sink>,
+    subject: Subject,
     of: u64,
     before: u64,
     begun: Instant,
@@ -47,31 +86,13 @@ pub struct Reporter {
 
 impl Reporter {
     /// Begins the file, where one is wanted.
-    /// Errors: It cannot be written, or is the file of the results or the spec.
-    pub fn begin(
-        file: Option<&Path>,
-        [spec, results]: [&Path; 2],
-        shard: Shard,
-        [before, of]: [u64; 2],
-    ) -> Result<Self, Failure> {
+    /// Errors: It cannot be written.
+    pub fn begin(sink: Option<Sink>, subject: Subject, [before, of]: [u64; 2]) -> Result<Self, Failure> {
         let now = Instant::now();
-        let shown = show_path(results);
-        let mut reporter =
-            Self { file: None, results: shown, shard, of, before, begun: now, written: now, trouble: None };
-        let Some(file) = file else { return Ok(reporter) };
-        let beside = crate::sweep::sidecar::path(results);
-        let same = |other: &Path| {
-            file == other
-                || file.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(a, b)| a == b)
-        };
-        if [spec, results, &beside].into_iter().any(same) {
-            return Err(Failure::Usage(format!(
-                "--status {}: is a file of the sweep itself",
-                show_path(file)
-            )));
+        let reporter = Self { sink, subject, of, before, begun: now, written: now, trouble: None };
+        if let Some(sink) = &reporter.sink {
+            sink.write(reporter.text("running", before, 0))?;
         }
-        reporter.file = Some(file.to_owned());
-        write_atomically(file, reporter.text("running", before, 0).as_bytes(), Overwrite::Always)?;
         Ok(reporter)
     }
 
@@ -81,8 +102,9 @@ impl Reporter {
         let status = Status {
             schema: 1,
             state,
-            results: &self.results,
-            shard: self.shard.to_string(),
+            results: &self.subject.results,
+            identity: &self.subject.identity,
+            shard: self.subject.shard.to_string(),
             rows,
             of: self.of,
             before: self.before,
@@ -96,7 +118,7 @@ impl Reporter {
 
     /// So many rows are there, so many of them with an error.
     pub fn tell(&mut self, rows: u64, with_error: u64) {
-        if self.file.is_some() && self.written.elapsed() >= PAUSE {
+        if self.sink.is_some() && self.written.elapsed() >= PAUSE {
             self.replace("running", rows, with_error);
         }
     }
@@ -108,9 +130,9 @@ impl Reporter {
     }
 
     fn replace(&mut self, state: &str, rows: u64, with_error: u64) {
-        let Some(file) = &self.file else { return };
+        let Some(sink) = &self.sink else { return };
         // The rows matter more than this: a full disk ends the sweep by itself.
-        let done = write_atomically(file, self.text(state, rows, with_error).as_bytes(), Overwrite::Always);
+        let done = sink.write(self.text(state, rows, with_error));
         self.trouble = done.err().map(|error| error.to_string());
         self.written = Instant::now();
     }

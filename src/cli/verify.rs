@@ -1,6 +1,8 @@
 //! `pulloff verify`: our numbers against theory.
 
-use super::{Failure, output};
+use super::Failure;
+use super::format::{Format, FormatArgument};
+use super::output::{Destination, Inputs};
 use clap::Args;
 use pulloff_engine::report::{VerifyReport, json, table};
 use pulloff_engine::verify::{Settings, verify};
@@ -9,15 +11,18 @@ use std::process::ExitCode;
 /// The arguments of `pulloff verify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Write JSON instead of a table
-    #[arg(long)]
-    json: bool,
     /// Only the rows whose heading or name contains this
     #[arg(long, value_name = "PATTERN")]
     only: Option<String>,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
+    let sink = arguments.destination.sink(Inputs::default())?;
     let groups = verify(&Settings::default())?;
     let report = VerifyReport::new(&groups, arguments.only.as_deref());
     if report.total == 0 {
@@ -27,8 +32,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             headings.join("\n  ")
         )));
     }
-    let text = if arguments.json { json(&report)? } else { table::verify(&report) };
-    output::write(&text, None)?;
+    sink.write(match format {
+        Format::Table => table::verify(&report),
+        Format::Csv => report.table()?.csv()?,
+        Format::Json => json(&report)?,
+    })?;
     verdict(&report)
 }
 

@@ -65,12 +65,13 @@ pub struct Bar<'a> {
     begun: Instant,
     shown: OnceCell<ProgressBar>,
     stop: Option<&'a Stop>,
+    hidden: bool,
 }
 
 impl<'a> Bar<'a> {
     /// For a command that begins now. Without `stop` a signal ends the program, as ever.
-    pub fn begin(stop: Option<&'a Stop>) -> Self {
-        Self { begun: Instant::now(), shown: OnceCell::new(), stop }
+    pub fn begin(stop: Option<&'a Stop>, hidden: bool) -> Self {
+        Self { begun: Instant::now(), shown: OnceCell::new(), stop, hidden }
     }
 }
 
@@ -85,7 +86,7 @@ fn drawn() -> ProgressBar {
 
 impl Progress for Bar<'_> {
     fn report(&self, share: f64) {
-        if self.begun.elapsed() < MOMENT {
+        if self.hidden || self.begun.elapsed() < MOMENT {
             return;
         }
         // A share of a hundred.
@@ -112,15 +113,19 @@ mod tests {
 
     #[test]
     fn a_short_command_shows_no_bar() {
-        let bar = Bar::begin(None);
+        let bar = Bar::begin(None, false);
         bar.report(0.5);
         assert!(bar.shown.get().is_none());
-        let bar = Bar {
+        let long = |hidden| Bar {
             begun: Instant::now().checked_sub(2 * MOMENT).unwrap(),
             shown: OnceCell::new(),
             stop: None,
+            hidden,
         };
+        let [bar, hidden] = [false, true].map(long);
         bar.report(0.5);
+        hidden.report(0.5);
         assert_eq!(bar.shown.get().unwrap().position(), 50);
+        assert!(hidden.shown.get().is_none());
     }
 }

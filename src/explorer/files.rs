@@ -153,7 +153,7 @@ fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
 }
 
 /// The path a person typed, `~/` meaning the home folder.
-pub(super) fn target(path: &str) -> PathBuf {
+pub fn target(path: &str) -> PathBuf {
     match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
         (Some(rest), Some(home)) => Path::new(&home).join(rest),
         _ => PathBuf::from(path),

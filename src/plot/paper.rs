@@ -64,6 +64,12 @@ const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
 /// Of the contact this share counts in the differences of pressures: at an adhesive edge they have no bound.
 const COMPARED: f64 = 0.9;
 
+/// The names of all figures, in the order of the paper.
+pub const NAMES: [&str; 15] = [
+    "fig-1", "fig-2a", "fig-2b", "fig-3", "fig-4a", "fig-4b", "fig-5", "fig-7a", "fig-7b", "fig-8a",
+    "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b",
+];
+
 /// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
 pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
     let mut sheets = Vec::new();

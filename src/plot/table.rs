@@ -29,31 +29,3 @@ pub fn csv(figure: &Figure) -> Result<String, csv::Error> {
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
-
-/// Whether a file that begins with `line` is the table of a figure.
-pub fn is_header(line: &str) -> bool {
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
-    let record = reader.records().next().and_then(Result::ok);
-    record.is_some_and(|fields| {
-        fields.len() == FIRST.len() + 2 && fields.iter().zip(FIRST).all(|(a, b)| a == b)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::figure::Axis;
-
-    #[test]
-    fn a_table_is_known_by_its_first_line() {
-        let axis = |title: &str| Axis::pure(title.to_owned());
-        let figure = Figure::of(axis("E*, \"quoted\" (µm)"), axis("P/Pc"), Vec::new());
-        let text = csv(&figure).unwrap();
-        assert!(is_header(text.lines().next().unwrap()));
-        for other in
-            ["", "name,curve", "name,curve,x,y,z", "row,gap.amplitude,enhancement,error", "Name,curve,x,y"]
-        {
-            assert!(!is_header(other), "{other}");
-        }
-    }
-}

@@ -238,17 +238,23 @@ fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), Write
     Ok(())
 }
 
-/// Refuses what can be no file of results that grows in its place: a folder, a device, a file that is read-only.
-pub fn check_growing(path: &Path) -> Result<(), WriteError> {
-    let metadata = match path.metadata() {
-        Ok(metadata) => metadata,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(cause) => return Err(WriteError::Io { path: show_path(path), doing: "look at it", cause }),
+/// Looks, before anything is computed, whether `path` could be written: nothing is there that must not be replaced, and its
+/// folder takes a file.
+/// Errors: As [`write_atomically`], which may still fail for other reasons.
+pub fn check(path: &Path, overwrite: Overwrite) -> Result<(), WriteError> {
+    let target = follow(path)?;
+    guard(path, &target, overwrite)?;
+    let failed = |cause: io::Error| WriteError::Io {
+        path: show_path(path),
+        doing: "make a file in its folder",
+        cause,
     };
-    if !metadata.is_file() {
-        return Err(WriteError::NotRegular { path: show_path(path), what: kind_of(&metadata) });
+    let folder = folder_of(&target);
+    let is_name = target.file_name().is_some() && !target.as_os_str().as_encoded_bytes().ends_with(b"/");
+    if !is_name || !folder.metadata().map_err(failed)?.is_dir() {
+        return Err(failed(io::ErrorKind::NotADirectory.into()));
     }
-    writable(path, path, &metadata)
+    access(folder, Access::WRITE_OK | Access::EXEC_OK).map_err(|errno| failed(errno.into()))
 }
 
 /// Makes the rename last. File systems that cannot sync a folder have their own ways.

@@ -8,6 +8,7 @@
 //! | [`name`] | which names a person's preset may have |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
 //! | [`hash`] | names that follow from a content |
+//! | [`place`] | which file a path leads to, whatever it is called |
 //! | [`stream`] | standard input and output, pipes and devices, which are read and written straight |
 //! | [`atomic`] | writing a file whole or not at all |
 //! | [`temporary`] | the temporary file of a save, and what a killed save has left |
@@ -20,6 +21,7 @@ pub mod file;
 pub mod hash;
 pub mod lock;
 pub mod name;
+pub mod place;
 pub mod presets;
 pub mod stream;
 pub mod temporary;

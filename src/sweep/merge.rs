@@ -1,6 +1,6 @@
 //! Parts of a sweep joined: to the byte the results of a single run.
 
-use super::output::{Existing, OutputError};
+use super::output::{Existing, Faults, OutputError};
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
@@ -111,12 +111,11 @@ impl Part {
     }
 }
 
-/// What was joined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What parts were joined to.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Merged {
     pub rows: u64,
-    /// The rows with a fault and no quantity.
-    pub failures: u64,
+    pub faults: Faults,
 }
 
 /// Joins `parts`, in any order, to `results`.
@@ -162,20 +161,20 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
     };
     if stream::is_stream(results) {
         // A stream cannot be taken back, so all parts are checked first.
-        let failures = fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
+        let faults = fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
         let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
         fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, sidecar.rows)?;
-        return Ok(Merged { rows: sidecar.rows, failures });
+        return Ok(Merged { rows: sidecar.rows, faults });
     }
     let mut open = open()?;
     let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
-    let mut failures = 0;
-    write_filled(results, overwrite, |file| {
-        failures = fill(file, results, &mut open, &layout, sidecar.rows)?;
-        Ok::<(), MergeError>(())
+    let mut faults = Faults::default();
+    write_filled(results, overwrite, |file| -> Result<(), MergeError> {
+        faults = fill(file, results, &mut open, &layout, sidecar.rows)?;
+        Ok(())
     })?;
     write_atomically(&sidecar::path(results), whole.as_bytes(), Overwrite::Always)?;
-    Ok(Merged { rows: sidecar.rows, failures })
+    Ok(Merged { rows: sidecar.rows, faults })
 }
 
 fn listed(names: &[String]) -> String {
@@ -193,13 +192,9 @@ fn fill(
     parts: &mut [Part],
     layout: &Layout,
     rows: u64,
-) -> Result<u64, MergeError> {
-    let failed = |cause| {
-        MergeError::from(OutputError::Io {
-            path: stream::shown(results),
-            doing: "write",
-            cause: explained(cause),
-        })
+) -> Result<Faults, MergeError> {
+    let failed = |cause| -> MergeError {
+        OutputError::Io { path: stream::shown(results), doing: "write", cause: explained(cause) }.into()
     };
     let mut out = BufWriter::new(file);
     for part in parts.iter_mut() {
@@ -208,7 +203,7 @@ fn fill(
         checked.map_err(|wrong| part.changed(wrong))?;
     }
     out.write_all(layout.header().as_bytes()).map_err(failed)?;
-    let (mut row, mut failures) = (0, 0);
+    let (mut row, mut faults) = (0, Faults::default());
     while row < rows {
         for part in parts.iter_mut() {
             if row == rows {
@@ -221,7 +216,7 @@ fn fill(
                 return Err(MergeError::Incomplete { path, rows: had, of, shard });
             };
             match layout.outcome(row, line) {
-                Ok(outcome) => failures += u64::from(outcome.is_failure()),
+                Ok(outcome) => faults.count(outcome),
                 Err(wrong) => return Err(part.changed(wrong)),
             }
             out.write_all(line).map_err(failed)?;
@@ -234,5 +229,5 @@ fn fill(
         }
     }
     out.flush().map_err(failed)?;
-    Ok(failures)
+    Ok(faults)
 }

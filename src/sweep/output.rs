@@ -9,7 +9,8 @@ use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::identity;
 use crate::mend::Mend;
-use crate::store::atomic::{Overwrite, WriteError, check_growing, explained, write_atomically};
+use crate::store::atomic::{Overwrite, WriteError, check as check_writable, explained, write_atomically};
+use crate::store::file::{LARGEST, read_text};
 use crate::store::lock::lock_file;
 use crate::store::stream;
 use pulloff_engine::sweep::Spec;
@@ -41,6 +42,9 @@ pub enum OutputError {
     /// There is a file, and nothing beside it says that it is a sweep's.
     #[error("{path}: exists already, and is not known to be of a sweep ({cause}); --overwrite replaces it")]
     NotOurs { path: String, cause: SidecarError },
+    /// The file beside results that are not there.
+    #[error("{path}: exists already, and does not describe this sweep; --overwrite replaces it")]
+    Described { path: String },
     #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
     OtherSweep { path: String, what: String },
     #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
@@ -64,9 +68,11 @@ impl Mend for OutputError {
             Self::Io { cause, .. } => cause.can_be_mended(),
             Self::NotOurs { cause, .. } => cause.can_be_mended(),
             Self::Threads(_) => false,
-            Self::Busy { .. } | Self::OtherSweep { .. } | Self::OtherShard { .. } | Self::Changed { .. } => {
-                true
-            }
+            Self::Busy { .. }
+            | Self::Described { .. }
+            | Self::OtherSweep { .. }
+            | Self::OtherShard { .. }
+            | Self::Changed { .. } => true,
         }
     }
 }
@@ -125,7 +131,11 @@ impl Output {
         if stream::is_stream(path) {
             return Self::straight(path, spec);
         }
-        check_growing(path)?;
+        check_writable(path, Overwrite::Always)?;
+        let description = sidecar::text(spec, shard);
+        if path.metadata().map_or(0, |metadata| metadata.len()) == 0 {
+            begins(path, &description, existing)?;
+        }
         let file =
             OpenOptions::new().read(true).append(true).create(true).open(path).map_err(failed("open"))?;
         if !lock_file(&file, Duration::ZERO).map_err(failed("lock"))? {
@@ -137,7 +147,8 @@ impl Output {
         if file.metadata().map_err(failed("look at"))?.len() > 0 {
             check(path, spec, shard)?;
         } else {
-            write_atomically(&sidecar::path(path), sidecar::text(spec, shard).as_bytes(), Overwrite::Always)?;
+            begins(path, &description, existing)?;
+            write_atomically(&sidecar::path(path), description.as_bytes(), Overwrite::Always)?;
         }
         let mut output = Self::new(file, shown);
         output.scan(spec, shard)?;
@@ -221,6 +232,18 @@ impl Output {
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.flush()?;
         if self.is_stream { Ok(()) } else { self.file.sync_all().map_err(self.failed("write")) }
+    }
+}
+
+/// Refuses to begin results where the file beside them is there and would say something else.
+fn begins(path: &Path, description: &str, existing: Existing) -> Result<(), OutputError> {
+    let beside = sidecar::path(path);
+    if existing == Existing::Overwrite || beside.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    match read_text(&beside, 4 * LARGEST) {
+        Ok((text, _)) if text == description => Ok(()),
+        _ => Err(OutputError::Described { path: show_path(&beside) }),
     }
 }
 

@@ -10,8 +10,9 @@ use pulloff_engine::preset::{Preset, write};
 use pulloff_engine::sweep::SpecError;
 use pulloff_engine::sweep::spec::{Design, Spec};
 use sha2::{Digest, Sha256};
+use std::cell::RefCell;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The keys that name files of data.
 const FILES: [&str; 2] = ["gap.file", FILE];
@@ -34,16 +35,35 @@ impl Mend for LoadError {
     }
 }
 
+/// A spec from a file, and what else was read for it.
+#[derive(Debug)]
+pub struct Loaded {
+    pub spec: Spec,
+    /// The file of the preset, where it is not one that comes with the program.
+    pub preset: Option<PathBuf>,
+}
+
 /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
-/// one where the spec comes through a pipe.
-pub fn load(store: &Store, path: &Path) -> Result<Spec, LoadError> {
+/// one where the spec comes through a pipe. `changes` are laid over the preset behind those of the spec.
+pub fn load(store: &Store, path: &Path, changes: &[String]) -> Result<Loaded, LoadError> {
     let (name, text) = stream::read_given(path, file::LARGEST)?;
     let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
-    Ok(read(store, folder, &name, &text)?)
+    Ok(read_changed(store, folder, &name, &text, changes)?)
 }
 
 /// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
 pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Spec, SpecError> {
+    read_changed(store, folder, name, text, &[]).map(|loaded| loaded.spec)
+}
+
+fn read_changed(
+    store: &Store,
+    folder: &Path,
+    name: &str,
+    text: &str,
+    changes: &[String],
+) -> Result<Loaded, SpecError> {
+    let file = RefCell::new(None);
     let preset = |name: &str, set: &[&str]| {
         let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
         let source = if is_path {
@@ -52,9 +72,18 @@ pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Spec
             store.resolve(name)
         };
         let source = source.map_err(|error| error.to_string())?;
-        store.load(&source, set).map(|loaded| loaded.preset).map_err(|error| error.to_string())
+        file.replace(source.path().map(Path::to_path_buf));
+        let preset = store.load(&source, set).map_err(|error| error.to_string())?.preset;
+        if changes.is_empty() {
+            return Ok(preset);
+        }
+        let all: Vec<&str> = set.iter().copied().chain(changes.iter().map(String::as_str)).collect();
+        // What was wrong without them was told above.
+        let changed = store.load(&source, &all).map_err(|error| format!("--set: {error}"))?;
+        Ok(changed.preset)
     };
-    Spec::read(&preset, name, text)
+    let spec = Spec::read(&preset, name, text)?;
+    Ok(Loaded { spec, preset: file.into_inner() })
 }
 
 /// All that the results follow from, in one form: two specs that differ in it are different sweeps.
@@ -90,6 +119,11 @@ pub fn identity(spec: &Spec) -> String {
 
 /// Hashes of the measured profiles and curves it reads, that of the preset first: their names say nothing of their content.
 fn data(spec: &Spec) -> Vec<String> {
+    presets(spec).flat_map(|preset| digests(&preset)).collect()
+}
+
+/// The preset, and it with each file of data that an axis names.
+pub fn presets(spec: &Spec) -> impl Iterator<Item = Preset> {
     let named = spec.axes.iter().filter(|axis| FILES.contains(&&*axis.key)).flat_map(|axis| {
         let preset = |value| {
             let mut preset = spec.preset.clone();
@@ -97,7 +131,7 @@ fn data(spec: &Spec) -> Vec<String> {
         };
         (0..axis.count().unwrap_or(0)).filter_map(|at| axis.value(at)).filter_map(preset).collect::<Vec<_>>()
     });
-    std::iter::once(spec.preset.clone()).chain(named).flat_map(|preset| digests(&preset)).collect()
+    std::iter::once(spec.preset.clone()).chain(named)
 }
 
 /// Hashes of the rows of a measured profile and of the file of a measured curve.

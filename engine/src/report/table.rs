@@ -1,10 +1,12 @@
 //! An unloading and a verification as text for a terminal.
 
 use super::number::{difference, loss, short, significant, with_unit};
+use super::rows::Table;
 use super::unload::{EventReport, UnloadReport};
 use super::verify::{RowReport, VerifyReport};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
+use serde_json::Value;
 use std::fmt::Write;
 
 /// Aligns cells in columns, the first `left` of them left and the others right; a line for each row.
@@ -29,6 +31,18 @@ pub(super) fn aligned(rows: &[Vec<String>], left: usize) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Any rows as lines of text under the names of their columns, numbers to eight digits.
+pub fn rows(table: &Table) -> String {
+    let shown = |cell: &Value| match cell {
+        Value::Null => "-".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => significant(number.as_f64().unwrap_or(f64::NAN), 8),
+        other => other.to_string(),
+    };
+    let cells = table.rows.iter().map(|row| row.iter().map(shown).collect());
+    aligned(&std::iter::once(table.columns.clone()).chain(cells).collect::<Vec<_>>(), 0)
 }
 
 /// The unloading as lines of text.

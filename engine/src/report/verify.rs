@@ -1,6 +1,7 @@
 //! Our numbers against theory, and against each other, as a document.
 
 use super::SCHEMA;
+use super::rows::{RowsError, Table};
 use crate::verify::{Group, Row};
 use serde::Serialize;
 
@@ -45,6 +46,10 @@ pub struct RowReport {
     pub passes: bool,
 }
 
+/// The columns of the rows.
+pub const COLUMNS: &[&str] =
+    &["group", "measure", "what", "ours", "exact", "other", "difference", "bound", "passes"];
+
 impl VerifyReport {
     /// The document of `groups`, or of the rows of which the group or the name contains `only`, in any case of letters.
     pub fn new(groups: &[Group], only: Option<&str>) -> Self {
@@ -67,6 +72,14 @@ impl VerifyReport {
             total: rows.len(),
             rows,
         }
+    }
+
+    /// The rows under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        Table::of(COLUMNS, &self.rows)
     }
 
     /// The count in words.

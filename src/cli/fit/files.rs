@@ -1,8 +1,8 @@
 //! The files that are fitted: those with measured curves, and not what a fit wrote.
 
 use super::table;
-use crate::cli::console::note;
-use crate::cli::{Failure, output};
+use crate::cli::Failure;
+use crate::cli::console::Console;
 use crate::store::file::first_line;
 use pulloff_engine::report::fit::RESIDUALS;
 use pulloff_engine::text::show_path;
@@ -23,7 +23,7 @@ fn written_by_a_fit(path: &Path) -> Option<&'static str> {
 
 /// The measured curves among `files`: a pattern such as `*.csv` also names what earlier fits wrote beside them, which is left out
 /// with a note.
-pub(super) fn measured(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn measured(files: Vec<PathBuf>, console: &Console) -> Result<Vec<PathBuf>, Failure> {
     let mut kept = Vec::new();
     let mut left_out = Vec::new();
     for path in files {
@@ -36,17 +36,7 @@ pub(super) fn measured(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Failure> {
         return Err(Failure::Usage(left_out.join("\n")));
     }
     for text in &left_out {
-        note(Some(&format!("{text}; it is left out")));
+        console.note(Some(&format!("{text}; it is left out")));
     }
     Ok(kept)
-}
-
-/// Refuses an output that would replace a file of points.
-pub(super) fn spared(files: &[PathBuf], file: Option<&Path>, option: &str) -> Result<(), Failure> {
-    let Some(file) = file.and_then(|file| file.canonicalize().ok()) else { return Ok(()) };
-    if files.iter().any(|path| path.canonicalize().is_ok_and(|path| path == file)) {
-        let text = format!("{option} {}: is the file of the points; write to another", output::shown(&file));
-        return Err(Failure::Usage(text));
-    }
-    Ok(())
 }

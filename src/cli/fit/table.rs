@@ -1,13 +1,14 @@
 //! The table of many fits: one row for each file, whole after each, so that a rerun goes on where it ended.
 
-use crate::cli::{Failure, output};
+use crate::cli::Failure;
+use crate::cli::output::{Replacing, Sink, shown};
 use crate::store::hash::sha256;
 use pulloff_engine::text::show_path;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The table of many files: whole after each.
 pub(super) struct Table {
-    path: PathBuf,
+    sink: Sink,
     settings: String,
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -25,23 +26,28 @@ pub(super) fn is_header(line: &str) -> bool {
 }
 
 impl Table {
-    /// The table in `path`, or a new one.
-    pub(super) fn open(path: &Path, settings: &str) -> Result<Self, Failure> {
-        output::csv_only(path)?;
+    /// The table in `path`, or a new one; with `--overwrite` always a new one.
+    pub(super) fn open(
+        path: &Path,
+        sink: Sink,
+        replacing: Replacing,
+        settings: &str,
+    ) -> Result<Self, Failure> {
         let mut table = Self {
-            path: path.to_owned(),
+            sink,
             settings: settings.to_owned(),
             header: [FILE, STATE, FINGERPRINT].map(str::to_owned).to_vec(),
             rows: Vec::new(),
         };
-        if !path.exists() {
+        if replacing.overwrite || !path.is_file() {
             return Ok(table);
         }
         let (text, _) = crate::store::file::read_text(path, pulloff_engine::cells::LARGEST)?;
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
-        let wrong = |what: &str| Failure::Usage(format!("--table {}: {what}", output::shown(path)));
+        let wrong = |what: &str| Failure::Usage(format!("--table {}: {what}", shown(path)));
+        let other = "exists already and holds something else than fits; --overwrite replaces it";
         for record in reader.records() {
-            let record = record.map_err(|error| wrong(&error.to_string()))?;
+            let record = record.map_err(|_| wrong(other))?;
             table.rows.push(record.iter().map(str::to_owned).collect());
         }
         if table.rows.is_empty() {
@@ -49,7 +55,7 @@ impl Table {
         }
         table.header = table.rows.remove(0);
         if !is_header(&table.header.join(",")) {
-            return Err(wrong("holds something else than fits; name another"));
+            return Err(wrong(other));
         }
         Ok(table)
     }
@@ -92,7 +98,7 @@ impl Table {
             writer.write_record(row)?;
         }
         let bytes = writer.into_inner().map_err(|error| Failure::Usage(error.to_string()))?;
-        output::write_bytes(&bytes, Some(&self.path))
+        self.sink.write(bytes)
     }
 
     /// Makes room for the columns of `wanted`: those of rows that were computed otherwise keep their cells under their names.
@@ -112,14 +118,38 @@ impl Table {
     }
 }
 
+/// The rows of fits with their headers as one table; a cell that a fit lacks is empty.
+pub(super) fn csv(fits: &[[Vec<String>; 2]]) -> Result<String, Failure> {
+    let mut columns: Vec<&String> = Vec::new();
+    for [header, _] in fits {
+        columns.extend(header.iter().filter(|name| !columns.contains(name)).collect::<Vec<_>>());
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&columns)?;
+    for [header, row] in fits {
+        let cell = |name: &&String| {
+            let place = header.iter().position(|own| own == *name);
+            place.and_then(|place| row.get(place)).map_or("", String::as_str)
+        };
+        writer.write_record(columns.iter().map(cell))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::output::{Inputs, Outputs};
 
     fn fitted(file: &str, keys: &[&str]) -> [Vec<String>; 2] {
         let header = [FILE, STATE].into_iter().chain(keys.iter().copied()).map(str::to_owned).collect();
         let values = keys.iter().map(|key| format!("{key} of {file}"));
         [header, [file.to_owned(), "ok".to_owned()].into_iter().chain(values).collect()]
+    }
+
+    fn sink(path: &Path) -> Sink {
+        Outputs::beside(Inputs::default(), Replacing::default()).kept("--table", path).unwrap()
     }
 
     /// Rows of other keys stay under their own names.
@@ -128,7 +158,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         for (file, keys) in [("a", &["E", "gamma"][..]), ("b", &["E", "R"]), ("c", &["gamma"]), ("d", &[])] {
-            let mut table = Table::open(&path, "s").unwrap();
+            let mut table = Table::open(&path, sink(&path), Replacing::default(), "s").unwrap();
             let fingerprint = table.fingerprint(Path::new(file));
             table.add(Path::new(file), Some(&fingerprint), &fitted(file, keys)).unwrap();
             assert_eq!(table.state(Path::new(file)), Some("ok"));

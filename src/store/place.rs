@@ -1,0 +1,95 @@
+//! Which file a path leads to, whatever it is called: by symbolic links, hard links, descriptors.
+
+use super::atomic::{folder_of, follow};
+use super::stream::STANDARD;
+use std::ffi::OsString;
+use std::fs::Metadata;
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+
+/// Where a path leads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// What is there.
+    Node { device: u64, inode: u64, is_file: bool },
+    /// Nothing yet: a name in a folder.
+    Name { device: u64, inode: u64, name: OsString },
+}
+
+impl Place {
+    /// Of what is written to `path`, where `-` is standard output; `None` where it leads nowhere.
+    #[must_use]
+    pub fn written(path: &Path) -> Option<Self> {
+        if path == Path::new(STANDARD) {
+            return behind(rustix::stdio::stdout());
+        }
+        if let Ok(metadata) = path.metadata() {
+            return Some(Self::node(&metadata));
+        }
+        let target = follow(path).ok()?;
+        let folder = folder_of(&target).metadata().ok()?;
+        let name = target.file_name()?.to_owned();
+        Some(Self::Name { device: folder.dev(), inode: folder.ino(), name })
+    }
+
+    /// Of what is read from `path`, where `-` is standard input; `None` where there is no regular file.
+    #[must_use]
+    pub fn read(path: &Path) -> Option<Self> {
+        let node = if path == Path::new(STANDARD) {
+            behind(rustix::stdio::stdin())
+        } else {
+            path.metadata().ok().map(|metadata| Self::node(&metadata))
+        };
+        node.filter(|node| matches!(node, Self::Node { is_file: true, .. }))
+    }
+
+    fn node(metadata: &Metadata) -> Self {
+        Self::Node { device: metadata.dev(), inode: metadata.ino(), is_file: metadata.is_file() }
+    }
+}
+
+/// What is behind an open descriptor.
+fn behind(descriptor: rustix::fd::BorrowedFd<'_>) -> Option<Place> {
+    // A descriptor of its own, which is closed again.
+    let file = std::fs::File::from(rustix::io::dup(descriptor).ok()?);
+    file.metadata().ok().map(|metadata| Place::node(&metadata))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn a_file_is_the_same_under_all_its_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("inner")).unwrap();
+        fs::write(at("file"), "text").unwrap();
+        fs::write(at("twin"), "text").unwrap();
+        fs::hard_link(at("file"), at("hard")).unwrap();
+        symlink("file", at("soft")).unwrap();
+        symlink("later", at("dangling")).unwrap();
+        let file = Place::written(&at("file"));
+        assert!(file.is_some() && file == Place::read(&at("file")));
+        for same in ["hard", "soft", "inner/../file"] {
+            assert_eq!(Place::written(&at(same)), file, "{same}");
+        }
+        assert_ne!(Place::written(&at("twin")), file);
+        // What is not there yet is a name in its folder.
+        let later = Place::written(&at("later"));
+        assert!(matches!(later, Some(Place::Name { .. })));
+        assert_eq!(Place::written(&at("dangling")), later);
+        assert_eq!(Place::written(&at("inner/../later")), later);
+        assert_ne!(Place::written(&at("inner/later")), later);
+        assert_eq!(Place::written(&at("none/later")), None);
+        // A folder or a device is nothing that is read.
+        assert!(
+            [folder.path(), Path::new("/dev/null"), &at("later")]
+                .map(Place::read)
+                .iter()
+                .all(Option::is_none)
+        );
+    }
+}
