@@ -12,8 +12,8 @@ use thiserror::Error;
 pub const LARGEST: u64 = 64 << 20;
 /// How many faults a message lists.
 pub const FAULTS_SHOWN: usize = 3;
-/// The longest line, in bytes; a row of numbers needs far less.
-pub const LONGEST_LINE: usize = 1024;
+/// The longest row, in bytes; a row of numbers needs far less.
+pub const LONGEST_LINE: usize = 2048;
 /// The largest number, as in presets.
 pub const LARGEST_NUMBER: f64 = 1e30;
 
@@ -39,6 +39,18 @@ impl<F> Faults<F> {
             self.shown.push((line, fault));
         }
         self.total += 1;
+    }
+
+    /// These and `more`, in the order of their lines.
+    #[must_use]
+    pub fn and(mut self, more: impl Iterator<Item = (usize, F)>) -> Self {
+        let mut other = Self::default();
+        more.for_each(|(line, fault)| other.add(line, fault));
+        self.total += other.total;
+        self.shown.append(&mut other.shown);
+        self.shown.sort_by_key(|(line, _)| *line);
+        self.shown.truncate(FAULTS_SHOWN);
+        self
     }
 }
 
@@ -108,18 +120,6 @@ pub fn number(text: &str, what: &'static str) -> Result<f64, CellFault> {
     }
 }
 
-/// The text that `bytes` are, without a byte order mark.
-///
-/// # Errors
-/// The first line that is not UTF-8.
-pub fn text_of(bytes: &[u8]) -> Result<&str, usize> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = bytes.get(..error.valid_up_to()).unwrap_or_default();
-        before.split(|byte| *byte == b'\n').count()
-    })?;
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
-}
-
 /// Whether a line holds what is not for the eye; a tab parts cells.
 pub fn is_unprintable(line: &str) -> bool {
     line.chars().any(|c| c != '\t' && is_unsafe(c))
@@ -132,6 +132,10 @@ pub enum Separator {
     Character(char),
     /// Any run of spaces.
     Spaces,
+    /// Two spaces or more: names that have spaces themselves.
+    Wide,
+    /// A comma and a space, where commas without one stand in numbers.
+    CommaSpace,
 }
 
 impl Separator {
@@ -140,13 +144,29 @@ impl Separator {
         [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
     }
 
-    /// The cells of a row.
+    /// The cells of a row. What stands in quotation marks is not parted.
     pub fn cells(self, line: &str) -> Vec<&str> {
         match self {
+            Self::Character(c) if line.contains('"') => quoted(line, |at| at == c),
             Self::Character(c) => line.split(c).map(bare).collect(),
+            Self::Spaces if line.contains('"') => {
+                quoted(line, char::is_whitespace).into_iter().filter(|cell| !cell.is_empty()).collect()
+            }
             Self::Spaces => line.split_whitespace().map(bare).collect(),
+            Self::Wide => line.split("  ").map(bare).filter(|cell| !cell.is_empty()).collect(),
+            Self::CommaSpace => line.split(", ").map(bare).collect(),
         }
     }
+}
+
+/// The cells of a line with quotation marks.
+fn quoted(line: &str, parts: impl Fn(char) -> bool) -> Vec<&str> {
+    let mut is_open = false;
+    let parting = |c: char| {
+        is_open ^= c == '"';
+        !is_open && parts(c)
+    };
+    line.split(parting).map(bare).collect()
 }
 
 /// A cell without the space and the quotation marks around it.
@@ -203,6 +223,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
                     cells.push(std::mem::take(&mut at));
                 }
             }
+            (None, Separator::CommaSpace) if c == ',' => cells.push(std::mem::take(&mut at)),
             (None, _) => at.0.push(c),
         }
     }

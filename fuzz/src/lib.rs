@@ -6,6 +6,7 @@ use pulloff::config;
 use pulloff_engine::gap::formula::Formula;
 use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended};
+use pulloff_engine::measured::{self, Spec};
 use pulloff_engine::preset::profile::{self, ROW_RANGE};
 use pulloff_engine::text::is_unsafe;
 use pulloff::store::read;
@@ -62,6 +63,26 @@ pub fn csv(bytes: &[u8]) {
             assert!(columns.radii.windows(2).all(|two| two[0] < two[1]), "radii out of order");
             assert!(columns.radii.iter().chain(&columns.gaps).all(|x| x.is_finite()));
         }
+    }
+}
+
+/// A measured curve that is read has numbers alone, as many in each column.
+pub fn measured(bytes: &[u8]) {
+    for columns in ["", "x=1,force=2"] {
+        match measured::parse(bytes, &Spec::parse(columns).expect("a form of ours")) {
+            Err(error) => assert_shown_safely(&error),
+            Ok(read) => {
+                let rows = read.columns[0].values.len();
+                assert!(read.columns.iter().all(|column| column.values.len() == rows));
+                assert!(read.columns.iter().flat_map(|column| &column.values).all(|x| x.is_finite()));
+                assert!(read.segments.is_none_or(|segments| segments.len() == rows));
+                assert!(!read.notes.iter().any(|note| note.chars().any(is_unsafe)), "{:?}", read.notes);
+            }
+        }
+    }
+    match measured::columns(bytes) {
+        Err(error) => assert_shown_safely(&error),
+        Ok(seen) => assert!(seen.iter().all(|seen| !seen.name.chars().any(is_unsafe))),
     }
 }
 

@@ -25,7 +25,7 @@ use pulloff_engine::report::{CycleReport, MapReport, StabilityReport, TraceRepor
 use pulloff_engine::stability::{Axis, COMPLIANCE};
 use pulloff_engine::text::{closest, quote, show_path};
 use pulloff_engine::theory;
-use pulloff_engine::units::{Quantity, Unit};
+use pulloff_engine::units::Unit;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyInt, PyString};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -418,10 +418,10 @@ pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> 
     Ok(PyBytes::new(py, &read.0))
 }
 
-/// The SI unit of what a column of this name holds in a measured curve; nothing for a name that is not known.
+/// The SI unit of what a column of this name holds in a measured curve; nothing for a name that is not known or has a unit.
 #[pyfunction]
 pub fn unit_of(column: &str) -> &'static str {
-    Role::of(column).and_then(Role::quantity).and_then(Quantity::si).unwrap_or("")
+    Role::of_bare(column).and_then(Role::si).unwrap_or("")
 }
 
 /// What makes two problems the same: the text of the preset without the names of files, and what these hold.

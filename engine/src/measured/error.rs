@@ -1,7 +1,8 @@
 //! What is wrong with the text of a measured curve.
 
-use super::role::SpecError;
+use super::role::{Role, SpecError};
 use crate::cells::{CellFault, Faults, LineFault};
+use crate::text::NotText;
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
@@ -31,6 +32,33 @@ pub enum Fault {
         /// What is wrong.
         fault: CellFault,
     },
+    /// A comma and a point in one number.
+    #[error(
+        "column {number}: \"{text}\" has more than one comma or point: write numbers without marks between thousands"
+    )]
+    Thousands {
+        /// The column, from 1.
+        number: usize,
+        /// Its text, safe to show.
+        text: String,
+    },
+    /// A decimal point in a file of decimal commas, or the other way round.
+    #[error(
+        "column {number}: \"{text}\" has {}: one of them parts thousands; write all decimals alike",
+        if text.contains(',') {
+            format!("a comma, and line {line} a number with a point")
+        } else {
+            format!("a point, and line {line} a number with a comma")
+        }
+    )]
+    Marks {
+        /// The column, from 1.
+        number: usize,
+        /// Its text, safe to show.
+        text: String,
+        /// The line of the other.
+        line: usize,
+    },
     /// A branch that is not known.
     #[error(
         "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
@@ -47,14 +75,59 @@ pub enum Fault {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ReadError {
     /// Bytes that are no text.
-    #[error("line {0}: is not UTF-8 text")]
-    NotText(usize),
+    #[error(
+        "{0}; a force curve of an instrument's own format is read in Python with pulloff.read_afm(path), or exported as \
+         text by its program"
+    )]
+    NotText(NotText),
     /// Lines with faults.
     #[error("{0}")]
     Faults(Faults<Fault>),
     /// Too few or too many rows.
-    #[error("has {0} rows, and a measured curve has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
-    Rows(usize),
+    #[error(
+        "has {rows} rows{}, and a measured curve has {lo} to {hi}",
+        if *skipped > 0 { format!(" besides {skipped} without a number") } else { String::new() },
+        lo = ROW_RANGE.start(),
+        hi = ROW_RANGE.end()
+    )]
+    Rows {
+        /// How many.
+        rows: usize,
+        /// How many more have no number.
+        skipped: usize,
+    },
+    /// Commas that part cells, or decimals, or both.
+    #[error(
+        "line {0}: some commas are followed by a space and some by a digit, and no header tells which part the columns: part \
+         them by semicolons or tabs"
+    )]
+    Commas(usize),
+    /// Waves of an Igor text file that are no columns of one table.
+    #[error("its waves have {least} to {most} rows: export those of one curve alone")]
+    Waves {
+        /// The rows of the shortest.
+        least: usize,
+        /// The rows of the longest.
+        most: usize,
+    },
+    /// A column in volts or amperes.
+    #[error(
+        "line {line}: column {number}, \"{name}\", is the {} in {unit}, and the sensitivity of the detector is missing: export \
+         it in nm, or as a force in nN",
+        role.word()
+    )]
+    Signal {
+        /// The header.
+        line: usize,
+        /// The column, from 1.
+        number: usize,
+        /// Its name, safe to show.
+        name: String,
+        /// Its unit, safe to show.
+        unit: String,
+        /// What its name says that it is.
+        role: Role,
+    },
     /// More columns than anybody measures.
     #[error("line {line}: has {found} columns; at most {MOST_COLUMNS} are read")]
     ManyColumns {

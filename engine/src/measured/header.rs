@@ -1,111 +1,205 @@
-//! What the header of a measured curve, or a person, says of its columns.
+//! What the words above a table say of its columns: their names, their units, the branch of its rows.
 
-use super::error::ReadError;
-use super::role::{Place, Role, Said, Segment, Spec, dimensions, unit_of};
+use super::lines::{Table, Words, is_gap, is_number};
+use super::role::{Role, Segment, named, squashed, unit_named};
 use crate::cells::{Head, Separator, heads};
-use crate::text::{quote, sanitize};
 use crate::units::Unit;
-
-/// A column that is looked for in each row.
-pub(super) struct Wanted {
-    pub role: Role,
-    pub at: usize,
-    pub unit: Option<Unit>,
-}
+use std::collections::HashMap;
 
 /// A header: the names and units of the columns.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
     pub line: usize,
     pub heads: Vec<Head>,
 }
 
-/// The header: a line of its own, or the last remark above the rows where it has as many cells as they.
-pub(super) fn headed(
-    header: Option<(usize, &str)>,
-    units: Option<&str>,
-    candidate: Option<(usize, &str)>,
-    separator: Separator,
-    cells: usize,
-) -> Option<Header> {
-    // A header may be parted otherwise than the rows below it.
-    let read = |(line, text): (usize, &str)| {
-        let of = |separator| Some(heads(text, separator, &dimensions())).filter(|heads| heads.len() == cells);
-        let heads = of(separator).or_else(|| of(Separator::of(text)))?;
-        Some(Header { line, heads: heads.into_iter().map(whole).collect() })
-    };
-    let with_units = |mut header: Header| {
-        let units = units.map(|line| unit_cells(line, Separator::of(line))).unwrap_or_default();
-        if units.len() == header.heads.len() {
-            for (head, unit) in header.heads.iter_mut().zip(units) {
-                head.1 = head.1.take().or_else(|| Some(unit.to_owned()).filter(|unit| !unit.is_empty()));
+/// The value behind `key` in a remark such as `columns: height vDeflection`.
+fn keyed<'a>(words: &Words<'a>, key: &str) -> Option<&'a str> {
+    let (before, value) = words.text.split_once(':')?;
+    before.trim().eq_ignore_ascii_case(key).then(|| value.trim())
+}
+
+/// Whether a remark begins another table: JPK writes one for each segment.
+pub(super) fn parts_tables(remark: &str) -> bool {
+    let words = Words { line: 0, text: remark, is_remark: true };
+    ["segment", "segmentIndex", "columns"].iter().any(|key| keyed(&words, key).is_some())
+}
+
+/// The names in the line by which an Igor text file begins waves: `WAVES/D/N=(512) ZSnsr, Defl`.
+fn waves(text: &str) -> Option<Vec<Head>> {
+    let mut rest = text.strip_prefix("WAVES")?;
+    while let Some(flag) = rest.trim_start().strip_prefix('/') {
+        rest = flag.find(|c: char| c.is_whitespace() || c == ',').map_or("", |at| &flag[at..]);
+    }
+    let names = rest.split(|c: char| c.is_whitespace() || c == ',').filter(|name| !name.is_empty());
+    Some(names.map(|name| (name.trim_matches('\'').to_owned(), None)).collect())
+}
+
+/// The units that Igor gives waves, by their names: `X SetScale y 0,0,"m", ZSnsr`.
+fn scales<'a>(words: &[Words<'a>]) -> HashMap<&'a str, &'a str> {
+    let mut units = HashMap::new();
+    for text in words.iter().filter(|words| words.text.starts_with("X ")).map(|words| words.text) {
+        for scale in text.split("SetScale").skip(1) {
+            let axis = scale.trim_start_matches(|c: char| c == '/' || c.is_ascii_uppercase()).trim_start();
+            let quoted: Vec<&str> = scale.splitn(3, '"').collect();
+            if let (true, &[_, unit, names]) = (axis.starts_with(['d', 'y']), &quoted[..]) {
+                let names = names.split([',', ';', ' ', '\t']).filter(|name| !name.is_empty());
+                units.extend(names.map(|name| (name.trim_matches('\''), unit)));
             }
         }
-        header
-    };
-    header.and_then(read).map(with_units).or_else(|| {
-        let header = candidate.and_then(read)?;
-        // A remark of the right number of words need not be a header.
-        let known = header.heads.iter().filter(|(name, _)| Role::of(name).is_some()).count();
-        (known >= 2).then_some(header)
+    }
+    units
+}
+
+/// The cells of words in each way in which they may be parted; the first is that of the rows.
+fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<Head>> {
+    let dimensions = super::role::dimensions();
+    let ways = [separator, Separator::of(text), Separator::Wide, Separator::Spaces];
+    ways.into_iter().map(move |way| match way {
+        Separator::Wide => {
+            let cells = way.cells(text).into_iter();
+            cells.flat_map(|cell| heads(cell, Separator::Character('\0'), &dimensions)).collect()
+        }
+        way => heads(text, way, &dimensions),
     })
+}
+
+/// How many columns of a header are known.
+fn count_known(heads: &[Head]) -> usize {
+    heads.iter().filter(|(name, _)| named(name).is_some()).count()
+}
+
+/// `heads` as those of the columns of `table`, if they can be: names behind the last column must mean nothing, and columns
+/// without a name must be empty.
+fn fitted(mut heads: Vec<Head>, table: &Table) -> Option<Vec<Head>> {
+    let is_empty = |head: &Head| head.0.is_empty() && head.1.is_none();
+    while heads.len() > table.cells
+        && heads.last().is_some_and(|head| is_empty(head) || named(&head.0).is_none())
+    {
+        heads.pop();
+    }
+    while heads.last().is_some_and(is_empty) && heads.len() > table.filled() {
+        heads.pop();
+    }
+    if heads.len() > table.cells || heads.len() < table.filled() {
+        return None;
+    }
+    heads.resize(table.cells, Head::default());
+    Some(heads.into_iter().map(whole).collect())
+}
+
+/// The header of a table, from the words above it; `all` are those of the file.
+pub(super) fn headed(table: &Table, all: &[Words]) -> Option<Header> {
+    let last = |key: &str| table.above.iter().rev().find_map(|words| Some((words.line, keyed(words, key)?)));
+    // JPK names its columns in a remark, and says more of them in others.
+    if let Some((line, names)) = last("columns").or_else(|| last("fancyNames")) {
+        let heads = Separator::Spaces.cells(names).into_iter().map(|name| (name.to_owned(), None)).collect();
+        let units = last("units").map(|(_, units)| Separator::Spaces.cells(units)).unwrap_or_default();
+        return fitted(heads, table).map(|heads| Header { line, heads: with_units(heads, &units) });
+    }
+    if let Some((line, heads)) =
+        table.above.iter().rev().find_map(|words| Some((words.line, waves(words.text)?)))
+    {
+        let scales = scales(all);
+        let with_unit = |(name, _): Head| {
+            let unit = scales.get(&*name).map(|unit| (*unit).to_owned());
+            (name, unit)
+        };
+        return fitted(heads, table)
+            .map(|heads| Header { line, heads: heads.into_iter().map(with_unit).collect() });
+    }
+    let labels = table.above.iter().rev().map(|words| Separator::Character('\t').cells(words.text));
+    let mut units = labels
+        .into_iter()
+        .find(|cells| cells.first().is_some_and(|cell| *cell == "Y_Unit_Label"))
+        .map(|cells| std::iter::once("").chain(cells.into_iter().skip(1)).collect())
+        .unwrap_or_default();
+    for words in table.above.iter().rev().filter(|words| words.text.contains(char::is_alphanumeric)) {
+        if !words.is_remark && is_units(words.text, table.separator) {
+            units = unit_cells(words.text, table.separator);
+            continue;
+        }
+        let mut found =
+            parted(words.text, table.separator).map(|heads| (count_known(&heads), fitted(heads, table)));
+        let fits = |(known, heads): (usize, Option<Vec<Head>>)| heads.map(|heads| (known, heads));
+        // A remark of the right number of words need not be a header, nor need words that are parted otherwise than the rows.
+        let first = found.next().and_then(fits).filter(|(known, _)| !words.is_remark || *known >= 2);
+        let heads = first.or_else(|| found.filter_map(fits).find(|(known, _)| *known >= 2));
+        if let Some((_, heads)) = heads.filter(|(_, heads)| heads.len() > 1) {
+            return Some(Header { line: words.line, heads: with_units(heads, &units) });
+        }
+        if !words.is_remark && parted(words.text, table.separator).any(|heads| count_known(&heads) >= 2) {
+            return None;
+        }
+    }
+    None
+}
+
+/// Gives the columns without a unit those of `units`.
+fn with_units(mut heads: Vec<Head>, units: &[&str]) -> Vec<Head> {
+    for (head, unit) in heads.iter_mut().zip(units) {
+        head.1 =
+            head.1.take().or_else(|| Some((*unit).to_owned()).filter(|unit| !unit.is_empty() && unit != "-"));
+    }
+    heads
+}
+
+/// How a row is parted that has a fault in its first cell, below a header with at least a force and a way.
+pub(super) fn row_under(above: &[Words], text: &str) -> Option<(Separator, usize)> {
+    let names =
+        above.iter().rev().find(|words| !words.is_remark && !is_units(words.text, Separator::of(text)))?;
+    let separator = Separator::of(names.text);
+    let heads = heads(names.text, separator, &super::role::dimensions());
+    let cells = separator.cells(text);
+    let is =
+        heads.len() == cells.len() && count_known(&heads) >= 2 && cells.iter().any(|cell| is_number(cell));
+    (is && cells.iter().skip(1).all(|cell| is_number(cell) || is_gap(cell) || Segment::of(cell).is_some()))
+        .then_some((separator, cells.len()))
 }
 
 /// The cells of a line of units, without brackets.
 fn unit_cells(line: &str, separator: Separator) -> Vec<&str> {
-    separator.cells(line).into_iter().map(|cell| cell.trim_matches(['(', ')', '[', ']'])).collect()
+    let cells = separator.cells(line);
+    let cells = if cells.len() > 1 { cells } else { Separator::of(line).cells(line) };
+    cells.into_iter().map(|cell| cell.trim_matches(['(', ')', '[', ']'])).collect()
 }
 
-/// Whether a line has units and nothing else.
-pub(super) fn is_units(line: &str) -> bool {
-    let cells = unit_cells(line, Separator::of(line));
-    let is_unit =
-        |cell: &&str| Unit::parse(cell, 0).is_ok_and(|unit| dimensions().contains(&unit.dimension()));
-    cells.iter().any(is_unit) && cells.iter().all(|cell| cell.is_empty() || *cell == "-" || is_unit(cell))
+/// Whether a line has units and nothing else: a length, a force or an area at least, and no name of a column.
+fn is_units(line: &str, separator: Separator) -> bool {
+    /// The longest unit, in bytes: the others may be of quantities that nobody knows here.
+    const LONGEST: usize = 10;
+    let cells = unit_cells(line, separator);
+    let is_ours = |cell: &&str| {
+        unit_named(cell, true).is_some_and(|unit| super::role::dimensions().contains(&unit.dimension()))
+    };
+    let is_unit = |cell: &&str| {
+        cell.is_empty()
+            || *cell == "-"
+            || Unit::parse(cell, 0).is_ok()
+            || is_ours(cell)
+            || (cell.len() <= LONGEST && named(cell).is_none() && !cell.contains(char::is_whitespace))
+    };
+    cells.len() > 1 && cells.iter().any(is_ours) && cells.iter().all(is_unit)
 }
 
-/// The branch that a column's name begins or ends with, and what is left of it: `Extend Z`, `force (retract)`.
-fn side(name: &str) -> Option<(Segment, Role)> {
-    let name = name.replace(['_', '(', ')'], " ");
-    let words: Vec<&str> = name.split_whitespace().collect();
-    let of = |word: &str, rest: &[&str]| {
-        let segment = Segment::of(word).filter(|_| word.chars().all(char::is_alphabetic))?;
-        Some((segment, Role::of(&rest.join(" "))?))
+/// The branch of all rows of a table: `# segment: retract`, or a line that names it alone.
+pub(super) fn segment(table: &Table) -> Option<Segment> {
+    let of = |text: &str| {
+        let text = text.trim_matches(|c: char| !c.is_alphanumeric());
+        text.starts_with(char::is_alphabetic).then(|| Segment::of(text)).flatten()
     };
-    let (first, last) = (words.split_first()?, words.split_last()?);
-    of(first.0, first.1).or_else(|| of(last.0, last.1))
-}
-
-/// The columns of approach and retraction, where they stand beside each other: each with a way and a force, in the same units.
-pub(super) fn sides(header: &Header) -> Result<Option<[Vec<Wanted>; 2]>, ReadError> {
-    let mut sides = [Segment::Approach, Segment::Retraction].map(|segment| (segment, Vec::new()));
-    for (at, (name, _)) in header.heads.iter().enumerate() {
-        let Some((of, role)) = side(name).filter(|_| Role::of(name).is_none()) else { continue };
-        for (segment, wanted) in &mut sides {
-            if *segment == of && wanted.iter().all(|column: &Wanted| column.role != role) {
-                let unit = unit_in(header, at, role)?;
-                wanted.push(Wanted { role, at, unit });
-            }
-        }
-    }
-    let [(_, approach), (_, retraction)] = sides;
-    let is_way = |role| [Role::Approach, Role::Position, Role::Radius].contains(&role);
-    let is_whole = |wanted: &[Wanted]| {
-        let has = |is: &dyn Fn(Role) -> bool| wanted.iter().any(|column| is(column.role));
-        has(&is_way) && has(&|role| [Role::Force, Role::Deflection].contains(&role))
-    };
-    let same = |column: &Wanted| {
-        retraction.iter().any(|other| other.role == column.role && other.unit == column.unit)
-    };
-    let fits = is_whole(&approach) && approach.len() == retraction.len() && approach.iter().all(same);
-    Ok(fits.then_some([approach, retraction]))
+    table.above.iter().rev().find_map(|words| match keyed(words, "segment") {
+        Some(value) => of(value.split_whitespace().next()?),
+        None => of(words.text),
+    })
 }
 
 /// What stands in parentheses and is no unit belongs to the name: `height (measured)`.
 fn whole((name, unit): Head) -> Head {
     match unit {
-        Some(text) if Unit::parse(&text, 0).is_err() => {
+        Some(text) if unit_named(&text, true).is_none() && text != "V" => {
             let longer = format!("{name} {text}");
-            if Role::of(&longer).is_some() || Role::of(&name).is_none() || side(&longer).is_some() {
+            if named(&longer).is_some() || named(&name).is_none() {
                 (longer, None)
             } else {
                 (name, Some(text))
@@ -115,129 +209,17 @@ fn whole((name, unit): Head) -> Head {
     }
 }
 
-/// Which columns are used, in a file whose first row is in the line `row`.
-pub(super) fn wanted(
-    spec: &Spec,
-    header: Option<&Header>,
-    row: usize,
-    cells: usize,
-    notes: &mut Vec<String>,
-) -> Result<Vec<Wanted>, ReadError> {
-    let line = header.map_or(row, |header| header.line);
-    let known = || header.map_or_else(String::new, |header| listed(&header.heads));
-    let wanted = match header {
-        _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
-        Some(header) => of_header(header, notes)?,
-        None if cells == 2 => {
-            notes.push(
-                "there is no header: the first column is taken for the approach, the second for the force"
-                    .to_owned(),
-            );
-            let of = |(at, role)| Wanted { role, at, unit: None };
-            [(0, Role::Approach), (1, Role::Force)].map(of).into()
-        }
-        None => Vec::new(),
-    };
-    if wanted.is_empty() {
-        return Err(ReadError::Unknown { line, cells, names: known() });
-    }
-    let has = |role| wanted.iter().any(|column: &Wanted| column.role == role);
-    let lacks = |missing| Err(ReadError::Lacks { line, missing, known: known() });
-    if !(has(Role::Force) || has(Role::Deflection)) {
-        return lacks("force, or of the deflection");
-    }
-    if !(has(Role::Approach) || has(Role::Position) || has(Role::Radius)) {
-        return lacks("approach, of the position or of the contact radius");
-    }
-    Ok(wanted)
-}
-
-/// The unit that a header names for the column `at`, of the role `role`.
-fn unit_in(header: &Header, at: usize, role: Role) -> Result<Option<Unit>, ReadError> {
-    let text = header.heads.get(at).and_then(|head| head.1.as_deref());
-    text.map(|text| unit_of(role, text))
-        .transpose()
-        .map_err(|cause| ReadError::Unit { line: header.line, cause })
-}
-
-/// The columns that a person names.
-fn of_person(
-    spec: &Spec,
-    header: Option<&Header>,
-    line: usize,
-    cells: usize,
-) -> Result<Vec<Wanted>, ReadError> {
-    let column = |said: &Said| {
-        let at = match &said.place {
-            Place::Number(number) => Some(number - 1).filter(|at| *at < cells),
-            Place::Name(name) => header.and_then(|header| {
-                header.heads.iter().position(|(known, _)| known.eq_ignore_ascii_case(name))
-            }),
-        };
-        let Some(at) = at else {
-            let place = match &said.place {
-                Place::Number(number) => format!("{number}: a row has {cells}"),
-                Place::Name(name) => format!("\"{}\"", quote(name)),
-            };
-            let known = header.map_or_else(String::new, |header| listed(&header.heads));
-            return Err(ReadError::NoColumn { line, place, known });
-        };
-        let unit = match (&said.unit, header) {
-            (Some(unit), _) => Some(unit.clone()),
-            (None, Some(header)) => unit_in(header, at, said.role)?,
-            (None, None) => None,
-        };
-        Ok(Wanted { role: said.role, at, unit })
-    };
-    spec.0.iter().map(column).collect()
-}
-
-/// What a column of a header is: a deflection in units of force is the force.
-fn role_of(header: &Header, at: usize, name: &str) -> Option<Role> {
-    let role = Role::of(name)?;
-    let unit = header.heads.get(at).and_then(|head| Unit::parse(head.1.as_deref()?, 0).ok());
-    let is_force =
-        unit.is_some_and(|unit| Role::Force.quantity().is_some_and(|q| q.dimension() == unit.dimension()));
-    Some(if role == Role::Deflection && is_force { Role::Force } else { role })
-}
-
-/// The columns whose names in the header are known.
-fn of_header(header: &Header, notes: &mut Vec<String>) -> Result<Vec<Wanted>, ReadError> {
-    let mut wanted: Vec<Wanted> = Vec::new();
-    for (at, (name, _)) in header.heads.iter().enumerate() {
-        let Some(role) = role_of(header, at, name) else { continue };
-        let Some(known) = wanted.iter_mut().find(|column| column.role == role) else {
-            wanted.push(Wanted { role, at, unit: None });
-            continue;
-        };
-        // Of two heights that of the sensor is the one that was reached.
-        let better = name.to_lowercase().contains("measured");
-        let (taken, left) = if better { (at, known.at) } else { (known.at, at) };
-        known.at = taken;
-        notes.push(format!(
-            "columns {} and {} are both a {}: the {} is read, the other left out",
-            taken.min(left) + 1,
-            taken.max(left) + 1,
-            role.word(),
-            if taken < left { "first" } else { "second" }
-        ));
-    }
-    for column in &mut wanted {
-        column.unit = unit_in(header, column.at, column.role)?;
-    }
-    Ok(wanted)
-}
-
-/// Gives columns without a unit that of SI.
-pub(super) fn in_si(wanted: &mut [Wanted]) {
-    for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
-        let si = column.role.quantity().and_then(crate::units::Quantity::si);
-        column.unit = si.and_then(|si| Unit::parse(si, 0).ok());
+/// Whether the names of two headers are the same.
+pub(super) fn same(one: Option<&Header>, other: Option<&Header>) -> bool {
+    let names = |header: &Header| header.heads.iter().map(|(name, _)| squashed(name)).collect::<Vec<_>>();
+    match (one, other) {
+        (Some(one), Some(other)) => names(one) == names(other),
+        // What has no header has that of the table before it.
+        _ => true,
     }
 }
 
-/// The names of a header, safe to show.
-fn listed(heads: &[Head]) -> String {
-    let names: Vec<String> = heads.iter().map(|(name, _)| format!("\"{}\"", quote(name))).collect();
-    sanitize(&names.join(", "), 200)
+/// Whether a column's role may be that of x.
+pub(super) fn is_way(role: Role) -> bool {
+    [Role::Approach, Role::Position, Role::Radius, Role::Diameter, Role::Area].contains(&role)
 }

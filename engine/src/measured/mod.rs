@@ -2,9 +2,14 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`role`] | what a column is: names, units, what a person says of columns |
+//! | [`role`] | what a column is: its unit, what a person says of columns |
+//! | `names` | the names by which headers say it |
 //! | [`read`](mod@read) | the text of a file → columns, every fault with its line and column |
-//! | `header` | what a header says of the columns |
+//! | `lines` | the lines of a file → tables of rows, and the words above them |
+//! | `header` | the names, units and branches that words above a table say |
+//! | `choice` | which columns are used, as a header or a person says |
+//! | `rows` | rows of cells → columns of numbers |
+//! | [`stated`] | the stiffness and the tip radius that a file states |
 //! | [`error`] | what is wrong with a text |
 //! | [`points`] | columns → points (x, P, s) in SI or reduced units |
 //! | [`source`] | a file held by a preset, taken apart once |
@@ -15,21 +20,28 @@
 //! Nothing here reads a disk: bytes come from the caller.
 
 pub mod branches;
+mod choice;
 pub mod error;
 mod header;
+mod lines;
+mod names;
 mod noise;
 pub mod points;
 pub mod read;
 pub mod role;
+mod rows;
 mod signs;
 pub mod source;
+pub mod stated;
 
 pub use branches::{Asked, Branch, BranchError, Branches, Noise, Origin, Span};
 pub use error::ReadError;
 pub use points::{Abscissa, Points, PointsError};
-pub use read::{Column, Measured, parse};
+pub use read::{Column, Measured, Seen, columns, parse};
 pub use role::{Role, Segment, Spec, SpecError};
 pub use source::Source;
 
+#[cfg(test)]
+mod forms;
 #[cfg(test)]
 mod tests;

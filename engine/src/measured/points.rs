@@ -2,6 +2,7 @@
 
 use super::read::{Column, Measured};
 use super::role::{Role, Segment};
+use super::stated::Stated;
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem, number::said};
 use thiserror::Error;
@@ -75,14 +76,25 @@ pub enum PointsError {
         /// Its unit.
         unit: String,
     },
-    /// A file that states a stiffness in N/m on a problem without units.
-    #[error("the file states a spring of {0:?} N/m, and the problem is in reduced units: set units = \"SI\"")]
-    ReducedSpring(f64),
-    /// Two stiffnesses.
+    /// A file that states its instrument in SI, on a problem without units.
     #[error(
-        "the file states a spring of {file}, and path.control.stiffness is {preset}: one of them is wrong"
+        "the file states {what}, and the problem is in reduced units: set units = \"SI\", or data.settings = \"preset\" to \
+         leave the file's out"
     )]
-    Stiffness {
+    ReducedSetting {
+        /// What it states, safe to show.
+        what: String,
+    },
+    /// Two stiffnesses, or two tip radii.
+    #[error(
+        "the file states {what} of {file}, and {key} is {preset}: set {key} to that of the file, or data.settings = \"preset\" \
+         if the file's is wrong"
+    )]
+    Contradicts {
+        /// What is stated.
+        what: &'static str,
+        /// The key of the preset.
+        key: &'static str,
         /// The file's, safe to show.
         file: String,
         /// The preset's, safe to show.
@@ -104,27 +116,47 @@ pub enum PointsError {
     Constant(&'static str),
 }
 
-/// Stiffnesses this near to each other are one: files round.
-const SAME: f64 = 1e-3;
+/// Compares what a file states with what a preset says, in base units, where both say something.
+fn compare(
+    stated: Option<Stated>,
+    preset: Option<f64>,
+    units: &UnitSystem,
+    (what, key, quantity): (&'static str, &'static str, Quantity),
+) -> Result<(), PointsError> {
+    let Some(stated) = stated else { return Ok(()) };
+    if *units == UnitSystem::Reduced {
+        let unit = quantity.si().unwrap_or_default();
+        return Err(PointsError::ReducedSetting { what: format!("{what} of {:?} {unit}", stated.value) });
+    }
+    match preset {
+        Some(preset) if !stated.is(preset) => {
+            let shown = |value| said(units, quantity, value);
+            Err(PointsError::Contradicts { what, key, file: shown(stated.value), preset: shown(preset) })
+        }
+        _ => Ok(()),
+    }
+}
 
 /// The stiffness of the device, where the preset or the file states one, in the preset's base units.
 ///
 /// # Errors
 /// [`PointsError`] where both do and differ, or the problem has no units.
 pub fn stiffness(
-    file: Option<f64>,
+    file: Option<Stated>,
     control: Control,
     units: &UnitSystem,
 ) -> Result<Option<f64>, PointsError> {
-    match (file, control) {
-        (Some(k), _) if *units == UnitSystem::Reduced => Err(PointsError::ReducedSpring(k)),
-        (Some(k), Control::Stiffness(preset)) if (k / preset - 1.0).abs() > SAME => {
-            let shown = |k| said(units, Quantity::ForcePerLength, k);
-            Err(PointsError::Stiffness { file: shown(k), preset: shown(preset) })
-        }
-        (_, Control::Stiffness(preset)) => Ok(Some(preset)),
-        (file, _) => Ok(file),
-    }
+    let preset = if let Control::Stiffness(k) = control { Some(k) } else { None };
+    compare(file, preset, units, ("a spring", "path.control.stiffness", Quantity::ForcePerLength))?;
+    Ok(preset.or(file.map(|stated| stated.value)))
+}
+
+/// Compares the radius of the tip that a file states with that of the gap.
+///
+/// # Errors
+/// [`PointsError`] where both are there and differ, or the problem has no units.
+pub fn tip_radius(file: Option<Stated>, gap: Option<f64>, units: &UnitSystem) -> Result<(), PointsError> {
+    compare(file, gap, units, ("a tip radius", "gap.radius_of_curvature", Quantity::Length))
 }
 
 impl Measured {

@@ -2,80 +2,59 @@
 //!
 //! ```text
 //! # any remark                       lines beginning with #, % or // are remarks, empty lines nothing
-//! delta [um], force (nN), segment    a header before the first row, or as the last remark above it; units as in profiles
-//! 0.10, -3.2, approach               cells parted by semicolons, tabs, commas or spaces: what the first row shows
+//! Spring constant (N/m): 0.2         settings above the rows: a stiffness and a tip radius are taken from them
+//! delta [um], force (nN), segment    a header above the rows, or as the last remark there
+//! 0.10, -3.2, approach               cells parted by semicolons, tabs, bars, commas or spaces: what the first row shows
 //! ```
 //!
-//! The `.tab` files of afmformats have a block of JSON in their remarks, from which the spring constant is taken; their columns
-//! are in SI (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
-//! Every fault is told with its line and its column, the first of them; a file with faults gives no curve.
+//! Which lines are rows is found in `lines`, what their columns are in `header` and `choice`, what the file states of its
+//! instrument in [`stated`](super::stated). Rows without a number in a column that is used are left out and counted. Every fault
+//! is told with its line and its column, the first of them; a file with faults gives no curve.
 
-use super::error::{Fault, MOST_COLUMNS, ROW_RANGE, ReadError};
-use super::header::{Header, Wanted, headed, in_si, is_units, sides, wanted};
+use super::choice::{Wanted, in_si, sides, wanted};
+use super::error::{Fault, ROW_RANGE, ReadError};
+use super::header::{Header, headed, same, segment};
+use super::lines::{Outline, Table};
 use super::role::{Role, Segment, Spec};
-use crate::cells::{
-    self, CellFault, Faults, LARGEST_NUMBER, LONGEST_LINE, LineFault, Separator, is_header, is_unprintable,
-    remark,
-};
-use crate::text::quote;
-use crate::units::{Quantity, Unit};
+use super::rows::State;
+pub use super::rows::{Column, Measured};
+use super::stated::Settings;
+use crate::cells;
+use crate::text::{decode, quote, sanitize};
+use std::borrow::Cow;
 
-/// The longest block of metadata that is read, in bytes.
-const LONGEST_METADATA: usize = 1 << 20;
+/// So many values of a column are shown to choose it by.
+const SEEN: usize = 3;
+/// The longest name of a column that is shown.
+const LONGEST_NAME: usize = 60;
 
-/// One column that is used.
+/// A column as a person sees it before its role is chosen.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Column {
-    /// What it is.
-    pub role: Role,
-    /// Its number in the file, from 1.
+pub struct Seen {
+    /// Its number, from 1.
     pub number: usize,
-    /// Its unit, where the file or a person names one.
-    pub unit: Option<Unit>,
-    /// Its values, in that unit.
-    pub values: Vec<f64>,
-    /// The place of the last digit of its numbers, in that unit: they are known no better.
-    pub step: f64,
+    /// Its name and its unit in the header, safe to show; empty without.
+    pub name: String,
+    /// Its first cells, safe to show.
+    pub first: Vec<String>,
+    /// What it is taken for.
+    pub role: Option<Role>,
 }
 
-/// A measured curve as read.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Measured {
-    /// The columns of numbers that are used.
-    pub columns: Vec<Column>,
-    /// The branch of each row, where a column says it.
-    pub segments: Option<Vec<Segment>>,
-    /// The stiffness of the device that the file states, N/m.
-    pub stiffness: Option<f64>,
-    /// The line of the header, from 1.
-    pub header: Option<usize>,
-    /// What was assumed, in words.
-    pub notes: Vec<String>,
+/// A file in pieces, the tables that are read chosen.
+struct Pieces<'a> {
+    outline: Outline<'a>,
+    /// The tables that are read, in the order of the file.
+    tables: Vec<usize>,
+    /// Whether their columns stand beside each other, one wave in each.
+    are_beside: bool,
+    header: Option<Header>,
+    notes: Vec<String>,
 }
 
-/// How rows are taken apart, as the first of them shows.
-struct Layout {
-    separator: Separator,
-    cells: usize,
-    wanted: Vec<Wanted>,
-    /// The columns of the retraction, where they stand beside those of the approach.
-    beside: Vec<Wanted>,
-}
-
-/// A file on its way to columns: what the lines so far have said.
-#[derive(Default)]
-struct Reader<'a> {
-    header: Option<(usize, &'a str)>,
-    /// The line below it that has the units.
-    units: Option<&'a str>,
-    /// A remark that may be the header.
-    candidate: Option<(usize, &'a str)>,
-    metadata: Metadata,
-    layout: Option<Layout>,
-    rows: usize,
-    measured: Measured,
-    /// The retraction, where its columns stand beside those of the approach.
-    beside: Measured,
+/// Text whose lines end as they do here; old ones end with a carriage return alone.
+fn lines_of(text: Cow<'_, str>) -> Cow<'_, str> {
+    if text.contains('\r') { Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n")) } else { text }
 }
 
 /// Reads the curve in `bytes`, the content of a file, with what a person says of its columns.
@@ -83,255 +62,230 @@ struct Reader<'a> {
 /// # Errors
 /// [`ReadError`] with the lines that are wrong.
 pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
-    let text = cells::text_of(bytes).map_err(ReadError::NotText)?;
-    let mut faults = Faults::default();
-    let mut reader = Reader::default();
-    for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
-        if let Some(fault) = reader.takes(spec, line, text)? {
-            faults.add(line, fault);
-        }
-    }
+    let (text, note) = decode(bytes).map_err(ReadError::NotText)?;
+    let text = lines_of(text);
+    let pieces = Pieces::of(&text)?;
+    let settings = Settings::of(&pieces.outline.words);
+    let mut measured =
+        Measured { header: pieces.header.as_ref().map(|header| header.line), ..Measured::default() };
+    measured.notes.extend(note.map(str::to_owned));
+    measured.notes.extend(pieces.notes.iter().chain(&settings.notes).cloned());
+    let mut state = State::default();
+    pieces.read(spec, settings.is_si, &mut measured, &mut state)?;
+    let lines = pieces.outline.faults.iter().map(|(line, fault)| (*line, fault.clone().into()));
+    let faults = std::mem::take(&mut state.faults).and(lines);
     if faults.total > 0 {
         return Err(ReadError::Faults(faults));
     }
-    if !ROW_RANGE.contains(&reader.rows) {
-        return Err(ReadError::Rows(reader.rows));
+    let rows = measured.columns.first().map_or(0, |column| column.values.len());
+    if state.has_commas() {
+        measured.notes.push("decimals have a comma: 0,1 is read as 0.1".to_owned());
     }
-    let mut measured = reader.measured;
-    if !reader.beside.columns.is_empty() {
-        measured.appends(&reader.beside);
+    if let Some(line) = state.skipped {
+        let skipped = measured.skipped;
+        let rows = if skipped == 1 { "1 row has" } else { &format!("{skipped} rows have") };
+        measured.notes.push(format!(
+            "{rows} no number in a column that is used, being empty, NaN or out of range; left out, the first in line {line}"
+        ));
     }
-    measured.stiffness = reader.metadata.stiffness();
+    if !ROW_RANGE.contains(&rows) {
+        return Err(ReadError::Rows { rows, skipped: measured.skipped });
+    }
+    measured.in_radii();
+    (measured.stiffness, measured.radius) = (settings.stiffness, settings.radius);
     Ok(measured)
 }
 
-impl<'a> Reader<'a> {
-    /// Takes a line in; answers with what is wrong with it, and fails where there is no use in reading on.
-    fn takes(&mut self, spec: &Spec, line: usize, text: &'a str) -> Result<Option<Fault>, ReadError> {
-        if text.is_empty() {
-            return Ok(None);
-        }
-        if is_unprintable(text) {
-            return Ok(Some(LineFault::Unprintable.into()));
-        }
-        if let Some(remark) = remark(text) {
-            if self.layout.is_none() && !self.metadata.takes(remark) {
-                self.candidate = Some((line, remark.trim()));
-            }
-            return Ok(None);
-        }
-        if text.len() > LONGEST_LINE {
-            return Ok(Some(LineFault::Long(text.len()).into()));
-        }
-        if self.layout.is_none() && self.metadata.takes_setting(text) {
-            return Ok(None);
-        }
-        if self.layout.is_none() && is_header(text) {
-            // The last line of words above the rows, and one with their units below it.
-            if self.header.is_some() && is_units(text) {
-                self.units = Some(text);
-            } else {
-                (self.header, self.units) = (Some((line, text)), None);
-            }
-            return Ok(None);
-        }
-        if self.layout.is_none() {
-            self.layout = Some(self.lay_out(spec, line, text)?);
-        }
-        self.rows += 1;
-        if self.rows > *ROW_RANGE.end() {
-            return Err(ReadError::Rows(self.rows));
-        }
-        let Some(layout) = &self.layout else { return Ok(None) };
-        let cells = layout.separator.cells(text);
-        if cells.len() != layout.cells {
-            return Ok(Some(Fault::Cells { found: cells.len(), expected: layout.cells }));
-        }
-        for (wanted, measured) in [(&layout.wanted, &mut self.measured), (&layout.beside, &mut self.beside)] {
-            // Of two branches beside each other one may be shorter.
-            let is_over = wanted.iter().all(|want| cells.get(want.at).is_none_or(|cell| cell.is_empty()));
-            if (layout.beside.is_empty() || !is_over)
-                && let Err(fault) = row(&cells, layout.separator, wanted, measured)
-            {
-                return Ok(Some(fault));
+/// The columns of a file to choose from, with the roles that its header gives them.
+///
+/// # Errors
+/// [`ReadError`] where there is no table.
+pub fn columns(bytes: &[u8]) -> Result<Vec<Seen>, ReadError> {
+    let (text, _) = decode(bytes).map_err(ReadError::NotText)?;
+    let text = lines_of(text);
+    let pieces = Pieces::of(&text)?;
+    let tables = pieces.chosen();
+    let Some(table) = tables.first() else { return Err(ReadError::Rows { rows: 0, skipped: 0 }) };
+    let rows: Vec<Vec<&str>> = (0..SEEN).filter_map(|row| pieces.cells(&tables, table, row)).collect();
+    let of = |at: usize| {
+        let head = pieces.header.as_ref().and_then(|header| header.heads.get(at));
+        let name = head.map_or_else(String::new, |(name, unit)| match unit {
+            Some(unit) => format!("{name} [{unit}]"),
+            None => name.clone(),
+        });
+        let cells = rows.iter().filter_map(|row| row.get(at)).map(|cell| quote(cell));
+        let role = head.and_then(|(name, _)| Role::of(name));
+        Seen { number: at + 1, name: sanitize(&name, LONGEST_NAME), first: cells.collect(), role }
+    };
+    Ok((0..pieces.width(table)).map(of).collect())
+}
+
+impl<'a> Pieces<'a> {
+    /// The pieces of a text, with the table that is read: that with the most rows, and those that go on with it.
+    fn of(text: &'a str) -> Result<Self, ReadError> {
+        let outline = Outline::of(text)?;
+        let headers: Vec<Option<Header>> =
+            outline.tables.iter().map(|table| headed(table, &outline.words)).collect();
+        let mut groups: Vec<(Vec<usize>, usize)> = Vec::new();
+        for (at, table) in outline.tables.iter().enumerate() {
+            let goes_on = |group: &(Vec<usize>, usize)| {
+                let first = group.0[0];
+                outline.tables[first].cells == table.cells
+                    && same(headers[first].as_ref(), headers[at].as_ref())
+            };
+            match groups.iter_mut().find(|group| goes_on(group)) {
+                Some((tables, rows)) => {
+                    tables.push(at);
+                    *rows += table.rows.len();
+                }
+                None => groups.push((vec![at], table.rows.len())),
             }
         }
-        Ok(None)
+        let waves = outline.tables.iter().filter(|table| table.cells == 1).count();
+        let are_beside = waves > 1 && outline.is_igor && waves == outline.tables.len();
+        let mut pieces = Self { outline, tables: Vec::new(), are_beside, header: None, notes: Vec::new() };
+        if are_beside {
+            pieces.tables = (0..waves).collect();
+            pieces.joined(&headers)?;
+        } else {
+            // Of two that are as long the first.
+            let longest = groups
+                .iter()
+                .rev()
+                .max_by_key(|(tables, rows)| (pieces.outline.tables[tables[0]].cells > 1, *rows));
+            pieces.tables = longest.map(|(tables, _)| tables.clone()).unwrap_or_default();
+            pieces.header = pieces.tables.iter().find_map(|at| headers[*at].clone());
+            pieces.tell();
+        }
+        Ok(pieces)
     }
 
-    /// What the first row, in `line`, and the header above it say of the columns; makes them.
-    fn lay_out(&mut self, spec: &Spec, line: usize, text: &str) -> Result<Layout, ReadError> {
-        let separator = Separator::of(text);
-        let cells = separator.cells(text).len();
-        if cells > MOST_COLUMNS {
-            return Err(ReadError::ManyColumns { line, found: cells });
+    /// Puts the headers of waves together, one of which stands in each table.
+    fn joined(&mut self, headers: &[Option<Header>]) -> Result<(), ReadError> {
+        let rows = self.outline.tables.iter().map(|table| table.rows.len());
+        if let (Some(least), Some(most)) = (rows.clone().min(), rows.max())
+            && least != most
+        {
+            return Err(ReadError::Waves { least, most });
         }
-        let header = headed(self.header, self.units, self.candidate, separator, cells);
-        self.measured.header = header.as_ref().map(|header| header.line);
-        let (mut wanted, beside) = self.columns(spec, header.as_ref(), line, cells)?;
-        if self.metadata.found {
+        let line = headers.iter().flatten().map(|header| header.line).next();
+        let head = |header: &Option<Header>| header.as_ref().and_then(|header| header.heads.first().cloned());
+        let heads = headers.iter().map(|header| head(header).unwrap_or_default()).collect();
+        self.header = line.map(|line| Header { line, heads });
+        Ok(())
+    }
+
+    /// Says which lines are left out.
+    fn tell(&mut self) {
+        let lines = |table: &Table| Some((table.rows.first()?.0, table.rows.last()?.0));
+        for (at, table) in self.outline.tables.iter().enumerate() {
+            if let (false, Some((first, last))) = (self.tables.contains(&at), lines(table)) {
+                // A number or two above the rows is a setting.
+                if first != last {
+                    self.notes.push(format!("lines {first} to {last} are another table, which is left out"));
+                }
+            }
+        }
+        if let Some((first, last)) = self.outline.footer {
+            let lines = if first == last {
+                format!("line {first} is")
+            } else {
+                format!("lines {first} to {last} are")
+            };
+            self.notes.push(format!("{lines} text below the rows, which is left out"));
+        }
+        if self.tables.len() > 1 && self.chosen().iter().any(|table| segment(table).is_none()) {
+            let count = self.tables.len();
+            self.notes.push(format!("the rows stand in {count} tables, which are read one behind the other"));
+        }
+    }
+
+    fn chosen(&self) -> Vec<&Table<'a>> {
+        self.tables.iter().map(|at| &self.outline.tables[*at]).collect()
+    }
+
+    /// How many columns a row of `table` has.
+    fn width(&self, table: &Table) -> usize {
+        if self.are_beside { self.tables.len() } else { table.cells }
+    }
+
+    /// The cells of a row of `table`, or of those beside it.
+    fn cells(&self, all: &[&Table<'a>], table: &Table<'a>, row: usize) -> Option<Vec<&'a str>> {
+        if self.are_beside {
+            return all.iter().map(|wave| wave.rows.get(row).map(|(_, text)| cells::bare(text))).collect();
+        }
+        Some(table.separator.cells(table.rows.get(row)?.1))
+    }
+
+    /// Reads the rows into `measured`.
+    fn read(
+        &self,
+        spec: &Spec,
+        is_si: bool,
+        measured: &mut Measured,
+        state: &mut State,
+    ) -> Result<(), ReadError> {
+        let all = self.chosen();
+        let Some((line, first)) = all.first().and_then(|table| Some((table.rows.first()?.0, *table))) else {
+            return Ok(());
+        };
+        let header = self.header.as_ref();
+        let beside = header.filter(|_| spec.0.is_empty()).and_then(sides);
+        let width = self.width(first);
+        let [mut wanted, retraction] = match beside {
+            Some([approach, retraction]) => {
+                let listed = |side: &[Wanted]| {
+                    let numbers: Vec<String> = side.iter().map(|want| (want.at + 1).to_string()).collect();
+                    numbers.join(" and ")
+                };
+                measured.notes.push(format!(
+                    "columns {} are the approach, {} the retraction, whose rows are counted on from its own",
+                    listed(&approach),
+                    listed(&retraction)
+                ));
+                [approach, retraction]
+            }
+            None => [wanted(spec, header, line, width, &mut measured.notes)?, Vec::new()],
+        };
+        if is_si {
             in_si(&mut wanted);
         }
-        self.measured.begins(&wanted, (!beside.is_empty()).then_some(Segment::Approach));
-        self.beside.begins(&beside, None);
-        Ok(Layout { separator, cells, wanted, beside })
-    }
-
-    /// The columns that are used, and those of the retraction where they stand beside those of the approach.
-    fn columns(
-        &mut self,
-        spec: &Spec,
-        header: Option<&Header>,
-        line: usize,
-        cells: usize,
-    ) -> Result<(Vec<Wanted>, Vec<Wanted>), ReadError> {
-        let sides = header.filter(|_| spec.0.is_empty()).map(sides).transpose()?.flatten();
-        let Some([approach, retraction]) = sides else {
-            return Ok((wanted(spec, header, line, cells, &mut self.measured.notes)?, Vec::new()));
+        let branches: Vec<Option<Segment>> = all.iter().map(|table| segment(table)).collect();
+        let is_said = retraction.is_empty() && branches.iter().all(Option::is_some);
+        let all_rows = if retraction.is_empty() { None } else { Some(Segment::Approach) };
+        measured.begins(&wanted, all_rows.or(branches.first().copied().flatten().filter(|_| is_said)));
+        let mut other = Measured::default();
+        other.begins(&retraction, None);
+        let own = |side: &[Wanted], others: &[Wanted]| -> Vec<usize> {
+            let is_own = |at: &usize| others.iter().all(|other| other.at != *at);
+            side.iter().map(|want| want.at).filter(is_own).collect()
         };
-        let listed = |side: &[Wanted]| {
-            let numbers: Vec<String> = side.iter().map(|want| (want.at + 1).to_string()).collect();
-            numbers.join(" and ")
-        };
-        self.measured.notes.push(format!(
-            "columns {} are the approach, {} the retraction, whose rows are counted on from its own",
-            listed(&approach),
-            listed(&retraction)
-        ));
-        Ok((approach, retraction))
-    }
-}
-
-impl Measured {
-    /// Makes the columns; `all` is the branch of all rows, where no column says it.
-    fn begins(&mut self, wanted: &[Wanted], all: Option<Segment>) {
-        for column in wanted.iter().filter(|column| column.role != Role::Segment) {
-            let (role, unit) = (column.role, column.unit.clone());
-            let (number, values) = (column.at + 1, Vec::new());
-            self.columns.push(Column { role, number, unit, values, step: f64::INFINITY });
-        }
-        if all.is_some() || wanted.iter().any(|column| column.role == Role::Segment) {
-            self.segments = Some(Vec::new());
-        }
-    }
-
-    /// Appends the rows of the retraction, whose columns are the same.
-    fn appends(&mut self, retraction: &Self) {
-        let rows = |of: &Self| of.columns.first().map_or(0, |column| column.values.len());
-        let mut segments = vec![Segment::Approach; rows(self)];
-        segments.resize(rows(self) + rows(retraction), Segment::Retraction);
-        self.segments = Some(segments);
-        for column in &mut self.columns {
-            let Some(other) = retraction.columns.iter().find(|other| other.role == column.role) else {
-                continue;
-            };
-            column.values.extend_from_slice(&other.values);
-            column.step = column.step.min(other.step);
-        }
-    }
-}
-
-/// The block of JSON in the remarks of an afmformats file.
-#[derive(Default)]
-struct Metadata {
-    inside: bool,
-    found: bool,
-    text: String,
-    /// A stiffness on a line of its own.
-    stated: Option<f64>,
-}
-
-impl Metadata {
-    /// Whether the remark belongs to the block.
-    fn takes(&mut self, remark: &str) -> bool {
-        let text = remark.trim();
-        if text.starts_with("BEGIN METADATA") {
-            (self.inside, self.found) = (true, true);
-            return true;
-        }
-        if text.starts_with("END METADATA") {
-            self.inside = false;
-            return true;
-        }
-        if self.inside && self.text.len() + text.len() <= LONGEST_METADATA {
-            self.text.push_str(text);
-            self.text.push('\n');
-        }
-        self.inside
-    }
-
-    /// Whether a line above the rows is a setting, as in `Force Constant, nN/nm: 0.2`.
-    fn takes_setting(&mut self, text: &str) -> bool {
-        let Some((key, value)) = text.split_once(':') else { return false };
-        let is_key = key.starts_with(char::is_alphabetic) && !key.contains(['\t', ';']);
-        if !is_key || !(value.is_empty() || value.starts_with(char::is_whitespace)) {
-            return false;
-        }
-        let lower = key.to_lowercase();
-        if let (true, Some((_, unit))) = (
-            ["force constant", "spring constant"].iter().any(|name| lower.starts_with(name)),
-            key.split_once(','),
-        ) {
-            let unit = Unit::parse(unit.trim(), 0).ok();
-            let unit = unit.filter(|unit| unit.dimension() == Quantity::ForcePerLength.dimension());
-            let value: Option<f64> = value.trim().parse().ok();
-            // 1 is what instruments write that have not been calibrated.
-            let value = value.filter(|k| *k > 0.0 && *k <= LARGEST_NUMBER && k.total_cmp(&1.0).is_ne());
-            self.stated = unit.zip(value).map(|(unit, value)| unit.to_si(value)).or(self.stated);
-        }
-        true
-    }
-
-    /// The spring constant in N/m, where there is a positive one.
-    fn stiffness(&self) -> Option<f64> {
-        if self.stated.is_some() {
-            return self.stated;
-        }
-        let value: serde_json::Value = serde_json::from_str(&self.text).ok()?;
-        value.get("spring constant")?.as_f64().filter(|k| *k > 0.0 && *k <= LARGEST_NUMBER)
-    }
-}
-
-/// Takes a row in, up to its first fault.
-fn row(
-    cells: &[&str],
-    separator: Separator,
-    wanted: &[Wanted],
-    measured: &mut Measured,
-) -> Result<(), Fault> {
-    const COMMAS: &str = "decimals have a comma: 0,1 is read as 0.1";
-    let mut columns = measured.columns.iter_mut();
-    for want in wanted {
-        let number = want.at + 1;
-        let text = cells.get(want.at).copied().unwrap_or_default();
-        let what = want.role.word();
-        if want.role == Role::Segment {
-            let known = |text| Segment::of(text).ok_or_else(|| Fault::Segment { number, text: quote(text) });
-            let missing = Fault::Cell { number, fault: CellFault::Missing(what) };
-            let segment = if text.is_empty() { Err(missing) } else { known(text) };
-            measured.segments.get_or_insert_default().push(segment?);
-        } else if let Some(column) = columns.next() {
-            // Where cells are parted otherwise.
-            let has_comma = separator != Separator::Character(',')
-                && text.matches(',').count() == 1
-                && !text.contains('.');
-            let pointed = if has_comma { text.replace(',', ".") } else { String::new() };
-            if has_comma && measured.notes.iter().all(|note| note != COMMAS) {
-                measured.notes.push(COMMAS.to_owned());
+        let own = [own(&wanted, &retraction), own(&retraction, &wanted)];
+        let tables = if self.are_beside { &all[..1] } else { &all[..] };
+        for (table, branch) in tables.iter().zip(branches) {
+            let fewest = table.filled().min(width);
+            for (row, (line, _)) in table.rows.iter().enumerate() {
+                let Some(cells) = self.cells(&all, table, row) else { continue };
+                let filled = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+                if filled > width || cells.len() < fewest {
+                    state.faults.add(*line, Fault::Cells { found: cells.len(), expected: width });
+                    continue;
+                }
+                let sides = [(&wanted, &mut *measured), (&retraction, &mut other)];
+                for ((wanted, into), own) in sides.into_iter().zip(&own) {
+                    // Of two branches beside each other one may be shorter.
+                    let is_over = own.iter().all(|at| cells.get(*at).is_none_or(|cell| cell.is_empty()));
+                    if retraction.is_empty() || !is_over {
+                        state.takes(*line, &cells, wanted, branch.filter(|_| is_said), into);
+                    }
+                }
             }
-            let text = if has_comma { &pointed } else { text };
-            let value = cells::number(text, what).map_err(|fault| Fault::Cell { number, fault })?;
-            column.values.push(value);
-            column.step = column.step.min(last_digit(text));
         }
+        measured.skipped += other.skipped;
+        if !retraction.is_empty() {
+            measured.appends(&other);
+        }
+        measured.notes.extend(other.notes);
+        Ok(())
     }
-    Ok(())
-}
-
-/// The place of the last digit of a number: 0.01 of 1.23, 1e-9 of 12e-9.
-fn last_digit(text: &str) -> f64 {
-    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    10.0_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)).clamp(-300, 300))
 }

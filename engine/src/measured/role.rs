@@ -1,5 +1,6 @@
 //! What a column is, by its name or because a person says so.
 
+pub(super) use super::names::{named, squashed};
 use crate::text::{closest, quote};
 use crate::units::{Dimension, Quantity, Unit};
 use thiserror::Error;
@@ -17,6 +18,10 @@ pub enum Role {
     Force,
     /// s, a length.
     Radius,
+    /// 2s, a length.
+    Diameter,
+    /// πs², an area.
+    Area,
     /// Which branch a row belongs to.
     Segment,
 }
@@ -44,24 +49,47 @@ impl Segment {
 
     /// What a cell says; `None` for a word that is not known.
     pub fn of(text: &str) -> Option<Self> {
-        let word = text.to_ascii_lowercase();
+        let word = text.to_lowercase();
         let is = |words: &[&str]| words.contains(&word.as_str());
-        if is(&["false", "0", "0.0", "approach", "extend", "advance", "loading", "load", "trace", "in"]) {
+        if is(&[
+            "false",
+            "0",
+            "0.0",
+            "approach",
+            "approaching",
+            "extend",
+            "extending",
+            "ext",
+            "ex",
+            "advance",
+            "loading",
+            "load",
+            "trace",
+            "in",
+            "forward",
+            "push",
+        ]) {
             Some(Self::Approach)
         } else if is(&[
             "true",
             "1",
             "1.0",
             "retract",
+            "retracting",
             "retraction",
+            "ret",
+            "rt",
             "withdraw",
+            "withdrawal",
             "unloading",
             "unload",
             "retrace",
             "out",
+            "backward",
+            "pull",
         ]) {
             Some(Self::Retraction)
-        } else if is(&["2", "2.0", "pause", "hold", "dwell", "intermediate"]) {
+        } else if is(&["2", "2.0", "pause", "hold", "holding", "dwell", "intermediate"]) {
             Some(Self::Other)
         } else {
             None
@@ -69,84 +97,18 @@ impl Segment {
     }
 }
 
-/// The roles with the names by which a header says them, in lower case, spaces for underscores.
-const NAMES: [(Role, &[&str]); 6] = [
-    (
-        Role::Approach,
-        &[
-            "approach",
-            "indentation",
-            "indentation depth",
-            "delta",
-            "δ",
-            "displacement",
-            "displacement into surface",
-            "depth",
-            "tip position",
-            "tip sample separation",
-            "tip sample distance",
-            "separation",
-            "distance",
-            "disp",
-            "penetration",
-            "penetration depth",
-        ],
-    ),
-    (
-        Role::Position,
-        &[
-            "position",
-            "height",
-            "piezo",
-            "z",
-            "stage",
-            "height measured",
-            "height piezo",
-            "z piezo",
-            "piezo height",
-            "extension",
-            "stage position",
-            "piezo position",
-            "zsensor",
-            "z sensor",
-            "z sense",
-            "zsnsr",
-            "z position",
-            "z height",
-            "z displacement",
-            "zpiezo",
-            "piezo displacement",
-            "measured height",
-            "crosshead",
-            "crosshead position",
-        ],
-    ),
-    (
-        Role::Deflection,
-        &["deflection", "defl", "bending", "cantilever deflection", "vdeflection", "vertical deflection"],
-    ),
-    (
-        Role::Force,
-        &[
-            "force",
-            "load",
-            "p",
-            "f",
-            "normal force",
-            "normal load",
-            "load on sample",
-            "applied load",
-            "load cell",
-        ],
-    ),
-    (Role::Radius, &["contact radius", "radius", "s", "a"]),
-    (Role::Segment, &["segment", "branch", "direction", "phase"]),
-];
-
 impl Role {
     /// All, in the order in which messages name them.
-    pub const ALL: [Self; 6] =
-        [Self::Approach, Self::Position, Self::Deflection, Self::Force, Self::Radius, Self::Segment];
+    pub const ALL: [Self; 8] = [
+        Self::Approach,
+        Self::Position,
+        Self::Deflection,
+        Self::Force,
+        Self::Radius,
+        Self::Diameter,
+        Self::Area,
+        Self::Segment,
+    ];
 
     /// The word by which `--columns` says it; `x` says [`Role::Approach`] too.
     pub fn word(self) -> &'static str {
@@ -156,30 +118,46 @@ impl Role {
             Self::Deflection => "deflection",
             Self::Force => "force",
             Self::Radius => "radius",
+            Self::Diameter => "diameter",
+            Self::Area => "area",
             Self::Segment => "segment",
         }
     }
 
-    /// What is measured; none for a segment.
-    pub fn quantity(self) -> Option<Quantity> {
+    /// Its dimension; none for a segment.
+    pub fn dimension(self) -> Option<Dimension> {
         match self {
-            Self::Force => Some(Quantity::Force),
+            Self::Force => Some(Quantity::Force.dimension()),
+            Self::Area => Some(Quantity::Length.dimension() * 2),
             Self::Segment => None,
-            _ => Some(Quantity::Length),
+            _ => Some(Quantity::Length.dimension()),
         }
+    }
+
+    /// Its unit in SI; none for a segment.
+    pub fn si(self) -> Option<&'static str> {
+        match self {
+            Self::Force => Quantity::Force.si(),
+            Self::Area => Some("m^2"),
+            Self::Segment => None,
+            _ => Quantity::Length.si(),
+        }
+    }
+
+    /// What a header's name says, if no unit stands in it.
+    pub fn of_bare(name: &str) -> Option<Self> {
+        named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
     }
 
     /// What a header's name says.
     pub fn of(name: &str) -> Option<Self> {
-        let name = name.to_lowercase().replace(['_', '-'], " ");
-        let name = name.trim();
-        NAMES.iter().find(|(_, names)| names.contains(&name)).map(|(role, _)| *role)
+        named(name).filter(|named| named.side.is_none()).map(|named| named.role)
     }
 }
 
 /// The dimensions that units in a header have.
-pub(super) fn dimensions() -> [Dimension; 2] {
-    [Quantity::Length.dimension(), Quantity::Force.dimension()]
+pub(super) fn dimensions() -> [Dimension; 3] {
+    [Quantity::Length.dimension(), Quantity::Force.dimension(), Quantity::Length.dimension() * 2]
 }
 
 /// Where a column stands.
@@ -214,7 +192,8 @@ pub enum SpecError {
     Form(String),
     /// An unknown role.
     #[error(
-        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius or segment{}",
+        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius, diameter, area or \
+         segment{}",
         meant.map_or_else(String::new, |word| format!("; did you mean {word}?"))
     )]
     Role {
@@ -279,12 +258,40 @@ impl Spec {
 
 /// The unit `text` of a column of this role.
 pub(super) fn unit_of(role: Role, text: &str) -> Result<Unit, SpecError> {
-    let quantity = role.quantity();
-    let expected = quantity.map_or("known: a segment has no unit", |quantity| match quantity {
-        Quantity::Force => "a unit of force",
+    let expected = match role {
+        Role::Force => "a unit of force",
+        Role::Area => "a unit of area",
+        Role::Segment => "known: a segment has no unit",
         _ => "a unit of length",
-    });
-    let unit = Unit::parse(text, 0).ok();
-    unit.filter(|unit| quantity.is_some_and(|quantity| quantity.dimension() == unit.dimension()))
-        .ok_or_else(|| SpecError::Unit { role: role.word(), unit: quote(text), expected })
+    };
+    let unit = unit_named(text, role == Role::Force);
+    unit.filter(|unit| role.dimension() == Some(unit.dimension())).ok_or_else(|| SpecError::Unit {
+        role: role.word(),
+        unit: quote(text),
+        expected,
+    })
+}
+
+/// The unit that `text` names, spelt out perhaps; the grams of a balance are forces where `is_force`.
+pub(super) fn unit_named(text: &str, is_force: bool) -> Option<Unit> {
+    const SPELT: [(&str, &str); 6] =
+        [("newton", "N"), ("meter", "m"), ("metre", "m"), ("gramforce", "gf"), ("gramm", "g"), ("gram", "g")];
+    const PREFIXES: [(&str, &str); 6] =
+        [("nano", "n"), ("micro", "u"), ("milli", "m"), ("centi", "c"), ("kilo", "k"), ("pico", "p")];
+    let text = text.trim();
+    let word = text.to_lowercase().replace(['-', ' '], "");
+    let word = word.strip_suffix('s').filter(|word| word.len() > 2).unwrap_or(&word).to_owned();
+    let (prefix, rest) = PREFIXES
+        .iter()
+        .find_map(|(long, short)| Some((*short, word.strip_prefix(long)?)))
+        .unwrap_or(("", &word));
+    let spelt = match SPELT.iter().find(|(long, _)| *long == rest) {
+        Some((_, short)) => format!("{prefix}{short}"),
+        None if prefix == "u" && rest == "n" => "micron".to_owned(),
+        None if word == "micron" => "micron".to_owned(),
+        None => text.to_owned(),
+    };
+    let weighed = |text: &str| is_force && ["g", "mg", "kg", "ug", "µg", "\u{3bc}g"].contains(&text);
+    let spelt = if weighed(&spelt) { format!("{spelt}f") } else { spelt };
+    Unit::parse(&spelt, 0).ok()
 }

@@ -1,20 +1,23 @@
 //! The table `[data]` of a preset, read; and its points.
 
-use super::data::{BASELINE, COLUMNS, DataSpec, FILE, FREE, OFFSET, SEGMENT, SEGMENTS, TILT};
+use super::data::{
+    BASELINE, COLUMNS, DataSpec, FILE, FREE, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF, TILT,
+};
 use super::given::Given;
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::value::Value;
 use crate::measured::branches::Asked;
-use crate::measured::points::stiffness;
+use crate::measured::points::{stiffness, tip_radius};
 use crate::measured::source::Reading;
 use crate::measured::{Branches, Segment, Source};
 use crate::problem::Control;
 use std::sync::Arc;
 
 impl Given<'_> {
-    /// The measured curve; a control that nothing says becomes the spring that the file states.
-    pub(super) fn data(&mut self, control: &mut Control) -> DataSpec {
+    /// The measured curve; a control that nothing says becomes the spring that the file states. The gap has the curvature
+    /// `radius`.
+    pub(super) fn data(&mut self, control: &mut Control, radius: Option<f64>) -> DataSpec {
         let optional = |given: &mut Self, key| given.values.contains_key(key).then(|| given.number(key));
         let segment = self.values.contains_key(SEGMENT).then(|| self.text(SEGMENT));
         let source = match self.values.get(FILE) {
@@ -31,6 +34,7 @@ impl Given<'_> {
         let spec = DataSpec {
             source,
             columns: self.text(COLUMNS),
+            is_alone: self.values.contains_key(SETTINGS) && self.text(SETTINGS) == SETTINGS_OF[1],
             offset: optional(self, OFFSET),
             baseline: optional(self, BASELINE),
             tilt: optional(self, TILT),
@@ -43,6 +47,10 @@ impl Given<'_> {
         let found = source.measured(&spec.columns).and_then(|measured| {
             let words = |error: crate::measured::PointsError| error.to_string();
             measured.check_units(&self.units).map_err(words)?;
+            if spec.is_alone {
+                return Ok(None);
+            }
+            tip_radius(measured.radius, radius, &self.units).map_err(words)?;
             stiffness(measured.stiffness, *control, &self.units).map_err(words)
         });
         match found {
@@ -165,7 +173,39 @@ mod tests {
         preset.set(FILE, "none".into()).unwrap();
         preset.set("path.control.stiffness", 7.0.into()).unwrap();
         let error = preset.set(FILE, file.to_str().unwrap().into()).unwrap_err().to_string();
-        assert!(error.contains("one of them is wrong"), "{error}");
+        assert!(error.contains("or data.settings = \"preset\" if the file's is wrong"), "{error}");
         assert_eq!(preset.data.source, None);
+        // Unless the preset's word counts alone.
+        preset.set(SETTINGS, "preset".into()).unwrap();
+        preset.set(FILE, file.to_str().unwrap().into()).unwrap();
+        assert_eq!(preset.path.control, Control::Stiffness(7.0));
+        let back = read_in(FILES, Some(folder.path()), "p.toml", &write(&preset), &[] as &[&str]).unwrap();
+        assert_eq!(back, preset);
+        let error = preset.set(SETTINGS, "file".into()).unwrap_err().to_string();
+        assert!(error.contains("a spring of 0.25 N/m, and path.control.stiffness is 7 N/m"), "{error}");
+    }
+
+    #[test]
+    fn a_tip_that_contradicts_the_gap_is_refused_with_both_radii_and_the_way_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> = (0..20).map(|i| format!("{i}\t{}", i * i)).collect();
+        let text = format!("Tip radius (um)\t27.5\nIndentation (nm)\tLoad (uN)\n{}\n", rows.join("\n"));
+        std::fs::write(folder.path().join("chiaro.txt"), text).unwrap();
+        let with = |radius: &str, more: &str| {
+            let head = HEAD.replace("radius_of_curvature=1", &format!("radius_of_curvature='{radius}'"));
+            let text = format!("units='SI'\n{head}[data]\nfile='chiaro.txt'\n{more}");
+            read_in(FILES, Some(folder.path()), "p.toml", &text, &[] as &[&str])
+                .map_err(|error| error.to_string())
+        };
+        for radius in ["27.5 um", "27.52 um"] {
+            assert!(with(radius, "").is_ok(), "{radius}");
+        }
+        let error = with("25 um", "").unwrap_err();
+        assert!(
+            error.contains("the file states a tip radius of 27.5 um, and gap.radius_of_curvature is 25 um"),
+            "{error}"
+        );
+        assert!(error.contains("data.settings = \"preset\""), "{error}");
+        with("25 um", "settings='preset'\n").unwrap();
     }
 }

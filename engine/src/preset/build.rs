@@ -53,7 +53,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
         }
     });
     let mut control = given.control("path.control");
-    let data = given.data(&mut control);
+    let data = given.data(&mut control, gap.radius_of_curvature());
     let (end, range) = ("path.end_contact_radius", "material.range_of_action");
     let preset = Preset {
         title: given.text("title"),

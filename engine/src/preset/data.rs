@@ -1,7 +1,8 @@
 //! The table `[data]`: a measured curve that belongs to a preset, and what lies between the instrument and the model.
 //!
 //! The stiffness of the instrument is `path.control.stiffness` alone. A file that states one gives it to a preset whose
-//! `path.control` says nothing; where both say one they must agree.
+//! `path.control` says nothing; where both say one they must agree, as must the radii of the tip, unless the preset alone
+//! counts.
 
 use crate::measured::{Segment, Source};
 use std::sync::Arc;
@@ -20,6 +21,10 @@ pub const COLUMNS: &str = "data.columns";
 pub const SEGMENT: &str = "data.segment";
 /// The key of the keys that a fit may change.
 pub const FREE: &str = "data.free";
+/// The key of whose word counts of the instrument.
+pub const SETTINGS: &str = "data.settings";
+/// The words of [`SETTINGS`].
+pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
 /// The words of [`SEGMENT`].
 pub const SEGMENTS: [&str; 2] = ["approach", "retraction"];
 
@@ -30,6 +35,8 @@ pub struct DataSpec {
     pub source: Option<Arc<Source>>,
     /// What its columns are, as a person says it; empty leaves it to its header.
     pub columns: String,
+    /// Whether the stiffness and the tip radius that the file states are left out.
+    pub is_alone: bool,
     /// δ₀; `None` is 0.
     pub offset: Option<f64>,
     /// P₀; `None` leaves it to the free part.

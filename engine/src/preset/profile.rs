@@ -17,7 +17,7 @@
 use crate::cells::{
     self, CellFault, Head, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
 };
-use crate::text::quote;
+use crate::text::{NotText, decode, quote};
 use crate::units::{Quantity, Unit};
 use std::ops::RangeInclusive;
 use thiserror::Error;
@@ -89,8 +89,8 @@ pub type Faults = cells::Faults<Fault>;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TextError {
     /// Bytes that are no text.
-    #[error("line {0}: is not UTF-8 text")]
-    NotText(usize),
+    #[error("{0}")]
+    NotText(NotText),
     /// Lines with faults.
     #[error("{0}")]
     Faults(Faults),
@@ -202,7 +202,7 @@ struct Row {
 /// # Errors
 /// [`TextError`] with the lines that are wrong.
 pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
-    let text = cells::text_of(bytes).map_err(TextError::NotText)?;
+    let (text, note) = decode(bytes).map_err(TextError::NotText)?;
     let mut faults = Faults::default();
     let mut rows: Vec<Row> = Vec::new();
     let mut separator = None;
@@ -236,7 +236,7 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
             Err(fault) => faults.add(line, fault),
         }
     }
-    let mut columns = Columns::default();
+    let mut columns = Columns { notes: note.map(str::to_owned).into_iter().collect(), ..Columns::default() };
     if let Some(separator) = separator {
         (columns.header, columns.units) = units(header, candidate, separator)?;
     }

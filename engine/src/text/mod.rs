@@ -1,9 +1,11 @@
-//! Words in messages: foreign text made safe to show, and names that may have been meant.
+//! Foreign text: read from bytes, and made safe to show in messages; names that may have been meant.
 
+mod decode;
 mod headline;
 mod quote;
 mod suggest;
 
+pub use decode::{NotText, decode};
 pub use headline::headline;
 pub use quote::{greek, is_unsafe, quote, sanitize, show_name, show_path};
 pub use suggest::{closest, closest_key};

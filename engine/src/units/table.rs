@@ -67,6 +67,10 @@ static MICRON: Named = Named { prefixed: false, ..named("micron", LENGTH, -6) };
 static INCH: Named = Named { mantissa: 2.54, prefixed: false, ..named("in", LENGTH, -2) };
 static BAR: Named = named("bar", STRESS, 5);
 static DYNE: Named = Named { prefixed: false, ..named("dyn", FORCE, -5) };
+// The weight of a gram and of a pound under standard gravity, exact by definition: NIST SP 811, appendix B.
+static GRAM_FORCE: Named = Named { mantissa: 9.806_65, ..named("gf", FORCE, -3) };
+static POUND_FORCE: Named =
+    Named { mantissa: 4.448_221_615_260_5, prefixed: false, ..named("lbf", FORCE, 0) };
 static ERG: Named = Named { prefixed: false, ..named("erg", ENERGY, -7) };
 static RADIAN: Named = named("rad", Dimension::NONE, 0);
 static DEGREE: Named = Named {
@@ -78,7 +82,7 @@ static DEGREE: Named = Named {
 };
 
 /// The units by name.
-pub static UNITS: [&Named; 15] = [
+pub static UNITS: [&Named; 17] = [
     &METRE,
     &NEWTON,
     &PASCAL,
@@ -91,6 +95,8 @@ pub static UNITS: [&Named; 15] = [
     &INCH,
     &BAR,
     &DYNE,
+    &GRAM_FORCE,
+    &POUND_FORCE,
     &ERG,
     &RADIAN,
     &DEGREE,

@@ -40,6 +40,7 @@ fn another(key: &str) -> Value {
         "data.columns" => "x=1,force=2".into(),
         "data.free" => "E*,gamma".into(),
         "data.segment" => "approach".into(),
+        "data.settings" => "preset".into(),
         _ => Value::Number(0.75),
     }
 }
@@ -91,6 +92,7 @@ const FIELDS: &[&str] = &[
     "data.columns",
     "data.free",
     "data.segment",
+    "data.settings",
     "data.offset",
     "data.baseline",
     "data.tilt",
@@ -106,7 +108,8 @@ const FIELDS: &[&str] = &[
 fn the_table_is_total() {
     // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
     let Preset { title: _, units: _, material, gap, basis, path, data, files: _ } = wavy();
-    let DataSpec { source: _, columns: _, offset: _, baseline: _, tilt: _, segment: _, free: _ } = data;
+    let DataSpec { source: _, columns: _, offset: _, baseline: _, tilt: _, segment: _, free: _, is_alone: _ } =
+        data;
     let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}

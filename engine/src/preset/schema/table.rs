@@ -277,6 +277,13 @@ pub static PARAMETERS: &[Parameter] = &[
     .or(Fallback::Text("")),
     row(data::SEGMENT, "segment", "the branch of it that is used alone", Kind::Choice(&data::SEGMENTS))
         .or(Fallback::Described("none: both are used")),
+    row(
+        data::SETTINGS,
+        "settings",
+        "whether the stiffness and the tip radius that the file states count, which must agree with the preset",
+        Kind::Choice(&data::SETTINGS_OF),
+    )
+    .or(Fallback::Described("file")),
     length(data::OFFSET, "delta0", "x of the measured curve at which the approach is zero", Kind::Finite)
         .or(Fallback::Described("0")),
     measured(

@@ -1,0 +1,229 @@
+//! Which columns of a table are used, as its header or a person says.
+
+use super::error::ReadError;
+use super::header::{Header, is_way};
+use super::role::{Place, Role, Said, Segment, Spec, SpecError, named, unit_of};
+use crate::cells::Head;
+use crate::text::{quote, sanitize};
+use crate::units::Unit;
+
+/// A column that is looked for in each row.
+#[derive(Debug, Clone)]
+pub(super) struct Wanted {
+    pub role: Role,
+    pub at: usize,
+    pub unit: Option<Unit>,
+}
+
+/// A column whose name is known.
+struct Candidate {
+    at: usize,
+    role: Role,
+    rank: u8,
+    side: Option<Segment>,
+    unit: Result<Option<Unit>, SpecError>,
+}
+
+/// The columns whose names are known, the units of each judged.
+fn candidates(header: &Header) -> Vec<Candidate> {
+    let of = |(at, (name, unit)): (usize, &Head)| {
+        let named = named(name)?;
+        let text = unit.as_deref().or(named.unit.as_deref());
+        let read = |role| text.map(|text| unit_of(role, text)).transpose();
+        // A deflection in units of force is the force, and what is called an area may be given by its diameter.
+        let (role, unit) = match (named.role, read(named.role)) {
+            (Role::Deflection, Err(_)) if read(Role::Force).is_ok() => (Role::Force, read(Role::Force)),
+            (role, unit) => (role, unit),
+        };
+        Some(Candidate { at, role, rank: named.rank, side: named.side, unit })
+    };
+    header.heads.iter().enumerate().filter_map(of).collect()
+}
+
+/// The columns of approach and retraction, where they stand beside each other: each with a way and a force, in the same units. A
+/// column of neither belongs to both.
+pub(super) fn sides(header: &Header) -> Option<[Vec<Wanted>; 2]> {
+    let known = candidates(header);
+    let [approach, retraction] = [Segment::Approach, Segment::Retraction].map(|segment| {
+        let mut wanted: Vec<Wanted> = Vec::new();
+        let of = |side: Option<Segment>| known.iter().filter(move |column| column.side == side);
+        for column in of(Some(segment)).chain(of(None)) {
+            let is_new = wanted.iter().all(|other| other.role != column.role);
+            if let (true, Ok(unit)) = (is_new && column.role != Role::Segment, &column.unit) {
+                wanted.push(Wanted { role: column.role, at: column.at, unit: unit.clone() });
+            }
+        }
+        wanted
+    });
+    let has = |wanted: &[Wanted], is: &dyn Fn(Role) -> bool| wanted.iter().any(|column| is(column.role));
+    let is_whole = |wanted: &[Wanted]| has(wanted, &is_way) && has(wanted, &is_force);
+    let has_side = |segment| known.iter().any(|column| column.side == Some(segment) && column.unit.is_ok());
+    let same = |column: &Wanted| {
+        retraction.iter().any(|other| other.role == column.role && other.unit == column.unit)
+    };
+    let is_both = has_side(Segment::Approach) && has_side(Segment::Retraction);
+    let fits =
+        is_both && is_whole(&approach) && approach.len() == retraction.len() && approach.iter().all(same);
+    fits.then_some([approach, retraction])
+}
+
+fn is_force(role: Role) -> bool {
+    [Role::Force, Role::Deflection].contains(&role)
+}
+
+/// Which columns are used, in a file whose first row is in the line `row`.
+pub(super) fn wanted(
+    spec: &Spec,
+    header: Option<&Header>,
+    row: usize,
+    cells: usize,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Wanted>, ReadError> {
+    let line = header.map_or(row, |header| header.line);
+    let known = || header.map_or_else(String::new, |header| listed(&header.heads));
+    let mut refused = Vec::new();
+    let wanted = match header {
+        _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
+        Some(header) => of_header(header, notes, &mut refused),
+        None if cells == 2 => {
+            notes.push(
+                "there is no header: the first column is taken for the approach, the second for the force"
+                    .to_owned(),
+            );
+            let of = |(at, role)| Wanted { role, at, unit: None };
+            [(0, Role::Approach), (1, Role::Force)].map(of).into()
+        }
+        None => Vec::new(),
+    };
+    let has = |is: &dyn Fn(Role) -> bool| wanted.iter().any(|column: &Wanted| is(column.role));
+    for (is, missing) in [
+        (&is_force as &dyn Fn(Role) -> bool, "force, or of the deflection"),
+        (&is_way, "approach, of the position or of the contact radius"),
+    ] {
+        // A column of that name with a unit of something else is the reason.
+        if let (false, Some((_, error))) = (has(is), refused.iter().find(|(role, _)| is(*role))) {
+            return Err(error.clone());
+        }
+        if !wanted.is_empty() && !has(is) {
+            return Err(ReadError::Lacks { line, missing, known: known() });
+        }
+    }
+    if wanted.is_empty() {
+        return Err(ReadError::Unknown { line, cells, names: known() });
+    }
+    Ok(wanted)
+}
+
+/// The columns that a person names.
+fn of_person(
+    spec: &Spec,
+    header: Option<&Header>,
+    line: usize,
+    cells: usize,
+) -> Result<Vec<Wanted>, ReadError> {
+    let column = |said: &Said| {
+        let at = match &said.place {
+            Place::Number(number) => Some(number - 1).filter(|at| *at < cells),
+            Place::Name(name) => header.and_then(|header| {
+                header.heads.iter().position(|(known, _)| known.eq_ignore_ascii_case(name))
+            }),
+        };
+        let Some(at) = at else {
+            let place = match &said.place {
+                Place::Number(number) => format!("{number}: a row has {cells}"),
+                Place::Name(name) => format!("\"{}\"", quote(name)),
+            };
+            let known = header.map_or_else(String::new, |header| listed(&header.heads));
+            return Err(ReadError::NoColumn { line, place, known });
+        };
+        let head = header.and_then(|header| header.heads.get(at));
+        let in_name = head.and_then(|(name, _)| named(name)?.unit);
+        let text = head.and_then(|head| head.1.clone()).or(in_name);
+        let unit = match (&said.unit, text) {
+            (Some(unit), _) => Some(unit.clone()),
+            (None, Some(text)) => {
+                let unit = unit_of(said.role, &text);
+                Some(unit.map_err(|cause| {
+                    refusal(line, at, head.map_or("", |head| &head.0), said.role, &text, cause)
+                })?)
+            }
+            (None, None) => None,
+        };
+        Ok(Wanted { role: said.role, at, unit })
+    };
+    spec.0.iter().map(column).collect()
+}
+
+/// Why a column is not used: a signal in volts or amperes lacks its sensitivity, anything else has the wrong unit.
+fn refusal(line: usize, at: usize, name: &str, role: Role, unit: &str, cause: SpecError) -> ReadError {
+    let is_signal =
+        ["V", "mV", "uV", "µV", "nA", "A", "pA", "Volt", "Volts", "volt", "volts"].contains(&unit.trim());
+    if is_signal {
+        let (number, name, unit) = (at + 1, quote(name), quote(unit));
+        ReadError::Signal { line, number, name, unit, role }
+    } else {
+        ReadError::Unit { line, cause }
+    }
+}
+
+/// The columns whose names in the header are known; those with a unit of something else are `refused`.
+fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, ReadError)>) -> Vec<Wanted> {
+    let mut wanted: Vec<(u8, Wanted)> = Vec::new();
+    let all = candidates(header);
+    // Names of one branch alone are those of all rows, and of two branches nobody knows which is meant.
+    let side = |of| all.iter().any(|column| column.side == Some(of));
+    let is_mixed = side(Segment::Approach) && side(Segment::Retraction);
+    for column in all.into_iter().filter(|column| column.side.is_none() || !is_mixed) {
+        let unit = match column.unit {
+            Ok(unit) => unit,
+            Err(cause) => {
+                let (name, unit) = &header.heads[column.at];
+                let unit = unit.as_deref().unwrap_or("V");
+                let error = refusal(header.line, column.at, name, column.role, unit, cause);
+                refused.push((column.role, error));
+                continue;
+            }
+        };
+        let new = Wanted { role: column.role, at: column.at, unit };
+        let Some((rank, known)) = wanted.iter_mut().find(|(_, known)| known.role == new.role) else {
+            wanted.push((column.rank, new));
+            continue;
+        };
+        let is_better = column.rank < *rank;
+        let (taken, left) = if is_better { (new.at, known.at) } else { (known.at, new.at) };
+        notes.push(format!(
+            "columns {} and {} are both a {}: the {} is read, the other left out",
+            taken.min(left) + 1,
+            taken.max(left) + 1,
+            new.role.word(),
+            if taken < left { "first" } else { "second" }
+        ));
+        if is_better {
+            (*rank, *known) = (column.rank, new);
+        }
+    }
+    let mut wanted: Vec<Wanted> = wanted.into_iter().map(|(_, wanted)| wanted).collect();
+    // A contact is given once.
+    let has = |wanted: &[Wanted], role| wanted.iter().any(|column| column.role == role);
+    for (better, other) in
+        [(Role::Radius, Role::Diameter), (Role::Radius, Role::Area), (Role::Diameter, Role::Area)]
+    {
+        if has(&wanted, better) {
+            wanted.retain(|column| column.role != other);
+        }
+    }
+    wanted
+}
+
+/// Gives columns without a unit that of SI.
+pub(super) fn in_si(wanted: &mut [Wanted]) {
+    for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
+        column.unit = column.role.si().and_then(|si| Unit::parse(si, 0).ok());
+    }
+}
+
+/// The names of a header, safe to show.
+fn listed(heads: &[Head]) -> String {
+    let names: Vec<String> = heads.iter().map(|(name, _)| format!("\"{}\"", quote(name))).collect();
+    sanitize(&names.join(", "), 200)
+}

@@ -1,0 +1,356 @@
+//! Forms in which instruments, their programs and spreadsheets export curves. Each is read at once, or after the one option
+//! that the refusal names, and its numbers are those that were written.
+
+mod makers;
+mod programs;
+
+use super::role::Spec;
+use super::{Abscissa, Measured, ReadError, Role, Segment, columns, parse};
+use crate::gap::shapes::split_mix::SplitMix64;
+use crate::units::{DisplayUnits, UnitSystem};
+use std::fmt::Write;
+
+/// x in nm and P in nN, down to the contact and back.
+fn rows() -> Vec<[f64; 2]> {
+    let down = (0..10).map(|i| [f64::from(i) * 12.5 - 50.0, f64::from(i * i) * 0.25]);
+    let up = (0..10).rev().map(|i| [f64::from(i) * 12.5 - 62.5, f64::from(i * i) * 0.25 - 3.5]);
+    down.chain(up).collect()
+}
+
+/// Ten rows of a branch.
+fn half(retraction: bool) -> Vec<[f64; 2]> {
+    let rows = rows();
+    if retraction { rows[10..].to_vec() } else { rows[..10].to_vec() }
+}
+
+/// Lines of rows: `write` makes the cells of x and P.
+fn lines(rows: &[[f64; 2]], write: impl Fn(usize, f64, f64) -> String) -> String {
+    rows.iter().enumerate().fold(String::new(), |mut text, (i, [x, p])| {
+        writeln!(text, "{}", write(i, *x, *p)).unwrap();
+        text
+    })
+}
+
+/// x and P with this separator, scaled.
+fn two(separator: &str, x: f64, p: f64) -> String {
+    lines(&rows(), |_, a, b| format!("{:e}{separator}{:e}", a * x, b * p))
+}
+
+/// As a German spreadsheet writes numbers.
+fn comma(number: f64) -> String {
+    format!("{number}").replace('.', ",")
+}
+
+/// A form: its name, its bytes, the option, and what must come of it.
+struct Form {
+    name: &'static str,
+    bytes: Vec<u8>,
+    /// The option that its refusal names, as a person fills it in.
+    option: &'static str,
+    abscissa: Abscissa,
+    stiffness: Option<f64>,
+    radius: Option<f64>,
+    /// How many rows carry each branch, if any do.
+    segments: Option<[usize; 2]>,
+    skipped: usize,
+    /// What must be said.
+    says: &'static str,
+}
+
+fn form(name: &'static str, text: impl Into<Vec<u8>>) -> Form {
+    Form {
+        name,
+        bytes: text.into(),
+        option: "",
+        abscissa: Abscissa::Approach,
+        stiffness: None,
+        radius: None,
+        segments: None,
+        skipped: 0,
+        says: "",
+    }
+}
+
+impl Form {
+    fn over(self, abscissa: Abscissa) -> Self {
+        Self { abscissa, ..self }
+    }
+
+    fn position(self) -> Self {
+        self.over(Abscissa::Position)
+    }
+
+    fn after(self, option: &'static str) -> Self {
+        Self { option, ..self }
+    }
+
+    fn spring(self, stiffness: f64) -> Self {
+        Self { stiffness: Some(stiffness), ..self }
+    }
+
+    fn tip(self, radius: f64) -> Self {
+        Self { radius: Some(radius), ..self }
+    }
+
+    fn halves(self) -> Self {
+        Self { segments: Some([10, 10]), ..self }
+    }
+
+    fn over_segments(self, segments: [usize; 2]) -> Self {
+        Self { segments: Some(segments), ..self }
+    }
+
+    fn without(self, skipped: usize) -> Self {
+        Self { skipped, ..self }
+    }
+
+    fn says(self, says: &'static str) -> Self {
+        Self { says, ..self }
+    }
+
+    /// Reads it and compares every number.
+    fn check(&self) {
+        let name = self.name;
+        let mut read = parse(&self.bytes, &Spec::default());
+        if !self.option.is_empty() {
+            let refusal = read.expect_err(name).to_string();
+            assert!(refusal.contains("--columns x=1,force=2"), "{name}: {refusal}");
+            assert!(columns(&self.bytes).unwrap().len() > 1, "{name}");
+            read = parse(&self.bytes, &Spec::parse(self.option).unwrap());
+        }
+        let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let points = read.points(&UnitSystem::Si(DisplayUnits::default()), Some(1.0));
+        let points = points.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(points.abscissa, self.abscissa, "{name}: {:?}", read.notes);
+        let expected = rows();
+        assert_eq!(points.x.len(), expected.len(), "{name}: {:?}", read.notes);
+        for (i, [x, p]) in expected.iter().enumerate() {
+            let x = if self.abscissa == Abscissa::Radius { x + 75.0 } else { *x };
+            let off = [points.x[i] - 1e-9 * x, points.force[i] - 1e-9 * p];
+            assert!(off[0].abs() < 1e-16 && off[1].abs() < 1e-16, "{name}: row {i} is off by {off:?}");
+        }
+        let near = |stated: Option<super::stated::Stated>, expected: Option<f64>| match (stated, expected) {
+            (Some(stated), Some(expected)) => (stated.value / expected - 1.0).abs() < 1e-12,
+            (stated, expected) => stated.is_none() && expected.is_none(),
+        };
+        assert!(near(read.stiffness, self.stiffness), "{name}: {:?}", read.stiffness);
+        assert!(near(read.radius, self.radius), "{name}: {:?}", read.radius);
+        let counted = read.segments.as_ref().map(|segments| {
+            [Segment::Approach, Segment::Retraction].map(|of| segments.iter().filter(|s| **s == of).count())
+        });
+        assert_eq!(counted, self.segments, "{name}");
+        assert_eq!(read.skipped, self.skipped, "{name}: {:?}", read.notes);
+        assert!(read.notes.join("; ").contains(self.says), "{name}: {:?}", read.notes);
+    }
+}
+
+fn utf_16(text: &str, of: fn(u16) -> [u8; 2], mark: &[u8]) -> Vec<u8> {
+    mark.iter().copied().chain(text.encode_utf16().flat_map(of)).collect()
+}
+
+fn western(text: &str) -> Vec<u8> {
+    text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect()
+}
+
+/// All forms.
+fn all() -> Vec<Form> {
+    let makers = [makers::of_microscopes(), makers::of_indenters(), makers::of_testers()];
+    let programs = [programs::of_spreadsheets(), programs::of_own_programs()];
+    makers.into_iter().chain(programs).flatten().collect()
+}
+
+#[test]
+fn every_form_is_read_at_once_or_after_the_option_that_is_named() {
+    let forms = all();
+    assert!(forms.len() >= 50, "{}", forms.len());
+    for form in &forms {
+        form.check();
+    }
+}
+
+#[test]
+fn damage_is_read_or_refused_in_a_sentence_and_columns_stay_alike() {
+    let mut random = SplitMix64::new(11);
+    for form in all() {
+        for _ in 0..20 {
+            let mut bytes = form.bytes.clone();
+            for _ in 0..4 {
+                let bits = random.bits();
+                let at = usize::try_from(bits >> 16).unwrap() % bytes.len();
+                match bits % 4 {
+                    0 => bytes[at] = bits.to_le_bytes()[1],
+                    1 => bytes[at] = b",;\t \n.-#"[usize::try_from(bits >> 8).unwrap() % 8],
+                    2 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, b"0\n;,x\"[\r"[usize::try_from(bits >> 8).unwrap() % 8]),
+                }
+            }
+            for option in ["", "x=1,force=2"] {
+                match parse(&bytes, &Spec::parse(option).unwrap()) {
+                    Err(error) => {
+                        let text = error.to_string();
+                        assert!(
+                            !text.chars().any(|c| c != '\n' && crate::text::is_unsafe(c)),
+                            "{}: {text:?}",
+                            form.name
+                        );
+                    }
+                    Ok(read) => {
+                        let rows = read.columns[0].values.len();
+                        assert!(
+                            read.columns.iter().all(|column| column.values.len() == rows),
+                            "{}",
+                            form.name
+                        );
+                        assert!(read.segments.is_none_or(|segments| segments.len() == rows), "{}", form.name);
+                    }
+                }
+            }
+            let _ = columns(&bytes);
+        }
+    }
+}
+
+fn refused(bytes: &[u8]) -> String {
+    parse(bytes, &Spec::default()).expect_err("it is refused").to_string()
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_in_a_sentence() {
+    let good = "indentation (nm),force (nN)\n".to_owned() + &two(",", 1.0, 1.0);
+    let cut = &good[..good.len() - 8];
+    let head = "indentation (nm);force (nN)\n";
+    let body = two(";", 1.0, 1.0);
+    for (what, bytes, expected) in [
+        ("a line that is cut", format!("{good}-4.5"), "line 22: has 1 cells, and the first row has 2"),
+        ("separators of two kinds", format!("{good}1;2\n3;4\n"), "line 22: "),
+        (
+            "a million columns",
+            format!("{good}{}", "1,".repeat(1_000_000)),
+            "line 22: has 2000000 bytes, more than the 2048",
+        ),
+        ("many columns", "1,".repeat(100) + "\n", "has 101 columns; at most 64 are read"),
+        ("zero bytes", format!("{good}1,\0\n"), "line 22: holds a zero byte"),
+        ("a ZIP archive", "PK\u{3}\u{4}\0\0".to_owned(), "pulloff.read_afm(path)"),
+        ("controls", format!("{good}1,\u{7}2\n"), "line 22: holds control or invisible characters"),
+        (
+            "points and commas",
+            format!("{head}{body}1,5;2\n"),
+            "\"1,5\" has a comma, and line 3 a number with a point",
+        ),
+        ("thousands", format!("{head}{body}1.234,5;2\n"), "\"1.234,5\" has more than one comma or point"),
+        ("commas that part all", "0,5, 1,5\n".repeat(20), "line 1: some commas are followed by a space"),
+        (
+            "volts alone",
+            format!("Z (nm);Deflection (V)\n{body}"),
+            "column 2, \"Deflection\", is the deflection in V, and the sensitivity",
+        ),
+        ("volts in a name", format!("Z_nm;Defl_V\n{body}"), "column 2, \"Defl_V\", is the deflection in V"),
+        (
+            "another unit",
+            format!("Z (nN);Force (nN)\n{body}"),
+            "the unit \"nN\" of position is not a unit of length",
+        ),
+        (
+            "waves of other curves",
+            "IGOR\nWAVES Z\nBEGIN\n1\n2\nEND\nWAVES F\nBEGIN\n1\nEND\n".to_owned(),
+            "waves have 1 to 2 rows",
+        ),
+        ("nothing but words", "a\nb c\n".to_owned(), "has 0 rows"),
+        (
+            "no numbers at all",
+            format!("{head}{}", "1;NaN\n".repeat(30)),
+            "has 0 rows besides 30 without a number",
+        ),
+        (
+            "a first row with a fault",
+            format!("{head}x1;2\n{body}"),
+            "line 2: column 1: the approach \"x1\" is no number",
+        ),
+        (
+            "words among rows",
+            format!("{head}{body}oops;2\n{body}"),
+            "line 22: column 1: the approach \"oops\" is no number",
+        ),
+    ] {
+        let message = refused(bytes.as_bytes());
+        assert!(message.contains(expected), "{what}: {message}");
+        assert!(
+            message.len() < 400 && !message.chars().any(|c| c != '\n' && crate::text::is_unsafe(c)),
+            "{what}: {message}"
+        );
+    }
+    // A number that is cut is none or another: the rows before it stay.
+    assert!(
+        parse(cut.as_bytes(), &Spec::default()).is_ok() || refused(cut.as_bytes()).starts_with("line 21")
+    );
+    assert!(matches!(parse(b"\xff\xfe1\x00\n", &Spec::default()), Err(ReadError::NotText(_))));
+}
+
+#[test]
+fn columns_are_listed_with_their_first_values() {
+    let text = "u1 [nm];u2;Force (nN)\n1,5;2;x y\n2,5;3;4\n3;4;5\n9;9;9\n";
+    let seen = columns(text.as_bytes()).unwrap();
+    let names: Vec<&str> = seen.iter().map(|seen| &*seen.name).collect();
+    assert_eq!(names, ["u1 [nm]", "u2", "Force [nN]"]);
+    assert_eq!(seen[0].first, ["1,5", "2,5", "3"]);
+    assert_eq!(seen[2].role, Some(Role::Force));
+    assert!(columns(b"words\n").is_err());
+}
+
+/// The stiffness that a file states, unless it is 1, which nobody has calibrated.
+fn stated(line: &str) -> Measured {
+    let text = format!("{line}\nindentation (nm),force (nN)\n{}", two(",", 1.0, 1.0));
+    parse(text.as_bytes(), &Spec::default()).unwrap_or_else(|error| panic!("{line}: {error}"))
+}
+
+#[test]
+fn settings_are_found_in_every_usual_form() {
+    for line in [
+        "Force Constant, nN/nm: 0.25",
+        "Spring constant [N/m];0,25",
+        "\"Spring constant (N/m)\",0.25",
+        "# springConstant: 0.25",
+        "%k (mN/m)\t250",
+        "\"\\Spring Constant: 0.25\"",
+        "Cantilever spring constant = 0.25 N/m",
+        "cantilever stiffness: 250 pN/nm",
+    ] {
+        let found = stated(line).stiffness.unwrap_or_else(|| panic!("{line}"));
+        assert!((found.value - 0.25).abs() < 1e-12, "{line}: {found:?}");
+    }
+    for line in
+        ["Tip radius (um)\t2.5", "Sphere diameter: 5 um", "# indenter radius = 2500 nm", "R [um]: 2,5"]
+    {
+        let found = stated(line).radius.unwrap_or_else(|| panic!("{line}"));
+        assert!((found.value - 2.5e-6).abs() < 1e-15, "{line}: {found:?}");
+    }
+    let uncalibrated = stated("Spring constant (N/m): 1.0");
+    assert!(uncalibrated.stiffness.is_none() && uncalibrated.notes[0].contains("not calibrated"));
+    let unknown = stated("Tip radius: 20");
+    assert!(
+        unknown.radius.is_none() && unknown.notes[0].contains("without a known unit"),
+        "{:?}",
+        unknown.notes
+    );
+    let two = stated("k (N/m)\t0.25\nk (N/m)\t0.5");
+    assert!(two.stiffness.is_some() && two.notes[0].contains("two springs"), "{:?}", two.notes);
+    // What is rounded does not contradict.
+    let rounded = stated("k (N/m)\t0.25").stiffness.unwrap();
+    assert!(rounded.is(0.2541) && !rounded.is(0.26));
+}
+
+#[test]
+fn a_unit_in_a_name_is_not_given_twice() {
+    for (name, role) in [
+        ("force", Some(Role::Force)),
+        ("Normal force", Some(Role::Force)),
+        ("force [nN]", None),
+        ("force (nN)", None),
+        ("force_nN", None),
+        ("position / um", None),
+        ("height (measured)", Some(Role::Position)),
+        ("nothing known", None),
+    ] {
+        assert_eq!(Role::of_bare(name), role, "{name}");
+    }
+}

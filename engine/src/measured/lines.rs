@@ -1,0 +1,273 @@
+//! The lines of a file → its tables of rows, with the words above each.
+//!
+//! A row is a line of which a first cell is a number, a missing value or the name of a branch, and which is parted into as
+//! many cells as the rows above it. Words part tables: settings and headers above them, a footer below them. A line among
+//! the rows that begins like a number stays a row, so that its fault is told.
+
+use super::error::{MOST_COLUMNS, ROW_RANGE, ReadError};
+use super::header::{parts_tables, row_under};
+use super::role::Segment;
+use crate::cells::{LONGEST_LINE, LineFault, Separator, is_unprintable, remark};
+
+/// At most so many lines of words above a table are looked at for its header.
+const LINES_ABOVE: usize = 256;
+
+/// A line of words.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Words<'a> {
+    /// Its number, from 1.
+    pub line: usize,
+    /// It, without what marks a remark.
+    pub text: &'a str,
+    /// Whether it is a remark.
+    pub is_remark: bool,
+}
+
+/// A table: rows of as many cells each.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    /// The words above it, below the table before it.
+    pub above: Vec<Words<'a>>,
+    /// What parts the cells.
+    pub separator: Separator,
+    /// How many there are, in the first row.
+    pub cells: usize,
+    /// The rows with their lines.
+    pub rows: Vec<(usize, &'a str)>,
+}
+
+impl Table<'_> {
+    /// How many cells of the first row are not behind its last value.
+    pub(super) fn filled(&self) -> usize {
+        let cells = self.rows.first().map(|(_, text)| self.separator.cells(text)).unwrap_or_default();
+        cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
+    }
+}
+
+/// The lines of a file: tables and words.
+#[derive(Debug, Default)]
+pub(super) struct Outline<'a> {
+    /// The tables.
+    pub tables: Vec<Table<'a>>,
+    /// All words, below the last table too.
+    pub words: Vec<Words<'a>>,
+    /// The lines that are wrong as a whole.
+    pub faults: Vec<(usize, LineFault)>,
+    /// Whether it is a text file of Igor.
+    pub is_igor: bool,
+    /// The words below the last table that are no remarks, first and last line.
+    pub footer: Option<(usize, usize)>,
+}
+
+/// Whether a cell says that nothing was measured: empty, not a number, out of the range of the instrument.
+pub(super) fn is_gap(cell: &str) -> bool {
+    const WORDS: [&str; 22] = [
+        "nan",
+        "na",
+        "n/a",
+        "null",
+        "none",
+        "inf",
+        "infinity",
+        "overload",
+        "overrange",
+        "overflow",
+        "ovld",
+        "ovl",
+        "ol",
+        "saturated",
+        "sat",
+        "out of range",
+        "nan(ind)",
+        "1.#qnan",
+        "1.#ind",
+        "1.#inf",
+        "missing",
+        "invalid",
+    ];
+    let cell = cell.trim_start_matches(['-', '+', '#', '*']).trim_end_matches('!');
+    cell.is_empty()
+        || ["num", "div/0", "value", "ref"].iter().chain(&WORDS).any(|word| cell.eq_ignore_ascii_case(word))
+}
+
+/// Whether a cell is a number, its decimals behind a point or a comma.
+pub(super) fn is_number(cell: &str) -> bool {
+    let mut digits = cell.strip_prefix(['-', '+', '\u{2212}']).unwrap_or(cell);
+    if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.' || c == ',') {
+        return false;
+    }
+    if let Some(at) = digits.find(['e', 'E', 'd', 'D']) {
+        let exponent = digits[at + 1..].trim_start_matches(['-', '+']);
+        if exponent.is_empty() || !exponent.bytes().all(|byte| byte.is_ascii_digit()) {
+            return false;
+        }
+        digits = &digits[..at];
+    }
+    digits.bytes().filter(|byte| !byte.is_ascii_digit()).count() <= 1
+        && digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.' || byte == b',')
+        && digits.bytes().any(|byte| byte.is_ascii_digit())
+}
+
+/// The word of a branch, by letters.
+fn is_branch(cell: &str) -> bool {
+    cell.starts_with(char::is_alphabetic) && Segment::of(cell).is_some()
+}
+
+/// Whether a line begins as numbers do, and goes on with something that is no rule.
+fn begins_as_number(text: &str) -> bool {
+    let text = text.trim_start_matches(['"', '\t']);
+    let rest = text.trim_start_matches(['+', '-', '\u{2212}']);
+    text.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+        || (rest.len() < text.len() && rest.starts_with(|c: char| c.is_alphanumeric() || c == '.'))
+}
+
+/// A time or a date.
+fn is_stamp(cell: &str) -> bool {
+    cell.starts_with(|c: char| c.is_ascii_digit())
+        && cell.contains([':', '/', '-'])
+        && cell.chars().all(|c| c.is_ascii_digit() || ":/-.,TZ".contains(c))
+}
+
+/// How the cells of a line are parted, if it is a row on its own: at least two values, a number among them, or one number.
+fn row(text: &str) -> Option<(Separator, usize)> {
+    let of = |separator: Separator| {
+        let cells = separator.cells(text);
+        // Where commas part cells they stand in no number, but between quotation marks.
+        let is_parting = separator == Separator::Character(',') && !text.contains('"');
+        let number = |cell: &str| is_number(cell) && !(is_parting && cell.contains(','));
+        let value = |cell: &str| number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell);
+        let word = |cell: &str| separator != Separator::Spaces && cell.contains(char::is_alphabetic);
+        let values = cells.iter().filter(|cell| value(cell)).count();
+        let is_row = cells.iter().any(|cell| number(cell))
+            && cells.iter().find(|cell| !cell.is_empty()).is_some_and(|cell| value(cell))
+            && cells.iter().all(|cell| value(cell) || word(cell))
+            && (values >= 2 || cells.len() == 1);
+        is_row.then_some((separator, cells.len()))
+    };
+    let parting = [';', '\t', '|', ','].into_iter().filter(|c| text.contains(*c)).map(Separator::Character);
+    parting.chain([Separator::Spaces]).find_map(of)
+}
+
+impl<'a> Outline<'a> {
+    /// The pieces of a text.
+    ///
+    /// # Errors
+    /// [`ReadError`] where there is no use in reading on.
+    pub(super) fn of(text: &'a str) -> Result<Self, ReadError> {
+        let mut outline = Self {
+            is_igor: text.lines().next().is_some_and(|first| first.trim() == "IGOR"),
+            ..Self::default()
+        };
+        let mut above: Vec<Words<'a>> = Vec::new();
+        let mut is_open = false;
+        let mut rows = 0;
+        for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, trimmed(text))) {
+            // Igor indents its rows by a tab.
+            let text = if outline.is_igor { text.trim() } else { text };
+            if text.chars().all(|c| c.is_whitespace() || ";,|\"".contains(c)) {
+                continue;
+            }
+            if is_unprintable(text) {
+                outline.faults.push((line, LineFault::Unprintable));
+                continue;
+            }
+            let remark = remark(text);
+            if remark.is_none() && begins_as_number(text) && text.len() > LONGEST_LINE {
+                outline.faults.push((line, LineFault::Long(text.len())));
+                continue;
+            }
+            let is_row = remark.is_none()
+                && (is_open && outline.goes_on(line, text) || outline.begins(line, text, &mut above)?);
+            if is_row {
+                is_open = true;
+                rows += 1;
+                if rows > *ROW_RANGE.end() {
+                    return Err(ReadError::Rows { rows, skipped: 0 });
+                }
+                continue;
+            }
+            let words = Words { line, text: remark.unwrap_or(text).trim(), is_remark: remark.is_some() };
+            is_open &= words.is_remark && !parts_tables(words.text);
+            outline.words.push(words);
+            if above.len() == LINES_ABOVE {
+                above.remove(0);
+            }
+            above.push(words);
+        }
+        let mut below = above.iter().filter(|words| !words.is_remark).map(|words| words.line);
+        let first = below.next().filter(|_| !outline.tables.is_empty());
+        outline.footer = first.map(|first| (first, below.next_back().unwrap_or(first)));
+        Ok(outline)
+    }
+
+    /// Takes a line into the open table, if it is one of its rows.
+    fn goes_on(&mut self, line: usize, text: &'a str) -> bool {
+        let Some(table) = self.tables.last_mut() else { return false };
+        // A number alone above rows is how many there are.
+        if table.cells == 1 && row(text).is_some_and(|(_, cells)| cells > 1) {
+            return false;
+        }
+        let cells = || table.separator.cells(text);
+        let first = |cell: &&str| is_number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell);
+        let is_row = begins_as_number(text) || {
+            let cells = cells();
+            cells.len() == table.cells && cells.first().is_some_and(first)
+        };
+        if is_row {
+            table.rows.push((line, text));
+        }
+        is_row
+    }
+
+    /// Begins a table with a line that is a row, the words above it in `above`.
+    fn begins(&mut self, line: usize, text: &'a str, above: &mut Vec<Words<'a>>) -> Result<bool, ReadError> {
+        let Some((separator, cells)) = row(text).or_else(|| row_under(above, text)) else {
+            return Ok(false);
+        };
+        if cells > MOST_COLUMNS {
+            return Err(ReadError::ManyColumns { line, found: cells });
+        }
+        // Words among rows that are parted as they are: a row with a fault, and no header.
+        if let Some(table) = self.tables.last_mut()
+            && (table.separator, table.cells) == (separator, cells)
+            && above.iter().any(|words| !words.is_remark)
+            && above.iter().all(|words| words.is_remark || broken(table, words.text))
+        {
+            let broken =
+                above.drain(..).filter(|words| !words.is_remark).map(|words| (words.line, words.text));
+            table.rows.extend(broken);
+            table.rows.push((line, text));
+            return Ok(true);
+        }
+        let separator = commas(separator, above, text).ok_or(ReadError::Commas(line))?;
+        let cells = separator.cells(text).len();
+        self.tables.push(Table { above: std::mem::take(above), separator, cells, rows: vec![(line, text)] });
+        Ok(true)
+    }
+}
+
+/// Whether words have the cells of a row, and a number among them.
+fn broken(table: &Table, text: &str) -> bool {
+    let cells = table.separator.cells(text);
+    cells.len() > 1 && cells.len() == table.cells && cells.iter().any(|cell| is_number(cell))
+}
+
+/// What parts a row in which some commas are followed by a space and some by a digit; `None` if the words above it do not tell
+/// by their number.
+fn commas(separator: Separator, above: &[Words], text: &str) -> Option<Separator> {
+    let wide = Separator::CommaSpace.cells(text);
+    let plain = separator.cells(text).len();
+    if separator != Separator::Character(',') || wide.len() == 1 || wide.len() == plain {
+        return Some(separator);
+    }
+    if text.contains('"') || !wide.iter().all(|cell| is_number(cell)) {
+        return Some(separator);
+    }
+    let names = above.iter().rev().map(|words| separator.cells(words.text).len()).find(|names| *names > 1)?;
+    if names == wide.len() { Some(Separator::CommaSpace) } else { (names == plain).then_some(separator) }
+}
+
+/// A line without the space around it; tabs part cells, which may be empty.
+fn trimmed(text: &str) -> &str {
+    text.trim_end_matches([' ', '\u{1a}']).trim_start_matches(' ')
+}

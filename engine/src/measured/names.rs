@@ -1,0 +1,256 @@
+//! The names of columns by which headers say what they hold.
+
+use super::role::{Role, Segment, dimensions};
+use crate::units::Unit;
+
+/// A column's name taken apart.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Named {
+    /// What it holds.
+    pub role: Role,
+    /// Of several columns of one role that of the lowest rank is read.
+    pub rank: u8,
+    /// The branch that it holds alone.
+    pub side: Option<Segment>,
+    /// The unit that stands in its name: `Defl_pN_Ex`.
+    pub unit: Option<String>,
+}
+
+/// The roles with the names by which a header says them, letters and digits alone, in lower case. Names of rank 1 may mean
+/// something else beside others, those of rank 2 are not what was reached but what was asked for.
+const NAMES: [(Role, u8, &[&str]); 15] = [
+    (
+        Role::Approach,
+        0,
+        &[
+            "indentation",
+            "indentationdepth",
+            "delta",
+            "δ",
+            "penetration",
+            "penetrationdepth",
+            "eindringtiefe",
+        ],
+    ),
+    (
+        Role::Approach,
+        1,
+        &[
+            "approach",
+            "depth",
+            "displacementintosurface",
+            "displacement",
+            "disp",
+            "tipposition",
+            "verticaltipposition",
+            "tipsampleseparation",
+            "tipsampledistance",
+            "separation",
+            "sep",
+            "distance",
+            "hc",
+        ],
+    ),
+    (
+        Role::Position,
+        0,
+        &[
+            "heightmeasured",
+            "measuredheight",
+            "heightmeasuredsmoothed",
+            "smoothedmeasuredheight",
+            "zsensor",
+            "zsense",
+            "zsnsr",
+            "heightsensor",
+            "sensorheight",
+            "capacitivesensorheight",
+            "smoothedcapacitivesensorheight",
+            "lvdt",
+            "actuatorposition",
+            "stageposition",
+            "measuredposition",
+            "positionmeasured",
+        ],
+    ),
+    (
+        Role::Position,
+        1,
+        &[
+            "position",
+            "height",
+            "piezo",
+            "z",
+            "stage",
+            "heightpiezo",
+            "zpiezo",
+            "piezoheight",
+            "piezoz",
+            "extension",
+            "piezoposition",
+            "zposition",
+            "zheight",
+            "zdisplacement",
+            "piezodisplacement",
+            "stagez",
+            "zstage",
+            "crosshead",
+            "crossheadposition",
+            "crossheaddisplacement",
+            "actuator",
+            "weg",
+            "standardweg",
+            "traverse",
+            "calcramp",
+            "ramp",
+            "zscanner",
+            "scannerz",
+        ],
+    ),
+    (Role::Position, 2, &["raw", "rawheight", "targetposition", "setposition", "zdriver", "zcommand"]),
+    (
+        Role::Deflection,
+        0,
+        &[
+            "deflection",
+            "defl",
+            "bending",
+            "cantileverdeflection",
+            "vdeflection",
+            "verticaldeflection",
+            "deflectionv",
+            "cantilever",
+            "deflectionerror",
+            // Of AFM Workshop: the top of the detector less its bottom.
+            "tb",
+        ],
+    ),
+    (
+        Role::Force,
+        0,
+        &[
+            "force",
+            "load",
+            "normalforce",
+            "normalload",
+            "loadonsample",
+            "appliedload",
+            "appliedforce",
+            "loadcell",
+            "verticalforce",
+            "forcez",
+            "zforce",
+            "fz",
+            "fn",
+            "contactforce",
+            "adhesionforce",
+            "kraft",
+            "standardkraft",
+            "prüfkraft",
+            "normalkraft",
+            "charge",
+        ],
+    ),
+    (Role::Force, 1, &["p", "f", "weight", "last", "mass"]),
+    (Role::Force, 2, &["targetforce", "setforce", "targetload", "rawload", "rawforce"]),
+    (Role::Radius, 0, &["contactradius", "radiusofcontact", "kontaktradius"]),
+    (Role::Radius, 1, &["radius", "s", "a"]),
+    (Role::Diameter, 0, &["contactdiameter", "diameterofcontact"]),
+    (Role::Diameter, 1, &["diameter"]),
+    (Role::Area, 0, &["contactarea", "areaofcontact", "area", "kontaktfläche"]),
+    (Role::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
+];
+
+/// Words of a name that say nothing of what the column holds.
+const EMPTY_WORDS: [&str; 15] = [
+    "smoothed",
+    "corrected",
+    "filtered",
+    "avg",
+    "average",
+    "mean",
+    "ch",
+    "channel",
+    "sensor",
+    "signal",
+    "wave",
+    "image",
+    "untitled",
+    "calibrated",
+    "measured",
+];
+
+/// Words of a branch that may be grown together with a name.
+const GROWN: [&str; 8] =
+    ["extend", "extension", "retract", "retraction", "approach", "withdraw", "unloading", "loading"];
+
+/// A name in letters and digits alone, in lower case.
+pub(super) fn squashed(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The role and the rank of a name without anything around it.
+fn known(squashed: &str) -> Option<(Role, u8)> {
+    let found = NAMES.iter().find(|(.., names)| names.contains(&squashed));
+    found.map(|(role, rank, _)| (*role, *rank))
+}
+
+/// What a column's name says, with the branch, the unit and the words around it that say nothing.
+pub(super) fn named(name: &str) -> Option<Named> {
+    /// The most words of a name.
+    const WORDS: usize = 12;
+    let mut words: Vec<&str> =
+        name.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty()).collect();
+    if words.len() > WORDS {
+        return None;
+    }
+    let (mut side, mut unit) = (None, None);
+    loop {
+        let whole = squashed(&words.concat());
+        if let Some((role, rank)) = known(&whole) {
+            return Some(Named { role, rank, side, unit });
+        }
+        let (first, last) = (*words.first()?, *words.last()?);
+        if words.len() == 1 {
+            return grown(&whole).map(|(role, rank, grown)| Named { role, rank, side: side.or(grown), unit });
+        }
+        let of = |word: &str| word.chars().all(char::is_alphabetic).then(|| Segment::of(word)).flatten();
+        let is_unit = |word: &str| {
+            let unit = Unit::parse(word, 0);
+            word == "V" || unit.is_ok_and(|unit| dimensions().contains(&unit.dimension()))
+        };
+        let is_empty = |word: &str| {
+            EMPTY_WORDS.contains(&&*word.to_lowercase()) || word.chars().all(|c| c.is_ascii_digit())
+        };
+        if side.is_none() && of(last).is_some() {
+            side = of(last);
+            words.pop();
+        } else if side.is_none() && of(first).is_some() {
+            side = of(first);
+            words.remove(0);
+        } else if unit.is_none() && is_unit(last) {
+            unit = words.pop().map(str::to_owned);
+        } else if is_empty(last) {
+            words.pop();
+        } else if is_empty(first) {
+            words.remove(0);
+        } else {
+            return None;
+        }
+    }
+}
+
+/// A name behind a number, as `image0001zsnsr`, or grown together with a branch, as `extendforce`.
+fn grown(squashed: &str) -> Option<(Role, u8, Option<Segment>)> {
+    let behind = squashed.rfind(|c: char| c.is_ascii_digit()).map(|at| &squashed[at + 1..]);
+    if let Some((role, rank)) =
+        behind.and_then(known).or_else(|| known(squashed.trim_end_matches(|c: char| c.is_ascii_digit())))
+    {
+        return Some((role, rank, None));
+    }
+    GROWN.iter().find_map(|word| {
+        let rest = squashed.strip_prefix(word).or_else(|| squashed.strip_suffix(word))?;
+        let (role, rank) = known(rest)?;
+        Some((role, rank, Segment::of(word)))
+    })
+}

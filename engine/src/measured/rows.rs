@@ -1,0 +1,207 @@
+//! Rows of cells → columns of numbers.
+
+use super::choice::Wanted;
+use super::error::Fault;
+use super::lines::is_gap;
+use super::role::{Role, Segment};
+use super::stated::Stated;
+use crate::cells::{self, CellFault, Faults};
+use crate::text::quote;
+use crate::units::Unit;
+use std::f64::consts::PI;
+
+/// One column that is used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// What it is.
+    pub role: Role,
+    /// Its number in the file, from 1.
+    pub number: usize,
+    /// Its unit, where the file or a person names one.
+    pub unit: Option<Unit>,
+    /// Its values, in that unit.
+    pub values: Vec<f64>,
+    /// The place of the last digit of its numbers, in that unit: they are known no better.
+    pub step: f64,
+}
+
+/// A measured curve as read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Measured {
+    /// The columns of numbers that are used.
+    pub columns: Vec<Column>,
+    /// The branch of each row, where the file says it.
+    pub segments: Option<Vec<Segment>>,
+    /// The stiffness of the device that the file states, N/m.
+    pub stiffness: Option<Stated>,
+    /// The radius of the tip that the file states, m.
+    pub radius: Option<Stated>,
+    /// The line of the header, from 1.
+    pub header: Option<usize>,
+    /// How many rows have no number in a column that is used; they are left out.
+    pub skipped: usize,
+    /// What was assumed, in words.
+    pub notes: Vec<String>,
+}
+
+/// What the cells of all rows have shown.
+#[derive(Default)]
+pub(super) struct State {
+    /// The line of the first number with a decimal point, and with a decimal comma.
+    marks: [Option<usize>; 2],
+    /// The line of the first row that was left out.
+    pub skipped: Option<usize>,
+    /// What is wrong.
+    pub faults: Faults<Fault>,
+}
+
+impl State {
+    /// Takes the row in `line` into `measured`, if it has a number in each column that is `wanted`; `branch` is that of its
+    /// table.
+    pub(super) fn takes(
+        &mut self,
+        line: usize,
+        cells: &[&str],
+        wanted: &[Wanted],
+        branch: Option<Segment>,
+        measured: &mut Measured,
+    ) {
+        let mut row = Vec::with_capacity(wanted.len());
+        let mut segment = branch;
+        let mut is_whole = true;
+        for want in wanted {
+            let text = cells.get(want.at).copied().unwrap_or_default();
+            if is_gap(text) {
+                is_whole = false;
+            } else if want.role == Role::Segment {
+                segment = Segment::of(text);
+                if segment.is_none() {
+                    return self.faults.add(line, Fault::Segment { number: want.at + 1, text: quote(text) });
+                }
+            } else {
+                match self.number(line, text, want) {
+                    Ok(Some(number)) => row.push(number),
+                    Ok(None) => is_whole = false,
+                    Err(fault) => return self.faults.add(line, fault),
+                }
+            }
+        }
+        if !is_whole {
+            measured.skipped += 1;
+            self.skipped = self.skipped.or(Some(line));
+            return;
+        }
+        for (column, (value, step)) in measured.columns.iter_mut().zip(row) {
+            column.values.push(value);
+            column.step = column.step.min(step);
+        }
+        if let (Some(segments), Some(segment)) = (&mut measured.segments, segment) {
+            segments.push(segment);
+        }
+    }
+
+    /// The number in a cell and the place of its last digit; `None` where it is out of the range of any instrument.
+    fn number(&mut self, line: usize, text: &str, want: &Wanted) -> Result<Option<(f64, f64)>, Fault> {
+        let (number, what) = (want.at + 1, want.role.word());
+        let marks = text.bytes().filter(|byte| [b',', b'.'].contains(byte)).count();
+        let comma = text.contains(',');
+        if comma && marks > 1 {
+            return Err(Fault::Thousands { number, text: quote(text) });
+        }
+        if marks == 1 {
+            let [same, other] = if comma { [1, 0] } else { [0, 1] };
+            self.marks[same] = self.marks[same].or(Some(line));
+            if let Some(line) = self.marks[other] {
+                return Err(Fault::Marks { number, text: quote(text), line });
+            }
+        }
+        let mut plain = std::borrow::Cow::Borrowed(text);
+        if comma || text.contains(['\u{2212}', 'd', 'D']) {
+            // 1.5D-05 is how Fortran writes 1.5e-05.
+            plain = text.replace(',', ".").replace('\u{2212}', "-").replace(['d', 'D'], "e").into();
+        }
+        match cells::number(&plain, what) {
+            Ok(value) => Ok(Some((value, last_digit(&plain)))),
+            Err(CellFault::Range { .. }) => Ok(None),
+            Err(CellFault::Number { .. }) => {
+                Err(Fault::Cell { number, fault: CellFault::Number { what, text: quote(text) } })
+            }
+            Err(fault) => Err(Fault::Cell { number, fault }),
+        }
+    }
+
+    /// Whether decimals have a comma.
+    pub(super) fn has_commas(&self) -> bool {
+        self.marks[1].is_some()
+    }
+}
+
+impl Measured {
+    /// Makes the columns; `all` is the branch of all rows, where no column says it.
+    pub(super) fn begins(&mut self, wanted: &[Wanted], all: Option<Segment>) {
+        for column in wanted.iter().filter(|column| column.role != Role::Segment) {
+            let (role, unit) = (column.role, column.unit.clone());
+            let (number, values) = (column.at + 1, Vec::new());
+            self.columns.push(Column { role, number, unit, values, step: f64::INFINITY });
+        }
+        if all.is_some() || wanted.iter().any(|column| column.role == Role::Segment) {
+            self.segments = Some(Vec::new());
+        }
+    }
+
+    /// Appends the rows of the retraction, whose columns are the same.
+    pub(super) fn appends(&mut self, retraction: &Self) {
+        let rows = |of: &Self| of.columns.first().map_or(0, |column| column.values.len());
+        let mut segments = vec![Segment::Approach; rows(self)];
+        segments.resize(rows(self) + rows(retraction), Segment::Retraction);
+        self.segments = Some(segments);
+        for column in &mut self.columns {
+            let Some(other) = retraction.columns.iter().find(|other| other.role == column.role) else {
+                continue;
+            };
+            column.values.extend_from_slice(&other.values);
+            column.step = column.step.min(other.step);
+        }
+    }
+
+    /// Makes contact radii of diameters, s = d/2, and of areas, s = √(A/π).
+    pub(super) fn in_radii(&mut self) {
+        for column in &mut self.columns {
+            let (word, number) = (column.role.word(), column.number);
+            let into: fn(f64) -> f64 = match column.role {
+                Role::Diameter => |d| 0.5 * d,
+                // An area below 0 is noise around no contact; its sign is kept, so that it is refused as a radius is.
+                Role::Area => |area| (area.abs() / PI).sqrt().copysign(area),
+                _ => continue,
+            };
+            if let Some(unit) = column.unit.take() {
+                for value in &mut column.values {
+                    *value = unit.to_si(*value);
+                }
+                column.step = unit.to_si(column.step);
+                column.unit = Unit::parse("m", 0).ok();
+            }
+            let largest = column.values.iter().copied().fold(0.0, f64::max);
+            // ds = dA/(2πs), at the largest area.
+            column.step = if column.role == Role::Area && largest > 0.0 {
+                column.step / (2.0 * PI * into(largest))
+            } else {
+                into(column.step)
+            };
+            for value in &mut column.values {
+                *value = into(*value);
+            }
+            column.role = Role::Radius;
+            let formula = if word == "area" { "s = √(A/π)" } else { "s = d/2" };
+            self.notes.push(format!("column {number} is the {word} of the contact: its radius is {formula}"));
+        }
+    }
+}
+
+/// The place of the last digit of a number: 0.01 of 1.23, 1e-9 of 12e-9.
+pub(super) fn last_digit(text: &str) -> f64 {
+    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    10.0_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)).clamp(-300, 300))
+}

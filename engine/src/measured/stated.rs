@@ -1,0 +1,217 @@
+//! What a file states of the instrument beside its columns: the stiffness of the spring and the radius of the tip.
+//!
+//! Settings are lines such as `Force Constant, nN/nm: 0.2`, `k (N/m)<tab>0.018`, `# springConstant: 0.04` or, of afmformats,
+//! a block of JSON in the remarks (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
+
+use super::lines::Words;
+use super::role::squashed;
+use crate::cells::{LARGEST_NUMBER, Separator, heads};
+use crate::text::quote;
+use crate::units::{Dimension, Quantity, Unit};
+
+/// The longest block of metadata that is read, in bytes.
+const LONGEST_METADATA: usize = 1 << 20;
+/// The longest line that is looked at for a setting, in bytes.
+const LONGEST_SETTING: usize = 1 << 14;
+/// What a file states and what a preset says are one up to this share: files round.
+const SAME: f64 = 1e-3;
+
+/// A value that a file states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stated {
+    /// The value, in SI.
+    pub value: f64,
+    /// Half the place of its last digit.
+    pub rounding: f64,
+}
+
+impl Stated {
+    /// Whether `value`, in SI, may be what the file states.
+    #[must_use]
+    pub fn is(&self, value: f64) -> bool {
+        (self.value - value).abs() <= self.rounding.max(SAME * value.abs())
+    }
+}
+
+/// What a file states of its instrument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Setting {
+    Stiffness,
+    Radius,
+    Diameter,
+}
+
+/// The settings of a file.
+#[derive(Debug, Default)]
+pub(super) struct Settings {
+    /// The stiffness of the spring, N/m.
+    pub stiffness: Option<Stated>,
+    /// The radius of the tip, m.
+    pub radius: Option<Stated>,
+    /// Whether there is a block of afmformats: its columns are in SI.
+    pub is_si: bool,
+    /// What was found and not used, in words.
+    pub notes: Vec<String>,
+}
+
+impl Settings {
+    /// The settings in the words of a file.
+    pub(super) fn of(words: &[Words]) -> Self {
+        let mut settings = Self::default();
+        let mut metadata: Option<String> = None;
+        for words in words {
+            match &mut metadata {
+                None if words.text.starts_with("BEGIN METADATA") => metadata = Some(String::new()),
+                Some(text) if words.text.starts_with("END METADATA") => {
+                    settings.takes_json(text);
+                    metadata = None;
+                }
+                Some(text) if text.len() + words.text.len() <= LONGEST_METADATA => {
+                    text.push_str(words.text);
+                    text.push('\n');
+                }
+                None if words.text.len() <= LONGEST_SETTING => settings.takes_line(words),
+                _ => {}
+            }
+        }
+        settings
+    }
+
+    fn takes_json(&mut self, text: &str) {
+        self.is_si = true;
+        let Ok(value) = serde_json::from_str::<serde_json::Value>(text) else {
+            self.notes.push("the block of metadata is no JSON, and nothing is taken from it".to_owned());
+            return;
+        };
+        for key in ["spring constant", "tip radius"] {
+            let Some(number) = value.get(key).and_then(serde_json::Value::as_f64) else { continue };
+            if let Some((setting, ..)) = setting(key) {
+                self.add(setting, number, 0.0, None);
+            }
+        }
+    }
+
+    /// Takes the settings of a line.
+    fn takes_line(&mut self, words: &Words) {
+        // Igor keeps many in one note.
+        for part in words.text.split("\\r").flat_map(|part| part.split("\\n")) {
+            let part = match part.split_once('"') {
+                Some((note, rest)) if note.trim_start().starts_with("X Note") => rest,
+                _ => part,
+            };
+            let part = part.trim_matches(|c: char| c.is_whitespace() || "\"\\@*".contains(c));
+            let cells: Vec<&str> = match part.find(['\t', ';']).map(|at| &part[at..=at]) {
+                Some("\t") => part.split('\t').collect(),
+                Some(_) => part.split(';').collect(),
+                None => Vec::new(),
+            };
+            for pair in cells.windows(2) {
+                self.takes(pair[0], pair[1]);
+            }
+            if let Some((key, value)) = part.split_once([':', '=']) {
+                self.takes(key, value);
+            } else if let Some((key, value)) = part.split_once(',').filter(|_| cells.is_empty()) {
+                self.takes(key, value);
+            }
+        }
+    }
+
+    /// Takes a setting, if `key` names one.
+    fn takes(&mut self, key: &str, value: &str) {
+        let clean =
+            |text: &str| text.trim_matches(|c: char| c.is_whitespace() || "\":=,".contains(c)).to_owned();
+        let (key, value) = (clean(key), clean(value));
+        let dimensions = [Quantity::ForcePerLength.dimension(), Quantity::Length.dimension()];
+        let is_unit =
+            |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
+        // In brackets, or as the last word: a slash may belong to the unit.
+        let bracketed = heads(&key, Separator::Character('\0'), &[]).pop();
+        let (name, unit) = match (bracketed, key.rsplit_once([' ', ','])) {
+            (Some((_, None)), Some((name, unit))) if is_unit(unit) => {
+                (name.to_owned(), Some(unit.to_owned()))
+            }
+            (Some(head), _) => head,
+            (None, _) => return,
+        };
+        let Some((setting, dimension, needs_unit)) = setting(&name) else { return };
+        let (number, behind) = value.split_once(char::is_whitespace).unwrap_or((&value, ""));
+        let pointed = number.replace(',', ".");
+        let Ok(number) = pointed.parse::<f64>() else { return };
+        let unit = Some(clean(behind)).filter(|behind| !behind.is_empty()).or(unit);
+        let parsed = unit.as_deref().map(|unit| Unit::parse(unit, 0).ok());
+        let unit = match parsed {
+            Some(Some(unit)) if unit.dimension() == dimension => Some(unit),
+            None if !needs_unit => None,
+            _ => {
+                if !matches!(setting, Setting::Stiffness) || key.len() > 1 {
+                    let (name, value) = (quote(&name), quote(&value));
+                    self.notes.push(format!(
+                        "the file states {name}: {value}, without a known unit: it is not used"
+                    ));
+                }
+                return;
+            }
+        };
+        self.add(setting, number, 0.5 * super::rows::last_digit(&pointed), unit.as_ref());
+    }
+
+    /// Adds what is stated in `unit`, in SI without one.
+    fn add(&mut self, setting: Setting, number: f64, rounding: f64, unit: Option<&Unit>) {
+        let si = |number: f64| {
+            let value = unit.map_or(number, |unit| unit.to_si(number));
+            if setting == Setting::Diameter { 0.5 * value } else { value }
+        };
+        let stated = Stated { value: si(number), rounding: si(rounding) };
+        if stated.value.is_nan() || stated.value <= 0.0 || stated.value > LARGEST_NUMBER {
+            return;
+        }
+        if setting == Setting::Stiffness && stated.value.total_cmp(&1.0).is_eq() {
+            let note = "the file states a spring of 1 N/m, as instruments do that are not calibrated: it is not used";
+            if self.notes.iter().all(|known| known != note) {
+                self.notes.push(note.to_owned());
+            }
+            return;
+        }
+        let slot = if setting == Setting::Stiffness { &mut self.stiffness } else { &mut self.radius };
+        match slot {
+            None => *slot = Some(stated),
+            Some(before) if !before.is(stated.value) => {
+                let (what, unit) =
+                    if setting == Setting::Stiffness { ("springs", "N/m") } else { ("tip radii", "m") };
+                self.notes.push(format!(
+                    "the file states two {what}, {:?} and {:?} {unit}: the first is taken",
+                    before.value, stated.value
+                ));
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+/// The setting that `name` names, its dimension, and whether its unit must be there.
+fn setting(name: &str) -> Option<(Setting, Dimension, bool)> {
+    const BODIES: [&str; 9] =
+        ["tip", "probe", "indenter", "sphere", "bead", "ball", "lens", "colloid", "particle"];
+    let name = squashed(name);
+    let ends = |word: &str| name.ends_with(word) && !name.contains("sensitivity");
+    if ends("springconstant")
+        || ends("forceconstant")
+        || ends("cantileverstiffness")
+        || ends("springstiffness")
+    {
+        return Some((Setting::Stiffness, Quantity::ForcePerLength.dimension(), false));
+    }
+    if ["k", "kc", "kcantilever", "cantileverk"].contains(&name.as_str()) {
+        return Some((Setting::Stiffness, Quantity::ForcePerLength.dimension(), true));
+    }
+    let length = Quantity::Length.dimension();
+    let of_body = |word: &str| {
+        let before = name.strip_suffix(word)?;
+        BODIES.iter().any(|body| before.ends_with(body)).then_some(())
+    };
+    if of_body("radius").is_some() || ends("radiusofcurvature") || name == "r" {
+        // afmformats and JPK write SI.
+        return Some((Setting::Radius, length, true));
+    }
+    of_body("diameter").map(|()| (Setting::Diameter, length, true))
+}
