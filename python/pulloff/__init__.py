@@ -19,6 +19,7 @@ from operator import index
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _engine
+from ._afm import AfmCurve, read_afm
 from ._problem import PresetText, Problem
 from ._progress import Progress, told
 from ._table import Table
@@ -49,6 +50,7 @@ from .results import Cycle, Fit, Map, Stability, Sweep, Trace, Unloading
 __version__ = _engine.__version__
 
 __all__ = [
+    "AfmCurve",
     "Cancelled",
     "ComputationError",
     "Cycle",
@@ -81,6 +83,7 @@ __all__ = [
     "UnstableStart",
     "presets",
     "quantities",
+    "read_afm",
     "sweep",
 ]
 

@@ -7,6 +7,7 @@ from operator import index
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
 
 from . import _engine
+from ._afm import AfmCurve
 from .errors import DataError
 
 if TYPE_CHECKING:
@@ -15,11 +16,19 @@ if TYPE_CHECKING:
 else:
     from ._numpy import np
 
+#: The units of what a curve states of its instrument.
+_STATED = {"spring constant": "N/m", "tip radius": "m"}
+
 Range = Tuple[Optional[float], Optional[float]]
 
 
 def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     """The name and the text of the table that the engine reads."""
+    stated = []
+    if isinstance(data, AfmCurve):
+        if not in_si:
+            raise DataError("the curve is in SI, and the problem is in reduced units: set units = 'SI'")
+        stated = [f"# {name}: {value!r} {_STATED[name]}" for name, value in data.settings.items()]
     if isinstance(data, Mapping):
         columns = dict(data)
     elif hasattr(data, "columns") and hasattr(data, "__getitem__"):
@@ -37,7 +46,7 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
     header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
     rows = (",".join(row) for row in zip(*(_cells(array) for array in arrays.values())))
-    return "data", "\n".join([header, *rows, ""]).encode(errors="replace")
+    return "data", "\n".join([*stated, header, *rows, ""]).encode(errors="replace")
 
 
 def _bare(text: str) -> str:

@@ -410,7 +410,7 @@ class Problem:
             A file that the program's ``fit`` reads; or columns by their names, ``"force"`` with ``"approach"``,
             ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` where it is known; in the unit
             that stands in the name, as in ``"force [nN]"``, else in SI or, where the problem is in reduced units, in those.
-            The measured curve of the problem itself, ``data.file``, when left out.
+            Or what :func:`pulloff.read_afm` returns. The measured curve of the problem itself, ``data.file``, when left out.
         free : sequence of str, optional
             The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument; those of the problem's
             ``data.free`` when left out.
