@@ -1,11 +1,16 @@
-//! The profiles of a folder, to choose from: files that end as tables of numbers do, and the folders beside them.
+//! The files of a folder, to choose from: those that end as tables of numbers do, and the folders beside them. And the columns of a
+//! measured curve whose header does not say what they are.
 
-use pulloff_engine::text::{is_unsafe, show_path};
+use super::command::Assignment;
+use crate::store::FILES;
+use pulloff_engine::measured::{ReadError, Seen, Spec, columns, parse};
+use pulloff_engine::preset::{Preset, data};
+use pulloff_engine::text::{is_unsafe, show_name, show_path};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The endings of files that may hold a profile.
-pub const ENDINGS: [&str; 3] = ["csv", "txt", "dat"];
+/// The endings of files that may hold a table.
+pub const ENDINGS: [&str; 8] = ["csv", "txt", "dat", "tab", "tsv", "asc", "lvm", "itx"];
 /// At most so many entries of a folder are read.
 const MOST: usize = 10_000;
 
@@ -20,6 +25,41 @@ pub struct Folder {
     pub folders: Vec<String>,
     /// The files in it that may hold a profile, sorted.
     pub files: Vec<String>,
+}
+
+/// A file of a measured curve whose columns a person must name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Foreign {
+    /// The values that were asked for, the file's name among them.
+    pub assignments: Vec<Assignment>,
+    /// Its name, safe to show.
+    pub shown: String,
+    /// Its columns.
+    pub seen: Vec<Seen>,
+}
+
+impl Foreign {
+    /// The file among `assignments` to `preset`, if nothing but its columns is in the way.
+    pub fn of(preset: &Preset, assignments: &[Assignment]) -> Option<Self> {
+        let value = |key: &str| assignments.iter().rfind(|(of, _)| of == key).map(|(_, text)| &**text);
+        let name = value(data::FILE)?;
+        let folder = preset.data.source.as_ref().and_then(|source| source.folder.as_deref());
+        let bytes = (FILES.points)(folder, name).ok()?;
+        let said = value(data::COLUMNS).unwrap_or(&preset.data.columns);
+        match parse(&bytes, &Spec::parse(said).ok()?) {
+            Err(
+                ReadError::Unknown { .. }
+                | ReadError::Lacks { .. }
+                | ReadError::NoColumn { .. }
+                | ReadError::Signal { .. }
+                | ReadError::Unit { .. },
+            ) => {}
+            _ => return None,
+        }
+        let seen = columns(&bytes).ok().filter(|seen| seen.len() > 1)?;
+        let shown = Path::new(name).file_name().map(|name| show_name(&name.to_string_lossy()))?;
+        Some(Self { assignments: assignments.to_vec(), shown, seen })
+    }
 }
 
 impl Folder {

@@ -2,6 +2,7 @@
 
 use super::command::{Assignment, Command};
 use super::curve::CurveData;
+use super::data::Foreign;
 use super::export::{Page, ends_in};
 use super::job::{Content, Done, Job};
 use super::journal::Beginning;
@@ -10,8 +11,8 @@ use super::{data, script, study_table};
 use crate::mend::Reason;
 use crate::print::Format;
 use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
-use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::{changes, differences};
+use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::unload::EventReport;
 use pulloff_engine::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
@@ -33,19 +34,33 @@ impl Page {
     }
 }
 
+/// Gives `preset` other values one after the other; a measured curve comes last, together with what is said of its columns.
+fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
+    let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
+    let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
+    others.into_iter().try_for_each(|(key, text)| preset.assign(key, text))?;
+    preset.set_all(curve.into_iter().map(|(key, text)| (&**key, Value::Text(text.clone()))))
+}
+
 /// Does a job.
 pub fn run(store: &Store, job: Job) -> Done {
     match job {
         Job::List => Done::Listed(Box::new(store.list())),
         Job::Names => Done::Named(store.known()),
         Job::Assign { mut preset, assignments } => {
-            match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
+            match assign(&mut preset, &assignments) {
                 Ok(()) => {
                     // Found here, its branches need not be found where nobody may wait for them.
                     let _ = preset.branches();
                     Done::Assigned(preset)
                 }
-                Err(invalid) => Done::Failed(Reason::mendable(invalid.to_string())),
+                Err(invalid) => {
+                    let reason = Reason::mendable(invalid.to_string());
+                    match Foreign::of(&preset, &assignments) {
+                        Some(foreign) => Done::Foreign(Box::new(foreign), reason),
+                        None => Done::Failed(reason),
+                    }
+                }
             }
         }
         Job::Open { name, assignments } => {

@@ -2,7 +2,7 @@
 
 use super::command::Assignment;
 use super::curve::CurveData;
-use super::data::Folder;
+use super::data::{Folder, Foreign};
 use super::export::{ExportKind, Page};
 use super::journal::Beginning;
 use super::node::Node;
@@ -102,6 +102,8 @@ pub enum Done {
     Named(Vec<String>),
     Browsed(Key, Box<Folder>),
     Assigned(Box<Preset>),
+    /// A measured curve whose columns must be named, and why.
+    Foreign(Box<Foreign>, Reason),
     Read(Arc<Rows>),
     Opened(Box<Loaded>),
     /// A preset was deleted: its file, safe to show, and what is left.

@@ -52,6 +52,8 @@ pub enum Question {
     Preset(Box<Listing>),
     /// A file for this key.
     File(Key, Box<Folder>),
+    /// What the columns of a measured curve are.
+    Columns(Box<super::data::Foreign>),
     SaveAnyway,
     /// Replace the preset of this name; whether with the data of its profile.
     ReplacePreset(String, bool),

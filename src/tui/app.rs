@@ -3,6 +3,7 @@
 //! | file | what lives there |
 //! |---|---|
 //! | `choose` | lists: what is typed filters them |
+//! | `columns` | the columns of a measured curve, chosen from lists |
 //! | `files` | names and paths asked for: saving, exporting, copying |
 //! | `gap` | the shape, the formula and the profile of the gap |
 //! | `help` | the help, and looking for a word in it |
@@ -13,6 +14,7 @@
 //! | `session` | the offer of a session, the branches of the walk |
 
 mod choose;
+mod columns;
 mod files;
 mod gap;
 mod help;

@@ -1,11 +1,14 @@
 //! What lies over the screen: prompts, choices, questions and the help, as data.
 
 use crate::explorer::Command;
+use crate::explorer::data::Foreign;
 use crate::explorer::export::{ExportKind, Page};
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use pulloff_engine::gap::formula::{Formula, FormulaError};
-use pulloff_engine::preset::Key;
+use pulloff_engine::measured::Role;
+use pulloff_engine::preset::{Key, data};
+use std::sync::Arc;
 use tui_input::Input;
 
 /// What lies over the screen.
@@ -182,6 +185,68 @@ pub enum Action {
     Command(Command),
     Prompt(Box<Prompt>),
     Copy(Content),
+    /// Go on naming the columns of a measured curve.
+    Columns(Box<Choosing>),
+}
+
+/// What is asked one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    X,
+    Force,
+    Segment,
+}
+
+impl Step {
+    /// How many questions there are.
+    pub const COUNT: usize = 3;
+
+    /// What may be chosen, the likeliest first.
+    pub fn roles(self) -> &'static [Role] {
+        match self {
+            Self::X => &[Role::Approach, Role::Position, Role::Radius, Role::Diameter, Role::Area],
+            Self::Force => &[Role::Force, Role::Deflection],
+            Self::Segment => &[Role::Segment],
+        }
+    }
+}
+
+/// A file whose columns are being chosen, and what was chosen so far.
+#[derive(Debug, Clone)]
+pub struct Choosing {
+    pub foreign: Arc<Foreign>,
+    pub step: Step,
+    /// What was chosen, as `data.columns` says it.
+    pub said: Vec<String>,
+    /// The column whose unit is asked for: its role and its number.
+    pub unit: Option<(Role, usize)>,
+    /// The columns that were chosen.
+    pub taken: Vec<usize>,
+}
+
+impl Choosing {
+    /// Adds what a column is, and goes to the next question.
+    pub fn says(&mut self, role: Role, number: usize, unit: Option<&str>) {
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
+        self.said.push(format!("{}={number}{unit}", role.word()));
+        self.unit = None;
+        self.step = match self.step {
+            Step::X => Step::Force,
+            Step::Force | Step::Segment => Step::Segment,
+        };
+    }
+
+    /// Whether nothing more is asked.
+    pub fn is_done(&self) -> bool {
+        self.unit.is_none() && self.said.len() == Step::COUNT
+    }
+
+    /// The command that opens the file with the columns chosen, as one change.
+    pub fn done(&self) -> Command {
+        let mut assignments = vec![(data::COLUMNS.into(), self.said.join(","))];
+        assignments.extend(self.foreign.assignments.iter().filter(|(key, _)| key != data::COLUMNS).cloned());
+        Command::Assign(assignments)
+    }
 }
 
 /// A session that may be resumed. Any key but those that take it goes on without it, and does what it always does.

@@ -290,8 +290,9 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
 fn columns_are_listed_with_their_first_values() {
     let text = "u1 [nm];u2;Force (nN)\n1,5;2;x y\n2,5;3;4\n3;4;5\n9;9;9\n";
     let seen = columns(text.as_bytes()).unwrap();
-    let names: Vec<&str> = seen.iter().map(|seen| &*seen.name).collect();
-    assert_eq!(names, ["u1 [nm]", "u2", "Force [nN]"]);
+    let names: Vec<(&str, Option<&str>)> =
+        seen.iter().map(|seen| (&*seen.name, seen.unit.as_deref())).collect();
+    assert_eq!(names, [("u1", Some("nm")), ("u2", None), ("Force", Some("nN"))]);
     assert_eq!(seen[0].first, ["1,5", "2,5", "3"]);
     assert_eq!(seen[2].role, Some(Role::Force));
     assert!(columns(b"words\n").is_err());

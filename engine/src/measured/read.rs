@@ -15,7 +15,7 @@ use super::choice::{Wanted, in_si, sides, wanted};
 use super::error::{Fault, ROW_RANGE, ReadError};
 use super::header::{Header, headed, same, segment};
 use super::lines::{Outline, Table};
-use super::role::{Role, Segment, Spec};
+use super::role::{Role, Segment, Spec, named};
 use super::rows::State;
 pub use super::rows::{Column, Measured};
 use super::stated::Settings;
@@ -33,8 +33,10 @@ const LONGEST_NAME: usize = 60;
 pub struct Seen {
     /// Its number, from 1.
     pub number: usize,
-    /// Its name and its unit in the header, safe to show; empty without.
+    /// Its name in the header, safe to show; empty without.
     pub name: String,
+    /// Its unit in the header, as written.
+    pub unit: Option<String>,
     /// Its first cells, safe to show.
     pub first: Vec<String>,
     /// What it is taken for.
@@ -109,13 +111,13 @@ pub fn columns(bytes: &[u8]) -> Result<Vec<Seen>, ReadError> {
     let rows: Vec<Vec<&str>> = (0..SEEN).filter_map(|row| pieces.cells(&tables, table, row)).collect();
     let of = |at: usize| {
         let head = pieces.header.as_ref().and_then(|header| header.heads.get(at));
-        let name = head.map_or_else(String::new, |(name, unit)| match unit {
-            Some(unit) => format!("{name} [{unit}]"),
-            None => name.clone(),
-        });
+        let named = head.and_then(|(name, _)| named(name));
+        let name = head.map_or_else(String::new, |(name, _)| sanitize(name, LONGEST_NAME));
+        let unit =
+            head.and_then(|(_, unit)| unit.clone()).or(named.as_ref().and_then(|named| named.unit.clone()));
         let cells = rows.iter().filter_map(|row| row.get(at)).map(|cell| quote(cell));
-        let role = head.and_then(|(name, _)| Role::of(name));
-        Seen { number: at + 1, name: sanitize(&name, LONGEST_NAME), first: cells.collect(), role }
+        let role = named.map(|named| named.role);
+        Seen { number: at + 1, name, unit, first: cells.collect(), role }
     };
     Ok((0..pieces.width(table)).map(of).collect())
 }

@@ -96,6 +96,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         }
         Done::Browsed(key, folder) => model.question = Some(Question::File(key, folder)),
         Done::Assigned(preset) => return assigned(model, *preset),
+        Done::Foreign(foreign, reason) => {
+            model.tell(Level::of(&reason), reason.text);
+            model.question = Some(Question::Columns(foreign));
+        }
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let mut opened = Model::new(*loaded);

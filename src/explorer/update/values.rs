@@ -294,7 +294,11 @@ fn tell_points(model: &mut Model, preset: &Preset) {
         Ok(branches) => {
             let rows: usize = branches.list.iter().map(|b| b.attached.len() + b.free.len()).sum();
             let read = format!("{name}: {rows} points");
-            let said: Vec<String> = std::iter::once(read).chain(branches.notes.iter().cloned()).collect();
+            // What was assumed of the columns, and how many rows were left out.
+            let of_file =
+                source.measured(&preset.data.columns).map(|read| read.notes.clone()).unwrap_or_default();
+            let said: Vec<String> =
+                std::iter::once(read).chain(of_file).chain(branches.notes.iter().cloned()).collect();
             model.tell(Level::Info, said.join("; "));
         }
         Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),

@@ -118,6 +118,7 @@ impl App {
                 self.overlay = Some(Overlay::Prompt(*prompt));
                 Vec::new()
             }
+            Action::Columns(choosing) => self.columns_chosen(&choosing),
             Action::Copy(content) => {
                 self.copy(content);
                 Vec::new()

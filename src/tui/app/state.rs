@@ -192,6 +192,7 @@ impl App {
         match self.model.question.take() {
             None => {}
             Some(Question::File(key, folder)) => self.choose_file(&key, &folder),
+            Some(Question::Columns(foreign)) => self.choose_columns(*foreign),
             Some(Question::Preset(listing)) => self.choose_preset(&listing),
             Some(Question::SaveAnyway) => {
                 let question = "The file was changed by somebody else. y saves over it, Esc goes back.";

@@ -98,10 +98,15 @@ impl Preset {
             // A device without a stiffness becomes the spring that the file states.
             data::FILE => {
                 let columns = values.get(data::COLUMNS).map(ToString::to_string).unwrap_or_default();
-                let states = match &value {
-                    Value::Points(source) => source.measured(&columns).is_ok_and(|of| of.stiffness.is_some()),
-                    _ => false,
-                };
+                let is_alone =
+                    values.get(data::SETTINGS).is_some_and(|word| word.to_string() == data::SETTINGS_OF[1]);
+                let states = !is_alone
+                    && match &value {
+                        Value::Points(source) => {
+                            source.measured(&columns).is_ok_and(|of| of.stiffness.is_some())
+                        }
+                        _ => false,
+                    };
                 if states && !matches!(self.path.control, Control::Stiffness(_)) {
                     values.remove("path.control");
                 }
