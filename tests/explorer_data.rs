@@ -207,3 +207,36 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
         session.status()
     );
 }
+
+#[test]
+fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
+    let mut session = Session::new("wavy-sphere");
+    let path = session.folder.path().join("foreign.csv");
+    let rows: Vec<String> =
+        (0..50).map(|i| format!("7,{},{}", 0.01 * f64::from(i), 0.1 * f64::from(i * i))).collect();
+    std::fs::write(&path, format!("u1,u2,u3\n{}\n", rows.join("\n"))).unwrap();
+    says(&mut session, &format!("data {}", path.display()));
+    assert!(session.status().contains("--columns x=1,force=2"), "{}", session.status());
+    let Some(Question::Columns(foreign)) = session.model.question.take() else { panic!("nothing is asked") };
+    let names: Vec<&str> = foreign.seen.iter().map(|seen| &*seen.name).collect();
+    assert_eq!((&*foreign.shown, &names[..]), ("foreign.csv", &["u1", "u2", "u3"][..]));
+    assert_eq!(foreign.seen[1].first, ["0", "0.01", "0.02"]);
+    let mut all = vec![(data::COLUMNS.into(), "approach=2,force=3".to_owned())];
+    all.extend(foreign.assignments);
+    session.does(Command::Assign(all));
+    assert_eq!(drawn(&session, View::ForceApproach).iter().map(Vec::len).sum::<usize>(), 50);
+    // A script leads there.
+    let mut again = Session::new("wavy-sphere");
+    for line in &session.model.script().unwrap() {
+        says(&mut again, line);
+    }
+    assert_eq!(again.model.preset.data.columns, "approach=2,force=3");
+    assert_eq!(drawn(&again, View::ForceApproach), drawn(&session, View::ForceApproach));
+    session.does(Id::Undo);
+    let data = &session.model.preset.data;
+    assert!(data.source.is_none() && data.columns.is_empty());
+    // Another kind of fault is said, and nothing is asked.
+    std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
+    says(&mut session, &format!("data {}", path.display()));
+    assert!(session.model.question.is_none(), "{}", session.status());
+}

@@ -499,6 +499,30 @@ fn the_footer_shows_only_what_can_be_done() {
 }
 
 #[test]
+fn the_columns_of_a_foreign_file_are_chosen_from_lists() {
+    let mut screen = Screen::new("lens");
+    let path = screen.folder.path().join("foreign.csv");
+    let rows: Vec<String> = (0..40).map(|i| format!("7,{i},{}", i * i)).collect();
+    std::fs::write(&path, format!("u1,u2,u3\n{}\n", rows.join("\n"))).unwrap();
+    screen.keys(&format!(":data {}\r", path.display()));
+    let text = screen.text(100, 30);
+    assert!(text.contains("What is x") && text.contains("approach   column 2 \"u2\": 0, 1, 2"), "{text}");
+    // The position is column 2, in um; the force column 3, in nN; no column names the branch.
+    screen.keys("position   column 2\r");
+    assert!(screen.text(100, 30).contains("Unit of column 2, position"), "{}", screen.text(100, 30));
+    screen.keys("um\r");
+    let text = screen.text(100, 30);
+    assert!(text.contains("What is the force") && !text.contains("column 2"), "{text}");
+    screen.keys("force      column 3\rnN\r");
+    assert!(screen.text(100, 30).contains("Does a column name the branch"), "{}", screen.text(100, 30));
+    screen.keys("\r");
+    let preset = &screen.app.model.preset;
+    assert_eq!(preset.data.columns, "position=2 [um],force=3 [nN]");
+    assert!(preset.data.source.as_ref().is_some_and(|source| source.name.ends_with("foreign.csv")));
+    assert!(screen.app.overlay.is_none());
+}
+
+#[test]
 fn shapes_are_chosen_by_their_pictures() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("kk\r");
