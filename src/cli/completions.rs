@@ -1,9 +1,22 @@
 //! `pulloff completions`: what a shell needs to complete the command line.
+//!
+//! A shell that has run the text asks the program itself at every Tab, with `COMPLETE` in its environment, so that presets, keys
+//! and sessions are those that are there.
+
+mod shells;
+mod words;
 
 use super::{Failure, output};
-use clap::{Args, Command};
-use clap_complete::{Shell, generate};
+use clap::{Args, Command, ValueEnum};
+use clap_complete::CompleteEnv;
+use clap_complete::env::Shells;
+use std::env;
 use std::process::ExitCode;
+
+/// The variable with the name of the shell that asks.
+const ASKED: &str = "COMPLETE";
+/// The name under which a shell finds the program, to complete it and to ask it.
+const PROGRAM: &str = "pulloff";
 
 /// The arguments of `pulloff completions`.
 #[derive(Debug, Args)]
@@ -12,10 +25,42 @@ pub struct Arguments {
     shell: Shell,
 }
 
-/// Writes the completions of `command`.
-pub fn run(arguments: &Arguments, mut command: Command) -> Result<ExitCode, Failure> {
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Shell {
+    Bash,
+    Elvish,
+    Fish,
+    Powershell,
+    Zsh,
+}
+
+/// Writes the text that a shell runs to complete the command line.
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let name = arguments.shell.to_possible_value();
+    let shell = name.and_then(|name| Shells(shells::ALL).completer(name.get_name()));
     let mut text = Vec::new();
-    generate(arguments.shell, &mut command, "pulloff", &mut text);
+    if let Some(shell) = shell {
+        let written = shell.write_registration(ASKED, PROGRAM, PROGRAM, PROGRAM, &mut text);
+        written.map_err(|cause| Failure::System { what: "the completions".to_owned(), cause })?;
+    }
     output::print(text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Answers a shell that asks, and says whether one did.
+pub fn answered(command: impl Fn() -> Command) -> Result<bool, Failure> {
+    // The variable may be somebody else's.
+    let is_known = |name: String| Shells(shells::ALL).completer(&name).is_some();
+    if !env::var(ASKED).is_ok_and(is_known) {
+        return Ok(false);
+    }
+    let completer = CompleteEnv::with_factory(|| words::known(command()))
+        .var(ASKED)
+        .bin(PROGRAM)
+        .completer(PROGRAM)
+        .shells(Shells(shells::ALL));
+    let folder = env::current_dir().ok();
+    completer
+        .try_complete(env::args_os(), folder.as_deref())
+        .map_err(|error| Failure::Usage(error.to_string().trim_end().to_owned()))
 }

@@ -30,7 +30,7 @@ mod watch;
 
 pub use failure::{Failure, Status};
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use problem::Problem;
 use signal_hook::consts::SIGXFSZ;
 use signal_hook::flag;
@@ -108,7 +108,13 @@ pub fn command() -> clap::Command {
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     outlive_the_limit();
-    let cli = match Cli::try_parse() {
+    match completions::answered(command) {
+        Ok(true) => return Status::Done.into(),
+        Ok(false) => {}
+        Err(failure) => return ended(&failure),
+    }
+    let matches = command().try_get_matches();
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are no errors; clap knows which stream and status each has.
@@ -128,8 +134,8 @@ pub fn run() -> ExitCode {
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Verify(arguments)) => verify::run(arguments),
         Some(Command::Run(arguments)) => run::run(arguments),
-        Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
-        Some(Command::Man) => man::run(Cli::command()),
+        Some(Command::Completions(arguments)) => completions::run(arguments),
+        Some(Command::Man) => man::run(command()),
         Some(Command::Presets(command)) => presets::run(command),
         Some(Command::Sessions(command)) => sessions::run(command),
     };
@@ -147,13 +153,31 @@ fn ended(failure: &Failure) -> ExitCode {
     failure.status().into()
 }
 
+/// What options that take numbers call their values.
+const NUMBERS: [&str; 8] = ["FORCE", "I/N", "LENGTH", "N", "RADIUS", "SEED", "TIME", "WIDTH"];
+
+/// The whole command line.
+fn command() -> clap::Command {
+    /// Behind an option that takes a number stands its value, with a sign too: what is wrong with it is said.
+    fn with_signs(command: clap::Command) -> clap::Command {
+        let names = |arg: &clap::Arg| arg.get_value_names().unwrap_or_default().to_vec();
+        let signed = |arg: clap::Arg| {
+            let is_number =
+                !arg.is_positional() && names(&arg).iter().any(|name| NUMBERS.contains(&name.as_str()));
+            if is_number { arg.allow_hyphen_values(true) } else { arg }
+        };
+        command.mut_args(signed).mut_subcommands(with_signs)
+    }
+    with_signs(Cli::command())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
-        let mut command = Cli::command();
+        let mut command = command();
         command.clone().debug_assert();
         command.build();
         let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();

@@ -1,0 +1,195 @@
+//! The words that only the program knows: presets, keys and their words, sessions.
+
+use crate::cli::problem;
+use crate::explorer::archive::Archive;
+use crate::store::Source;
+use clap::{Arg, Command};
+use clap_complete::engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::groups::GROUPS;
+use pulloff_engine::preset::schema::{Kind, NONE, Parameter, Row};
+use pulloff_engine::stability::COMPLIANCE;
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::Path;
+
+/// What the value of an argument is, by the name of the argument; in every subcommand the same.
+const KNOWN: [(&str, Words); 10] = [
+    ("preset", presets_or_files),
+    ("assignments", assignments),
+    ("free", free),
+    ("x_key", axes),
+    ("y_key", axes),
+    ("control", controls),
+    ("resume", sessions),
+    // Of `presets` and of `sessions`, each of its own.
+    ("paths", points_or_presets),
+    ("name", names),
+    ("names", sessions),
+];
+
+/// The candidates for a value that begins so.
+type Words = fn(&OsStr) -> Vec<CompletionCandidate>;
+
+/// The command, with the words of its arguments.
+pub(super) fn known(command: Command) -> Command {
+    let with = |arg: Arg| match KNOWN.iter().find(|(id, _)| arg.get_id() == id) {
+        Some((_, words)) => arg.add(ArgValueCompleter::new(*words)),
+        None => arg,
+    };
+    command.mut_args(with).mut_subcommands(known)
+}
+
+/// A candidate where it begins with what is typed.
+fn candidate(typed: &str, text: String, help: &str) -> Option<CompletionCandidate> {
+    let help = (!help.is_empty()).then(|| help.to_owned().into());
+    text.starts_with(typed).then(|| CompletionCandidate::new(text).help(help))
+}
+
+/// What is typed so far; nothing else is known of what is no text.
+fn typed(current: &OsStr) -> &str {
+    current.to_str().unwrap_or_default()
+}
+
+/// The presets that `is_wanted` takes, with their titles.
+fn presets(current: &OsStr, is_wanted: fn(&Source) -> bool) -> Vec<CompletionCandidate> {
+    let listed = problem::store().list().presets.into_iter().filter(|listed| is_wanted(&listed.source));
+    let named = listed.filter_map(|listed| {
+        candidate(typed(current), listed.name, listed.title.as_deref().unwrap_or_default())
+    });
+    named.collect()
+}
+
+fn files(current: &OsStr, ending: &'static str) -> Vec<CompletionCandidate> {
+    let has_ending = move |path: &Path| path.extension().is_some_and(|found| found == ending);
+    PathCompleter::any().filter(has_ending).complete(current)
+}
+
+fn presets_or_files(current: &OsStr) -> Vec<CompletionCandidate> {
+    let mut found = presets(current, |_| true);
+    found.extend(files(current, "toml"));
+    found
+}
+
+/// The arguments of a fit.
+fn points_or_presets(current: &OsStr) -> Vec<CompletionCandidate> {
+    let mut found = PathCompleter::file().complete(current);
+    found.extend(presets(current, |_| true));
+    found
+}
+
+/// The names of subcommands of `presets` and `sessions`.
+fn names(current: &OsStr) -> Vec<CompletionCandidate> {
+    let line = line();
+    let has = |word: &str| line.iter().any(|other| other == word);
+    match (has("sessions"), has("delete")) {
+        (true, _) => sessions(current),
+        (false, true) => presets(current, |source| matches!(source, Source::User { .. })),
+        (false, false) => presets_or_files(current),
+    }
+}
+
+fn sessions(current: &OsStr) -> Vec<CompletionCandidate> {
+    let listed = Archive::open().list().unwrap_or_default();
+    listed.into_iter().filter_map(|session| candidate(typed(current), session.name, "")).collect()
+}
+
+/// The words of the line that is completed, behind the name of the program.
+fn line() -> Vec<OsString> {
+    env::args_os().skip_while(|word| word != "--").skip(2).collect()
+}
+
+/// The preset of the line, with what is assigned there before its last word.
+fn preset() -> Option<Preset> {
+    let line = line();
+    let store = problem::store();
+    let assigned: Vec<&str> = line
+        .windows(3)
+        .filter(|words| words[0] == "--set")
+        .filter_map(|words| words[1].to_str())
+        .filter(|text| text.contains('='))
+        .collect();
+    let source = line.iter().rev().skip(1).find_map(|word| match store.resolve(word).ok()? {
+        // A file that can be read but once is not read for this.
+        Source::File(path) if !path.is_file() => None,
+        source => Some(source),
+    });
+    let source = source.or_else(|| store.resolve(OsStr::new(crate::store::shipped::DEFAULT)).ok())?;
+    let loaded = store.load(&source, &assigned).or_else(|_| store.load(&source, &[] as &[&str]));
+    loaded.ok().map(|loaded| loaded.preset)
+}
+
+/// The rows that the preset of the line has, and the groups.
+fn rows(preset: &Preset) -> impl Iterator<Item = Row> {
+    let groups = GROUPS.iter().filter(|row| preset.get(&row.key).is_some());
+    preset.rows().chain(groups.map(Row::Borrowed))
+}
+
+fn assignments(current: &OsStr) -> Vec<CompletionCandidate> {
+    let (Some(preset), typed) = (preset(), typed(current)) else { return Vec::new() };
+    if let Some((key, value)) = typed.split_once('=') {
+        let Some(row) = preset.row(key) else { return Vec::new() };
+        return values(&row, value, key);
+    }
+    rows(&preset).filter_map(|row| candidate(typed, format!("{}=", row.key), &row.meaning)).collect()
+}
+
+/// The words that a key takes, or the files.
+fn values(row: &Parameter, typed: &str, key: &str) -> Vec<CompletionCandidate> {
+    let word = |word: &str| candidate(typed, word.to_owned(), "");
+    let mut found: Vec<CompletionCandidate> = match row.kind {
+        Kind::Choice(words) => words.iter().filter_map(|text| word(text)).collect(),
+        Kind::Control => controls(OsStr::new(typed)),
+        Kind::Smoothing => {
+            [NONE, pulloff_engine::preset::schema::AUTO].into_iter().filter_map(word).collect()
+        }
+        Kind::Points => word(NONE).into_iter().collect(),
+        _ => Vec::new(),
+    };
+    if matches!(row.kind, Kind::File | Kind::Points) {
+        found.extend(PathCompleter::any().complete(OsStr::new(typed)));
+    }
+    found.into_iter().map(|candidate| candidate.add_prefix(format!("{key}="))).collect()
+}
+
+/// Keys with commas between.
+fn free(current: &OsStr) -> Vec<CompletionCandidate> {
+    let (Some(preset), typed) = (preset(), typed(current)) else { return Vec::new() };
+    let (before, last) = typed.rfind(',').map_or(("", typed), |at| typed.split_at(at + 1));
+    let numbers = preset.rows().filter(|row| row.kind.is_number() && !row.key.starts_with("path.start"));
+    let keys = numbers.filter_map(|row| candidate(last, row.key.to_string(), &row.meaning));
+    keys.map(|candidate| candidate.add_prefix(before)).collect()
+}
+
+fn axes(current: &OsStr) -> Vec<CompletionCandidate> {
+    let (Some(preset), typed) = (preset(), typed(current)) else { return Vec::new() };
+    let numbers = rows(&preset).filter(|row| row.kind.is_number());
+    let keys = numbers.filter_map(|row| candidate(typed, format!("{}=", row.key), &row.meaning));
+    keys.chain(candidate(typed, format!("{COMPLIANCE}="), "1/k of the device, from 0 to inf")).collect()
+}
+
+fn controls(current: &OsStr) -> Vec<CompletionCandidate> {
+    let words = ["displacement", "force", "stiffness="];
+    words.into_iter().filter_map(|word| candidate(typed(current), word.to_owned(), "")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each name is that of an argument somewhere, and the command stays whole.
+    #[test]
+    fn every_name_is_that_of_an_argument() {
+        fn ids(command: &Command, all: &mut Vec<String>) {
+            all.extend(command.get_arguments().map(|arg| arg.get_id().to_string()));
+            command.get_subcommands().for_each(|below| ids(below, all));
+        }
+        let command = known(crate::cli::command());
+        let mut all = Vec::new();
+        ids(&command, &mut all);
+        for (id, _) in KNOWN {
+            assert!(all.iter().any(|other| other == id), "{id} is not in {all:?}");
+        }
+        command.debug_assert();
+    }
+}
