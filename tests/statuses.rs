@@ -87,6 +87,25 @@ fn what_the_person_can_mend_is_2() {
         "trace -o x.json --format csv",
         "plot -o x.json",
         "completions none",
+        // A number with a sign is one, and out of range.
+        "fit shipped:lens.csv lens --sigma-x -1",
+        "fit shipped:lens.csv lens --sigma-force -1uN",
+        "fit shipped:lens.csv lens --bootstrap -1",
+        "fit shipped:lens.csv lens --seed -1",
+        "sweep s.toml -o x.csv --row-limit -1s",
+        "sweep s.toml -o x.csv --jobs -1",
+        "sweep s.toml -o x.csv --shard -1/2",
+        "plot --contact-radius -1 --view gap",
+        "plot --width -3",
+        "map --x-key gap.amplitude=1e-3..2e-3 --y control --width -3",
+        "cycle --to-radius -1",
+        // The axes of a map.
+        "map --x-key compliance=-1..1 --y control",
+        "map --x-key compliance=-1..inf --y control",
+        "map --x-key compliance=nan..1 --y control",
+        "map --x-key banana=0..1",
+        "map --x-key gap.amplitude=-1..1 --y control",
+        "map --x-key gap.amplitude=1e-3..2e-3",
         "figures -o -",
         // Nothing of that name.
         "trace none",
@@ -152,6 +171,12 @@ fn what_the_person_can_mend_is_2() {
         let ended = home.run(&arguments);
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{line}: {}", ended.err);
         assert!(!ended.err.is_empty(), "{line}");
+        assert!(!ended.err.contains("unexpected argument '-"), "{line}: {}", ended.err);
+        assert!(
+            !line.contains("banana") || ended.err.contains("unknown key banana"),
+            "{line}: {}",
+            ended.err
+        );
     }
     assert_eq!(home.text("there/mine.csv"), "mine");
     assert_eq!(home.text("marked.csv"), "mine");
@@ -247,6 +272,20 @@ fn what_a_signal_stops_has_the_status_of_the_signal() {
     for (arguments, signal, status) in [
         (vec!["trace", "fig-9", "--set", "basis.rings=2000", "-o", "there.csv"], Signal::INT, 130),
         (vec!["unload", "fig-9", "--set", "basis.rings=2000"], Signal::TERM, 143),
+        (
+            vec![
+                "cycle",
+                "fig-9-weak",
+                "--set",
+                "groups.wavelength_over_radius=0.005",
+                "--to-radius",
+                "0.9",
+                "-o",
+                "new.csv",
+            ],
+            Signal::INT,
+            130,
+        ),
         (map.to_vec(), Signal::TERM, 143),
     ] {
         let ended = home.stopped(&arguments, signal);
@@ -258,6 +297,7 @@ fn what_a_signal_stops_has_the_status_of_the_signal() {
         );
     }
     assert_eq!(home.text("there.csv"), "mine");
+    assert!(!home.path("new.csv").exists());
 }
 
 /// The table that book and manual page show is that of the program.

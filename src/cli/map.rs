@@ -29,7 +29,7 @@ pub struct Arguments {
     #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
     x_key: String,
     /// Another number on the y axis: lines of cusps and landings, and the number of snaps in every cell
-    #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true, required_unless_present = "y")]
+    #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
     y_key: Option<String>,
     /// Instead of a number, the limit points over the x axis: their control, approach or force
     #[arg(long, value_enum, conflicts_with = "y_key")]
@@ -82,7 +82,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (Some(key), _) => Ordinate::Key(axis("--y-key", key, &preset)?),
         (None, Some(Curve::Approach)) => Ordinate::Approach,
         (None, Some(Curve::Force)) => Ordinate::Force,
-        (None, _) => Ordinate::Control,
+        (None, Some(Curve::Control)) => Ordinate::Control,
+        (None, None) => {
+            let what =
+                "map needs what stands over it: --y-key KEY=FROM..TO, or --y control, approach or force";
+            return Err(Failure::Usage(what.to_owned()));
+        }
     };
     let over = arguments.over(&preset, &x, &y)?;
     let stop = Stop::catch()?;

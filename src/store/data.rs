@@ -142,12 +142,15 @@ mod tests {
             let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
             assert!(message.starts_with(expected), "{message}");
         }
-        let message = read(&text.replace("scan.csv", "units.csv"), &[]).unwrap_err().to_string();
+        // In reduced units the unit of the radii is that of all lengths, and that is said.
+        let reduced = read(&text.replace("scan.csv", "units.csv"), &[]).unwrap();
+        assert!((reduced.gap.radius_of_curvature().unwrap() - 5e5).abs() < 1.0);
+        let notes = reduced.gap.notes(&reduced.units);
         assert!(
-            message.starts_with("p.toml:6: gap.file: ") && message.contains("units.csv: line 2: "),
-            "{message}"
+            notes.len() == 1 && notes[0].starts_with("units.csv: names um as the unit of its radii"),
+            "{notes:?}"
         );
-        assert!(message.contains("names a unit, um, and the problem is in reduced units"), "{message}");
+        assert!(preset.gap.notes(&preset.units).is_empty());
         let si = "units='SI'\n".to_owned() + &text.replace("scan.csv", "units.csv").replace("=5", "='5 um'");
         let si = read(&si, &[]).unwrap();
         assert!(

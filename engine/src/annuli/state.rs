@@ -59,6 +59,23 @@ pub enum AnnuliError {
     },
 }
 
+impl AnnuliError {
+    /// The same with its lengths counted in others, of which one is `length`.
+    #[must_use]
+    pub fn in_lengths(self, length: f64) -> Self {
+        match self {
+            Self::Contacts(ContactsError::NotAscending { before, after }) => {
+                Self::Contacts(ContactsError::NotAscending { before: before * length, after: after * length })
+            }
+            Self::BeyondGap { radius, known } => {
+                Self::BeyondGap { radius: radius * length, known: known * length }
+            }
+            Self::Singular { narrowest } => Self::Singular { narrowest: narrowest * length },
+            Self::Contacts(_) | Self::TooManyPoints { .. } => self,
+        }
+    }
+}
+
 /// How much is wanted of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wanted {

@@ -118,11 +118,31 @@ impl Shape {
     /// What was changed in the gap without being asked for, in words with numbers as `units` show them.
     pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {
-            Self::Formula(typed) if typed.offset() != 0.0 => vec![format!(
-                "the formula is {} on the axis: subtracted, since the gap is zero there",
-                said(units, Quantity::Length, typed.offset())
-            )],
-            Self::Profile(measured) => measured.rows().notes.clone(),
+            Self::Formula(typed) => typed
+                .shift()
+                .map(|shift| {
+                    format!(
+                        "the formula is {} on the axis: subtracted, since the gap is zero there",
+                        said(units, Quantity::Length, shift)
+                    )
+                })
+                .into_iter()
+                .collect(),
+            Self::Profile(measured) => {
+                let rows = measured.rows();
+                let mut notes = rows.notes.clone();
+                // Data that come with the program are of presets that say it.
+                let unit = rows.unit.as_ref().filter(|_| *units == UnitSystem::Reduced && !rows.is_shipped());
+                notes.extend(unit.map(|unit| {
+                    format!(
+                        "{}: names {} as the unit of its radii, which is that of all lengths here: the preset is in reduced \
+                         units; units = \"SI\" converts them",
+                        rows.name,
+                        unit.ascii()
+                    )
+                }));
+                notes
+            }
             _ => Vec::new(),
         }
     }

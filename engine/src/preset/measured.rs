@@ -2,9 +2,8 @@
 //!
 //! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
 //! folder of the preset. A header names a unit of length for both columns or for none; gaps are converted to that of the
-//! radii, so a gap in nm over µm is what it says. In an SI preset rows with a unit become metres. In reduced units a unit is
-//! refused, as with any other value; only data that come with the program are then in the unit of their radii, since the
-//! shape is chosen before its units are.
+//! radii, so a gap in nm over µm is what it says. In an SI preset rows with a unit become metres. In reduced units they are the numbers
+//! of the file, in the unit of its radii, which is then that of all lengths: a warning says so.
 
 use super::invalid::Invalid;
 use super::profile::Columns;
@@ -13,12 +12,10 @@ use super::value::Value;
 use crate::gap::shapes::Rows;
 use crate::measured::Source;
 use crate::text::{quote, sanitize, show_path};
-use crate::units::UnitSystem;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The beginning of a name of shipped data.
-pub const SHIPPED_DATA: &str = "shipped:";
+pub use crate::gap::shapes::measured::SHIPPED_DATA;
 /// The longest message of what is wrong with a file.
 const LONGEST_CAUSE: usize = 1000;
 
@@ -69,42 +66,18 @@ pub fn rows(folder: Option<&Path>, name: &str, columns: Columns) -> Result<Rows,
     let named = Rows { name: name.to_owned(), folder: folder.map(Path::to_path_buf), ..Rows::default() };
     let shown = shown(&named);
     let notes = columns.notes.iter().map(|note| format!("{shown}: {note}")).collect();
-    let header = columns.header;
     let (columns, unit) = columns.in_one_unit().map_err(|error| words(&format!("{shown}: {error}")))?;
-    Ok(Rows {
-        radii: columns.radii,
-        gaps: columns.gaps,
-        header: header.filter(|_| !name.starts_with(SHIPPED_DATA)),
-        unit,
-        notes,
-        ..named
-    })
+    Ok(Rows { radii: columns.radii, gaps: columns.gaps, unit, notes, ..named })
 }
 
 /// The file of `rows` as messages name it.
 pub(super) fn shown(rows: &Rows) -> String {
-    if rows.name.starts_with(SHIPPED_DATA) { quote(&rows.name) } else { show_path(&rows.path()) }
+    if rows.is_shipped() { quote(&rows.name) } else { show_path(&rows.path()) }
 }
 
 /// The file of a measured curve as messages name it.
 pub(super) fn shown_file(source: &Source) -> String {
     if source.name.starts_with(SHIPPED_DATA) { quote(&source.name) } else { show_path(&source.path()) }
-}
-
-/// Whether a preset in `units` takes `rows` as their header has them.
-///
-/// # Errors
-/// In reduced units their unit, in words.
-pub(super) fn in_these_units(rows: &Rows, units: &UnitSystem) -> Result<(), String> {
-    match (units, rows.header, &rows.unit) {
-        (UnitSystem::Reduced, Some(line), Some(unit)) => Err(format!(
-            "{}: line {line}: the header names a unit, {}, and the problem is in reduced units, where columns are pure \
-             numbers: write r, h without, or set units = \"SI\"",
-            shown(rows),
-            unit.ascii()
-        )),
-        _ => Ok(()),
-    }
 }
 
 /// A value as it is kept: the name of a file stands for what it holds, which `files` has.

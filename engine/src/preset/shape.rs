@@ -194,9 +194,6 @@ impl Given<'_> {
             },
             _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
         };
-        if let Err(cause) = measured::in_these_units(&rows, &self.units) {
-            return self.fault("gap.file", &cause);
-        }
         let shown = measured::shown(&rows);
         match Measured::new(rows.held_in(&self.units), smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),

@@ -47,13 +47,16 @@ impl Axis {
         if !(lo.is_finite() && lo < hi) {
             return Err(refused("it goes from a number to a larger one"));
         }
+        if key == COMPLIANCE && lo < 0.0 {
+            return Err(refused("a compliance is 0 (displacement) or above, up to inf (a dead load)"));
+        }
         let spacing = if hi.is_finite() {
             if logarithmic && lo <= 0.0 {
                 return Err(refused("a logarithmic axis begins above zero"));
             }
             if logarithmic { Spacing::Logarithmic } else { Spacing::Linear }
         } else {
-            if key != COMPLIANCE || logarithmic || lo < 0.0 {
+            if key != COMPLIANCE || logarithmic {
                 return Err(refused(
                     "only a compliance goes on to infinity, on an axis that is not logarithmic",
                 ));

@@ -167,6 +167,11 @@ impl Family {
                 preset.clone().set(&axis.key, 1.0.into())?;
                 return Err(FamilyError::NoNumber(axis.key.clone()));
             }
+            if axis.key != COMPLIANCE {
+                for end in axis.range {
+                    preset.resolved(&axis.key, end.into())?;
+                }
+            }
         }
         let length = preset.reduced().units.length;
         let mut family = Self {

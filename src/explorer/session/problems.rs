@@ -247,7 +247,6 @@ impl From<Written> for Profile {
             radii: numbers(written.radii),
             gaps: numbers(written.gaps),
             unit: written.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
-            header: None,
             notes: written.notes,
         };
         match written.data {

@@ -110,9 +110,12 @@ impl TypedGap {
         &self.gap
     }
 
-    /// What the formula gives on the axis: subtracted, since a gap is zero there.
-    pub fn offset(&self) -> f64 {
-        self.gap.bound().offset()
+    /// What the formula gives on the axis, subtracted since a gap is zero there; `None` where that is no more than the rounding
+    /// of the gap's own values.
+    pub fn shift(&self) -> Option<f64> {
+        let bound = self.gap.bound();
+        let size = bound.jet(self.length.unwrap_or(1.0)).value.abs();
+        Some(bound.offset()).filter(|offset| offset.abs() > f64::EPSILON * size)
     }
 
     /// The value of the parameter `R`, where there is one and it is positive.

@@ -5,6 +5,9 @@ use crate::units::{Quantity, Unit, UnitSystem};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// The beginning of a name of data that come with the program.
+pub const SHIPPED_DATA: &str = "shipped:";
+
 /// The rows of a file, in one unit of length. Equal where the name and the rows are.
 #[derive(Debug, Clone, Default)]
 pub struct Rows {
@@ -18,14 +21,16 @@ pub struct Rows {
     pub gaps: Vec<f64>,
     /// The unit of both, where the file names one.
     pub unit: Option<Unit>,
-    /// The line of the file whose header names units; none where a person did not choose them here: in data that come with
-    /// the program, and in a session as it was.
-    pub header: Option<usize>,
     /// What was put right, in words.
     pub notes: Vec<String>,
 }
 
 impl Rows {
+    /// Whether they come with the program.
+    pub fn is_shipped(&self) -> bool {
+        self.name.starts_with(SHIPPED_DATA)
+    }
+
     /// Where the file lies.
     pub fn path(&self) -> PathBuf {
         self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
@@ -56,7 +61,6 @@ impl Rows {
             radii: scaled(&self.radii),
             gaps: scaled(&self.gaps),
             unit: metre,
-            header: self.header,
             name: self.name.clone(),
             folder: self.folder.clone(),
             notes,

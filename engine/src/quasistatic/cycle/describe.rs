@@ -2,6 +2,7 @@
 
 use super::error::{CycleError, Warning};
 use super::setting::Turn;
+use crate::annuli::{AnnuliError, ContactsError};
 use crate::problem::{Control, Units};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -61,6 +62,7 @@ impl CycleError {
             }
             Self::TooMany { error, approach } => Self::TooMany { error, approach: approach * length },
             Self::NeverTouches { searched } => Self::NeverTouches { searched: searched * length },
+            Self::State(error) => Self::State(error.in_lengths(length)),
             Self::NoLanding { control_value, steps } => {
                 Self::NoLanding { control_value: control_value * value, steps }
             }
@@ -101,6 +103,11 @@ impl CycleError {
                 "a turn at the radius {} lies beyond the gap, which is known up to r = {}: turn below that",
                 length(radius),
                 length(known)
+            ),
+            Self::State(AnnuliError::Contacts(ContactsError::NotAscending { before, .. })) => format!(
+                "at r = {} the edges of a contact are closer to each other than numbers can tell apart: the gap is too high or \
+                 too steep there",
+                length(before)
             ),
             Self::TooMany { ref error, approach } => {
                 format!("{error}, at the approach {}: turn before", length(approach))

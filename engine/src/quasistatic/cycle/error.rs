@@ -1,6 +1,7 @@
 //! Why there is no loop.
 
 use crate::annuli::AnnuliError;
+use crate::disc::TableError;
 use crate::problem::Control;
 
 /// Why there is no loop. All numbers are in reduced units.
@@ -84,10 +85,19 @@ pub enum CycleError {
     },
     /// The table of the gap could not be made.
     #[error(transparent)]
-    Table(#[from] crate::disc::TableError),
+    Table(TableError),
     /// It was no longer wanted.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<TableError> for CycleError {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Cancelled => Self::Cancelled,
+            error => Self::Table(error),
+        }
+    }
 }
 
 /// What is to be known about a loop beyond its numbers.
@@ -107,7 +117,7 @@ pub enum Warning {
     },
     /// A jump's loss by energy and by area do not agree.
     Area {
-        /// The number of the event.
+        /// The number of the event, from 1 as tables count.
         event: usize,
         /// Their difference over the loss.
         share: f64,

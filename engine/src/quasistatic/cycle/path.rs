@@ -355,7 +355,7 @@ impl Path<'_, '_> {
             if let (Some(energy), Some(area)) = (of.dissipated, of.dissipated_by_area) {
                 let share = (energy - area).abs() / energy.abs().max(f64::MIN_POSITIVE.sqrt());
                 if share > AGREE {
-                    warnings.push(Warning::Area { event, share });
+                    warnings.push(Warning::Area { event: event + 1, share });
                 }
             }
         }
