@@ -95,7 +95,7 @@ impl From<TableError> for CycleError {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Cancelled => Self::Cancelled,
-            error => Self::Table(error),
+            error @ TableError::TooFine(_) => Self::Table(error),
         }
     }
 }
