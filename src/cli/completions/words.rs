@@ -13,6 +13,9 @@ use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
+/// The key that says which keys of `[gap]` there are.
+const GAP_SHAPE: &str = "gap.shape";
+
 /// What the value of an argument is, by the name of the argument; in every subcommand the same.
 const KNOWN: [(&str, Words); 10] = [
     ("preset", presets_or_files),
@@ -122,7 +125,9 @@ fn preset() -> Option<Preset> {
 /// The rows that the preset of the line has, and the groups.
 fn rows(preset: &Preset) -> impl Iterator<Item = Row> {
     let groups = GROUPS.iter().filter(|row| preset.get(&row.key).is_some());
-    preset.rows().chain(groups.map(Row::Borrowed))
+    // The table has the keys of every shape.
+    let own = preset.rows().filter(|row| row.fits(GAP_SHAPE, preset.gap.name()));
+    own.chain(groups.map(Row::Borrowed))
 }
 
 fn assignments(current: &OsStr) -> Vec<CompletionCandidate> {
