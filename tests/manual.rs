@@ -158,7 +158,8 @@ const MATRIX: [(&str, &str); 21] = [
 
 /// Each command of the program with its name behind `pulloff`.
 fn commands() -> Vec<(String, clap::Command)> {
-    let whole = pulloff::cli::command();
+    let mut whole = pulloff::cli::command();
+    whole.build();
     let mut commands = vec![("pulloff".to_owned(), whole.clone())];
     for command in whole.get_subcommands().filter(|command| command.get_name() != "help") {
         let name = command.get_name();

@@ -98,13 +98,6 @@ fn outlive_the_limit() {
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
-/// The whole command line, as its help, its completions and the book have it.
-pub fn command() -> clap::Command {
-    let mut command = Cli::command();
-    command.build();
-    command
-}
-
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     outlive_the_limit();
@@ -156,8 +149,8 @@ fn ended(failure: &Failure) -> ExitCode {
 /// What options that take numbers call their values.
 const NUMBERS: [&str; 8] = ["FORCE", "I/N", "LENGTH", "N", "RADIUS", "SEED", "TIME", "WIDTH"];
 
-/// The whole command line.
-fn command() -> clap::Command {
+/// The whole command line, as its help, its completions and the book have it.
+pub fn command() -> clap::Command {
     /// Behind an option that takes a number stands its value, with a sign too: what is wrong with it is said.
     fn with_signs(command: clap::Command) -> clap::Command {
         let names = |arg: &clap::Arg| arg.get_value_names().unwrap_or_default().to_vec();
