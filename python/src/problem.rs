@@ -197,7 +197,7 @@ impl Problem {
         if let Some((name, folder, radii, gaps, unit, notes)) = rows {
             let (radii, gaps) = (radii.as_slice()?.to_vec(), gaps.as_slice()?.to_vec());
             let unit = unit.and_then(|unit| Unit::parse(&unit, 0).ok());
-            held.rows = Arc::new(Rows { name, folder, radii, gaps, unit, header: None, notes });
+            held.rows = Arc::new(Rows { name, folder, radii, gaps, unit, notes });
         }
         if let Some((name, folder, bytes)) = points {
             held.points = Arc::new(Source::new(name, folder, bytes.into()));
