@@ -123,7 +123,7 @@ fn what_fits_wrote_is_not_fitted() {
     for said in [
         "note: rest.csv: is the residuals of a fit, not a measured curve; it is left out",
         "note: results.csv: is a table of fits, not a measured curve; it is left out",
-        "note: a.csv: is in the table already: ok",
+        "note: a.csv: is in the table already: describes",
     ] {
         assert!(again.err.contains(said), "{}", again.err);
     }
@@ -163,7 +163,7 @@ fn a_table_has_no_row_that_was_cut_off() {
     assert!(ended.err.contains("pulloff: stopped: "), "{}", ended.err);
     let ended = home.run(&[&["fit", "a.csv", "b.csv"], &common[..]].concat());
     assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
-    assert_eq!(home.text("t.csv").matches(",ok,").count(), 2);
+    assert_eq!(home.text("t.csv").matches(",describes,").count(), 2);
 }
 
 /// A rerun of a table ends as its worst row does.

@@ -173,7 +173,7 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("gap.wavelength=1e-9..1"), "waves, a map takes up to 3000"),
         (over("gap.amplitude=nan..1"), "gap.amplitude = NaN is out of range"),
         (over("gap.amplitude=0..inf"), "gap.amplitude = inf is out of range"),
-        (over("compliance=-1..inf"), "only a compliance goes on to infinity"),
+        (over("compliance=-1..inf"), "a compliance is 0 (displacement) or above"),
         (over("path.start_contact_radius=0.2..20"), "at most 10 x the radius of curvature"),
         (
             [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.csv".into()]].concat(),

@@ -106,7 +106,7 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
             &["fig-9-si", "--set", "basis.rings=20", "--view", "gap", "--contact-radius", "3"],
             "--contact-radius = 3e6 um is outside the curve, which goes from 10 um to 2500 um",
         ),
-        (&["--data"], "-o <FILE>"),
+        (&["--data"], "--output <FILE>"),
     ] {
         let output = pulloff(folder.path(), &[&["plot"], arguments].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -251,7 +251,8 @@ fn a_png_has_the_size_of_the_figure_and_letters() {
 fn every_view_is_a_png_too() {
     let folder = tempfile::tempdir().unwrap();
     for view in VIEWS {
-        let output = pulloff(folder.path(), &["plot", "fig-3-jkr", "--view", view, "-o", "view.png"]);
+        let output =
+            pulloff(folder.path(), &["plot", "fig-3-jkr", "--view", view, "-o", "view.png", "--overwrite"]);
         assert!(output.status.success(), "{view}: {}", String::from_utf8_lossy(&output.stderr));
         let bytes = std::fs::read(folder.path().join("view.png")).unwrap();
         let pixels = resvg::tiny_skia::Pixmap::decode_png(&bytes).unwrap();

@@ -251,7 +251,9 @@ values = [200, 200, 200, 60]
     // A rerun knows the faults of the rows that are there.
     let again = home.sweep("s.toml", "r.csv", &[]);
     assert!(
-        again.starts_with("pulloff: 4 of 4 rows in r.csv (4 from before)\npulloff: 2 with an error: 1 ref"),
+        again.starts_with(
+            "pulloff: 4 of 4 rows in r.csv (4 from before)\npulloff: warning: 2 with an error: 1 ref"
+        ),
         "{again}"
     );
 }
@@ -511,7 +513,7 @@ fn results_of_something_else_are_not_touched() {
     assert_eq!(home.text("mine.csv"), "a,b\n");
     home.refused(&["sweep", "s.toml", "-o", "."], "is a folder, not a regular file");
     home.refused(&["sweep", "none.toml", "-o", "x.csv"], "none.toml: cannot read");
-    home.refused(&["sweep", "s.toml"], "-o <RESULTS.csv>");
+    home.refused(&["sweep", "s.toml"], "--output <RESULTS.csv>");
     home.refused(&["sweep", "s.toml", "-o", "x.csv", "--shard", "4/3"], "such as 3/8");
     home.refused(&["sweep", "s.toml", "-o", "x.csv", "--jobs", "0"], "1..=1024");
     assert!(!home.path("x.csv").exists());

@@ -76,7 +76,7 @@ fn a_row_that_takes_too_long_has_an_error_that_says_so() {
 fn results_are_looked_at_without_computing() {
     let home = with_spec();
     said(&home, &["sweep", "s.toml", "-o", "r.csv"], 0);
-    let (out, _) = said(&home, &["sweep", "check", "r.csv"], 1);
+    let (out, _) = said(&home, &["sweep", "check", "r.csv"], 0);
     assert!(out.contains("r.csv: 12 of 12 rows, complete"), "{out}");
     assert!(out.contains("columns  row, gap.amplitude, snaps, least_force, error"), "{out}");
     assert!(out.contains("errors   none"), "{out}");
@@ -150,7 +150,7 @@ fn the_shards_of_a_job_array_are_those_of_the_sweep() {
     said(&home, &["sweep", "s.toml", "-o", "whole.csv"], 0);
     assert_eq!(home.text("my results.csv"), home.text("whole.csv"));
     // Shards of another number beside them are other files, and what fails has the status of the program.
-    let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "my results.csv", "4"]);
+    let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "joined.csv", "4"]);
     assert!(ended.status == 2 && ended.err.contains("1-of-4.csv"), "{}", ended.err);
     for wrong in ["0", "-1", "x", "", "1.5"] {
         let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "x.csv", wrong]);

@@ -90,7 +90,10 @@ fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
 
 /// Takes what came of a file.
 fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
-    if matches!(done, Done::Opened(_) | Done::Read(_) | Done::Assigned(_) | Done::Failed(_)) {
+    if matches!(
+        done,
+        Done::Opened(_) | Done::Read(_) | Done::Assigned(_) | Done::Foreign(..) | Done::Failed(_)
+    ) {
         model.awaits = Awaits::Nothing;
     }
     // What was saved is no change of the session.

@@ -325,6 +325,8 @@ fn settings_are_found_in_every_usual_form() {
         let found = stated(line).radius.unwrap_or_else(|| panic!("{line}"));
         assert!((found.value - 2.5e-6).abs() < 1e-15, "{line}: {found:?}");
     }
+    let sentence = stated("R = 1 mm, E* = 1 MPa, work of adhesion 50 mJ/m^2");
+    assert!(sentence.radius.is_some_and(|found| (found.value - 1e-3).abs() < 1e-15), "{:?}", sentence.notes);
     let uncalibrated = stated("Spring constant (N/m): 1.0");
     assert!(uncalibrated.stiffness.is_none() && uncalibrated.notes[0].contains("not calibrated"));
     let unknown = stated("Tip radius: 20");

@@ -135,6 +135,8 @@ impl Settings {
         };
         let Some((setting, dimension, needs_unit)) = setting(&name) else { return };
         let (number, behind) = value.split_once(char::is_whitespace).unwrap_or((&value, ""));
+        // A sentence goes on with other settings.
+        let behind = behind.split([',', ';']).next().unwrap_or_default();
         let pointed = number.replace(',', ".");
         let Ok(number) = pointed.parse::<f64>() else { return };
         let unit = Some(clean(behind)).filter(|behind| !behind.is_empty()).or(unit);

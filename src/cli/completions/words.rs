@@ -118,8 +118,15 @@ fn preset() -> Option<Preset> {
         source => Some(source),
     });
     let source = source.or_else(|| store.resolve(OsStr::new(crate::store::shipped::DEFAULT)).ok())?;
-    let loaded = store.load(&source, &assigned).or_else(|_| store.load(&source, &[] as &[&str]));
-    loaded.ok().map(|loaded| loaded.preset)
+    if let Ok(loaded) = store.load(&source, &assigned) {
+        return Some(loaded.preset);
+    }
+    // Another shape may want keys that are not typed yet; without them it begins as in the explorer.
+    let mut preset = store.load(&source, &[] as &[&str]).ok()?.preset;
+    for (key, value) in assigned.iter().filter_map(|text| text.split_once('=')) {
+        let _ = preset.assign(key, value);
+    }
+    Some(preset)
 }
 
 /// The rows that the preset of the line has, and the groups.
