@@ -11,6 +11,7 @@
 
 use super::least_squares::Evaluated;
 use super::options::letter;
+use super::prior::Prior;
 use super::problem::{Parameter, Problem};
 use super::scatter::Correlation;
 use super::solve::{HUBER, Solved};
@@ -18,6 +19,7 @@ use crate::elementary::{exp, exp_m1, ln};
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
 
 /// The condition beyond which errors mean nothing.
 pub const LARGEST_CONDITION: f64 = 1e3;
@@ -35,6 +37,8 @@ pub struct Determined {
     pub correlations: Option<DMatrix<f64>>,
     /// (JᵀJ)⁻¹, where they are determined.
     pub inner: Option<DMatrix<f64>>,
+    /// Of each value given with an error, its share of the variance of each parameter.
+    pub shares: Vec<Vec<f64>>,
     /// What cannot be told, in words.
     pub direction: Option<String>,
 }
@@ -47,11 +51,17 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         errors: None,
         correlations: None,
         inner: None,
+        shares: Vec::new(),
         direction: None,
     };
     let p = u.len();
-    let lengths: Vec<f64> = at.jacobian.column_iter().map(|column| column.norm()).collect();
-    let mut white = at.jacobian.clone();
+    let factor = variance(&problem.real(&at.residuals), scale, p, robust);
+    // What is known before counts as points do.
+    let known = problem.of_priors() * factor.sqrt();
+    let rows = at.jacobian.nrows();
+    let mut white = at.jacobian.clone().resize_vertically(rows + known.nrows(), 0.0);
+    white.view_mut((rows, 0), known.shape()).copy_from(&known);
+    let lengths: Vec<f64> = white.column_iter().map(|column| column.norm()).collect();
     for (mut column, length) in white.column_iter_mut().zip(&lengths) {
         if *length > 0.0 {
             column /= *length;
@@ -75,11 +85,19 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
         sum / (lengths[i] * lengths[j])
     });
-    let factor = variance(&problem.real(&at.residuals), scale, p, robust);
     let mut whole = inner.clone();
     if correlation.share > 0.0 {
-        whole = &inner * together(problem, &at.jacobian, correlation) * &inner;
+        let points = together(problem, &at.jacobian, correlation);
+        whole = &inner * (points + known.tr_mul(&known)) * &inner;
     }
+    // The level of a force in steps is not known better than they are, however many rows stand at it.
+    let level = &inner * at.jacobian.tr_mul(&rounding(problem, at.residuals.len()));
+    whole += &level * level.transpose() / factor;
+    let share = |prior: &Prior, j: usize| {
+        let along = inner.column(prior.parameter)[j] / prior.sigma;
+        (along * along * factor / whole[(j, j)]).min(1.0)
+    };
+    let shares = problem.priors.iter().map(|prior| (0..p).map(|j| share(prior, j)).collect()).collect();
     let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * whole[(j, j)]).sqrt()));
     let correlations = DMatrix::from_fn(p, p, |i, j| whole[(i, j)] / (whole[(i, i)] * whole[(j, j)]).sqrt());
     Determined {
@@ -87,8 +105,22 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         errors: Some(errors),
         correlations: Some(correlations),
         inner: Some(inner),
+        shares,
         direction: None,
     }
+}
+
+/// The standard deviation in σ by which all rows apart are off together, where the force is in steps: q/√12 without noise, and less by
+/// exp(−2π²σ²/q²) where noise carries it over many steps. B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4.
+fn rounding(problem: &Problem, rows: usize) -> DVector<f64> {
+    let (per, step, sigma) = (problem.per_point(), problem.step, problem.sigma[1]);
+    let noise = (sigma * sigma - step * step / 12.0).max(0.0);
+    let off = if step > 0.0 {
+        step / 12.0_f64.sqrt() * exp(-2.0 * PI * PI * noise / (step * step)) / sigma
+    } else {
+        0.0
+    };
+    DVector::from_fn(rows, |i, _| if problem.data[i / per].free && i.is_multiple_of(per) { off } else { 0.0 })
 }
 
 /// `JᵀRJ`: the rows of a branch in the order of the file, those in contact and those apart.

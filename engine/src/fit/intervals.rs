@@ -1,6 +1,6 @@
 //! Intervals that need no straight line: by the profile of χ², and by a block bootstrap.
 
-use super::least_squares::{Settings, minimize};
+use super::least_squares::Settings;
 use super::problem::{Parameter, Problem, Target};
 use super::solve::{HUBER, Solved};
 use crate::gap::shapes::split_mix::SplitMix64;
@@ -29,6 +29,10 @@ impl Problem {
         let mut held = self.clone();
         let Parameter { target, .. } = held.parameters.remove(j);
         let value = self.parameters[j].value(u);
+        held.priors.retain(|prior| prior.parameter != j);
+        for prior in &mut held.priors {
+            prior.parameter -= usize::from(prior.parameter > j);
+        }
         match target {
             Target::Offset => held.instrument.offset = value,
             Target::Baseline => held.instrument.baseline = value,
@@ -63,7 +67,7 @@ pub fn profile(
         // √Δχ² over the distance is nearly a straight line.
         let root = |distance: f64, others: &mut Vec<f64>| {
             let held = problem.holding(j, u[j] + side * distance)?;
-            let found = minimize(&held, others, &settings, progress)?;
+            let found = held.minimize(others, &settings, progress)?;
             others.clone_from(&found.parameters);
             Some((2.0 * (found.cost - solved.minimum.cost)).max(0.0).sqrt() / scale)
         };
@@ -141,7 +145,7 @@ pub fn bootstrap(
             }
         }
         drawn.counts = Some(counts);
-        let fit = minimize(&drawn, &solved.minimum.parameters, &settings, progress);
+        let fit = drawn.minimize(&solved.minimum.parameters, &settings, progress);
         if progress.stop() {
             break;
         }

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
+//! | `scores` | would a gap of another exponent, or adhesion that grows with speed, fit better |
 //! | `spring` | what would another spring give |
 //!
 //! Here: are the values such as anything has.
 
 mod apart;
 mod contact;
+mod scores;
 mod spring;
 
 pub(super) use spring::of_spring;
@@ -21,11 +23,12 @@ use super::scatter::Scatter;
 use super::solve::Solved;
 use super::verdict::Reason;
 use crate::elementary::hypot;
+use crate::measured::converter::Clipped;
 use crate::preset::Preset;
 use crate::problem::Groups;
 use crate::problem::groups::LARGE_TABOR;
-use crate::units::number::significant;
-use crate::units::{UnitSystem, number::short};
+use crate::units::number::{said, short, significant};
+use crate::units::{Quantity, UnitSystem};
 use nalgebra::DMatrix;
 
 /// A contact so wide, or an approach so deep, in units of R, is none of a soft ball.
@@ -62,12 +65,27 @@ pub(super) fn reasons(
     scatter: &Scatter,
     preset: &Preset,
     inner: Option<&DMatrix<f64>>,
+    clipped: Option<Clipped>,
 ) -> Vec<Reason> {
-    let mut reasons = contact::of_contact(problem, solved, scatter, inner);
+    let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
+    reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
+    reasons.extend(scores::of_rate(problem, solved, scatter, inner));
+    reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     reasons.extend(unlikely(problem, solved, preset));
     reasons.extend(of_range(preset));
     reasons
+}
+
+/// Rows at the end of the range of a converter.
+fn of_clipped(preset: &Preset, clipped: Clipped) -> Reason {
+    let sentence = format!(
+        "{} rows in contact have exactly the {} force, {}: the instrument goes no further. Leave them out with --range force=LO..HI",
+        clipped.rows,
+        if clipped.is_low { "smallest" } else { "largest" },
+        said(&preset.units, Quantity::Force, clipped.force)
+    );
+    Reason::new("clipped", clipped.rows as f64, sentence)
 }
 
 /// Adhesion that reaches beyond the edge.

@@ -6,6 +6,7 @@
 //! | [`way`] | the ways of a device along a curve with snaps |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
+//! | [`prior`] | what is known of values before, with its errors |
 //! | [`problem`] | parameters, data, the paths of values |
 //! | [`derivatives`] | residuals and their derivatives |
 //! | `rings` | loading with rings of contact, which is left out |
@@ -35,6 +36,7 @@ pub mod least_squares;
 pub mod options;
 pub mod path;
 pub mod pose;
+pub mod prior;
 pub mod problem;
 mod rings;
 pub mod run;

@@ -2,6 +2,7 @@
 
 use super::options::{FitError, Options, target};
 use super::path::Reach;
+use super::prior::Prior;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
 use crate::gap::Gap;
 use crate::measured::branches::{Point, median};
@@ -10,6 +11,7 @@ use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::Start;
+use crate::units::{Quantity, number::said};
 
 /// Points in contact for each free parameter, at least.
 const PER_PARAMETER: usize = 3;
@@ -40,7 +42,7 @@ pub fn posed(
     let has_waves = preset.gap.feature_length().is_some();
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let mut targets = targets(preset, branches, options)?;
-    let instrument = instrument(&preset.data, branches, &mut targets, notes)?;
+    let instrument = instrument(preset, branches, options, &mut targets, notes)?;
     let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
     let parameters: Vec<Parameter> = parameters.collect();
     let attached = data.iter().filter(|datum| !datum.free).count();
@@ -49,6 +51,7 @@ pub fn posed(
         return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
     }
     let abscissa = branches.abscissa;
+    let priors = of_baseline(&preset.data, branches, &parameters);
     let reach = reach(branches, &data);
     let sigma = branches.noise.sigma;
     let space = sigma[2] > 0.0 && abscissa != Abscissa::Radius;
@@ -56,9 +59,11 @@ pub fn posed(
         preset: bare,
         abscissa,
         parameters,
+        priors,
         instrument,
         data,
         sigma,
+        step: branches.noise.step,
         space,
         reach,
         loops,
@@ -94,32 +99,45 @@ fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Ve
     let Some(at) = targets.iter().position(|target| *target == Target::Key(ADHESION.to_owned())) else {
         return refused("--separate splits it, so it must be free");
     };
-    if branches.list.len() < 2 {
+    let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
+    if !(has(Segment::Approach) && has(Segment::Retraction)) {
         return refused("--separate needs both an approach and a retraction that are fitted");
     }
     targets.splice(at..=at, [Target::Adhesion(Segment::Approach), Target::Adhesion(Segment::Retraction)]);
     Ok(targets)
 }
 
-/// Where the values between model and instrument start; a baseline that the points show is free too.
+/// Where the values between model and instrument start; a baseline that the points show is free too, and so is that of radii without
+/// rows apart, as far as a tare may be off.
 fn instrument(
-    given: &DataSpec,
+    preset: &Preset,
     branches: &Branches,
+    options: &Options,
     targets: &mut Vec<Target>,
     notes: &mut Vec<String>,
 ) -> Result<Instrument, FitError> {
+    let given = &preset.data;
     let mut instrument = Instrument {
         offset: given.offset.unwrap_or(0.0),
         baseline: given.baseline.unwrap_or(0.0),
         tilt: given.tilt.unwrap_or(0.0),
     };
+    let is_asked = !options.free.is_empty();
+    let mut too = |why: &str| {
+        if !targets.contains(&Target::Baseline) {
+            targets.push(Target::Baseline);
+            notes.push(format!("data.baseline is fitted too, {why}"));
+        }
+    };
     match branches.baseline {
-        Some(found) if given.baseline.is_none() => {
-            if !targets.contains(&Target::Baseline) {
-                targets.push(Target::Baseline);
-                notes.push("data.baseline is fitted too, since there is a free part".to_owned());
-            }
+        Some(found) if is_asked || given.baseline.is_none() => {
+            too("since there is a free part");
+            // One that a former fit has left says less than the points.
             instrument.baseline = found;
+        }
+        None if branches.abscissa == Abscissa::Radius && is_asked => {
+            let off = said(&preset.units, Quantity::Force, tare(branches));
+            too(&format!("known to {off} before, since there is no free part"));
         }
         None if targets.contains(&Target::Baseline) => {
             return Err(FitError::Key {
@@ -130,6 +148,24 @@ fn instrument(
         _ => {}
     }
     Ok(instrument)
+}
+
+/// By how much a force without rows apart may be off.
+fn tare(branches: &Branches) -> f64 {
+    const SHARE: f64 = 0.02;
+    let forces = branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force.abs());
+    SHARE * forces.fold(0.0, f64::max)
+}
+
+/// What is known of a baseline that no rows show.
+fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[Parameter]) -> Vec<Prior> {
+    let at = parameters.iter().position(|parameter| parameter.target == Target::Baseline);
+    let unseen = branches.baseline.is_none().then_some(at).flatten();
+    unseen.map_or_else(Vec::new, |parameter| {
+        let inner = |value| parameters[parameter].inner(value);
+        let mean = inner(given.baseline.unwrap_or(0.0));
+        vec![Prior { parameter, mean, sigma: inner(tare(branches)) }]
+    })
 }
 
 /// What the paths must reach.

@@ -2,6 +2,7 @@
 
 use super::distance::{Nearest, Scaled};
 use super::path::{Path, Place, Reach};
+use super::prior::Prior;
 use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;
@@ -107,12 +108,16 @@ pub struct Problem {
     pub abscissa: Abscissa,
     /// The free parameters.
     pub parameters: Vec<Parameter>,
+    /// What is known of them before.
+    pub priors: Vec<Prior>,
     /// What is held of the instrument.
     pub instrument: Instrument,
     /// The points.
     pub data: Vec<Datum>,
     /// σ of x, P and s.
     pub sigma: Place,
+    /// The step of the converter of the force; 0 where none is seen.
+    pub step: f64,
     /// Whether s is measured beside x.
     pub space: bool,
     /// What the paths must reach.

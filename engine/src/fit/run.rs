@@ -6,8 +6,9 @@ use super::fitted::Fitted;
 use super::intervals::{block, bootstrap, profile};
 use super::judge::{doubts, of_spring, reasons};
 use super::least_squares::{Ending, LeastSquares};
-use super::options::{FitError, Options};
+use super::options::{FitError, Options, letter};
 use super::pose::posed;
+use super::prior::Prior;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
 use super::scatter::Scatter;
 use super::solve::{Solved, solve};
@@ -19,6 +20,7 @@ use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::progress::{Part, Progress};
 use nalgebra::DVector;
+use serde::Serialize;
 
 /// Rounds of the last fit.
 const ROUNDS: usize = 200;
@@ -36,6 +38,19 @@ pub struct Residual {
     pub outlier: bool,
 }
 
+/// What was known of a value before, with an error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Given {
+    /// Its dotted key.
+    pub key: String,
+    /// The value, in base units.
+    pub value: f64,
+    /// Its standard deviation, likewise.
+    pub standard_error: f64,
+    /// Its share of the variance of each fitted value, in their order.
+    pub shares: Vec<f64>,
+}
+
 /// A fit.
 #[derive(Debug, Clone)]
 pub struct Fit {
@@ -47,6 +62,8 @@ pub struct Fit {
     pub abscissa: Abscissa,
     /// The values.
     pub parameters: Vec<Fitted>,
+    /// What was known of them before, with an error.
+    pub priors: Vec<Given>,
     /// Their correlations; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
@@ -180,6 +197,7 @@ pub fn fit(
     let u = &solved.minimum.parameters;
     let scatter = problem.scatter(&solved);
     let what = determined(&problem, &solved, &scatter.correlation, options.robust);
+    let priors = given(&problem, &what.shares, &mut notes);
     let real = problem.real(&solved.minimum.at.residuals);
     let degrees = (real.len() as f64 / scatter.correlation.rows() - u.len() as f64).max(1.0);
     let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
@@ -192,7 +210,7 @@ pub fn fit(
     notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
     let ending = if progress.stop() { Ending::Cancelled } else { solved.minimum.ending };
-    let reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref());
+    let reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
     let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
     let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
@@ -207,6 +225,7 @@ pub fn fit(
         chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
         chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
         degrees,
+        priors,
         points: [count(false), count(true)],
         outliers: residuals.iter().filter(|residual| residual.outlier).count(),
         dropped: [branches.list.iter().map(|branch| branch.dropped).sum(), branches.left_out],
@@ -225,6 +244,33 @@ pub fn fit(
         residuals,
         parameters: fitted,
     })
+}
+
+/// What was known before, and a sentence where it decides how well a value is known.
+fn given(problem: &Problem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec<Given> {
+    /// A share of the variance from which the points matter less.
+    const MOST: f64 = 0.5;
+    let none = Vec::new();
+    let of = |(i, prior): (usize, &Prior)| {
+        let parameter = &problem.parameters[prior.parameter];
+        let value = parameter.value(prior.mean);
+        let shares = shares.get(i).unwrap_or(&none).clone();
+        let standard_error = prior.sigma * parameter.slope(value).abs();
+        Given { key: parameter.key(), value, standard_error, shares }
+    };
+    let given: Vec<Given> = problem.priors.iter().enumerate().map(of).collect();
+    for Given { key, shares, .. } in &given {
+        let of = problem.parameters.iter().zip(shares).filter(|(_, share)| **share > MOST);
+        let told: Vec<String> = of
+            .map(|(parameter, share)| {
+                format!("{:.0} % of that of {}", 100.0 * share, letter(&problem.preset, &parameter.key()))
+            })
+            .collect();
+        if !told.is_empty() {
+            notes.push(format!("the error that {key} is given with makes up {} (variance)", told.join(", ")));
+        }
+    }
+    given
 }
 
 /// What a fit comes to.
@@ -317,6 +363,8 @@ fn laid(
             Target::Adhesion(Segment::Retraction) => (ADHESION, found.get(ADHESION)),
             Target::Adhesion(_) => continue,
             Target::Offset => (OFFSET, Some(instrument.offset.into())),
+            // One that no rows show is known no better by the next fit: it stays as it was given.
+            Target::Baseline if !problem.data.iter().any(|datum| datum.free) => continue,
             Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
             Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };

@@ -18,6 +18,8 @@ const CLEAR: f64 = 3.0;
 const GOES_ON: f64 = 0.5;
 /// Rows that are off by so many σ from the median of five are set to it.
 const OFF: f64 = 5.0;
+/// Of rises that are larger than those beside them so many are looked at, the largest first.
+const TRIED: usize = 8;
 /// Rows behind the jump by which a slope is told from their scatter.
 const MANY: usize = 20;
 
@@ -50,15 +52,17 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
     let mut w = 1;
     while w <= (n / 8).max(1) {
         let scale = (w as f64 / 2.0).sqrt() / sigma;
-        for at in w.max(FEWEST)..=(n - w.max(FEWEST)) {
-            let deviations = (mean(at, at + w) - mean(at - w, at)) * scale;
-            if deviations > SURE
-                && best.is_none_or(|best| deviations > best.deviations)
-                && is_flat(x, &force, at, mean(at, at + w) - mean(at - w, at))
-            {
-                best = Some(Jump { at, deviations });
-            }
-        }
+        let rows = w.max(FEWEST)..=(n - w.max(FEWEST));
+        let height = |at: usize| mean(at, at + w) - mean(at - w, at);
+        let is_peak = |at: &usize| {
+            [at - 1, at + 1].iter().all(|beside| !rows.contains(beside) || height(*at) >= height(*beside))
+        };
+        let mut peaks: Vec<usize> =
+            rows.clone().filter(|at| height(*at) * scale > SURE).filter(is_peak).collect();
+        peaks.sort_by(|&a, &b| height(b).total_cmp(&height(a)));
+        let found = peaks.into_iter().take(TRIED).find(|at| is_flat(x, &force, *at, height(*at)));
+        let found = found.map(|at| Jump { at, deviations: height(at) * scale });
+        best = best.into_iter().chain(found).max_by(|a, b| a.deviations.total_cmp(&b.deviations));
         w *= 2;
     }
     best.map(|found| Jump { at: sharpened(&force, found.at, sigma), ..found })
@@ -101,4 +105,37 @@ fn sharpened(force: &[f64], at: usize, sigma: f64) -> usize {
     let near = at.saturating_sub(NEAR).max(FEWEST)..=(at + NEAR).min(force.len() - FEWEST);
     let best = near.max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
     best.filter(|&best| rise(best) > STANDS_OUT * sigma && rise(best) > rise(at)).unwrap_or(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gap::shapes::split_mix::SplitMix64;
+
+    #[test]
+    fn a_jump_is_found_in_much_noise_and_none_at_a_last_contact() {
+        // A force that falls to -1, rises ever faster to -0.5 and ends there, or jumps to 0.
+        let contact: Vec<f64> = (0..100_u32)
+            .map(|i| {
+                let share = f64::from(i) / 99.0;
+                if share < 0.8 {
+                    3.0 - 5.0 * share
+                } else {
+                    -1.0 + 0.5 * (1.0 - (1.0 - 25.0 * (share - 0.8).powi(2)).sqrt())
+                }
+            })
+            .collect();
+        let whole: Vec<f64> = contact.iter().copied().chain([0.0; 40]).collect();
+        let x: Vec<f64> = (0..140_u32).map(|i| -f64::from(i)).collect();
+        for seed in 0..50 {
+            let mut random = SplitMix64::new(seed);
+            // Sums of twelve are nearly normal.
+            let mut noise = || 0.08 * ((0..12).map(|_| random.unit()).sum::<f64>() - 6.0);
+            let noisy: Vec<f64> = whole.iter().map(|p| p + noise()).collect();
+            let found = jump(&x, &noisy).unwrap();
+            assert!(found.at.abs_diff(100) <= 1, "seed {seed}: {found:?}");
+            let cut: Vec<f64> = contact.iter().map(|p| p + 0.1 * noise()).collect();
+            assert_eq!(jump(&x[..100], &cut), None, "seed {seed}");
+        }
+    }
 }

@@ -12,13 +12,17 @@
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
+use super::apart::jump;
+use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::noise::FLOOR;
 pub(crate) use super::noise::median;
-use super::noise::{BEYOND, END_ROWS, END_SHARE, noise_of, range, scatter_over, tenth};
+use super::noise::{BEYOND, END_ROWS, END_SHARE, noise_of, range, scatter_over};
 pub use super::points::Point;
-use super::points::{Abscissa, Points};
+use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::signs::{free_end, signs};
+use super::turns::{one_way, rises, runs};
+use crate::elementary::hypot;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -54,6 +58,8 @@ pub struct Asked {
     pub force: Option<Span>,
     /// σ of x, P and s, where they are known.
     pub sigma: [Option<f64>; 3],
+    /// Whether the signs of x and P are turned, where a person says it.
+    pub turned: Option<Turned>,
 }
 
 /// One branch, from the contact to the free end.
@@ -91,6 +97,8 @@ pub struct Noise {
     pub sigma: [f64; 3],
     /// Where each is from.
     pub from: [Origin; 3],
+    /// The step of the converter of the force; 0 where none is seen.
+    pub step: f64,
 }
 
 /// What a file has.
@@ -110,8 +118,10 @@ pub struct Branches {
     pub ranges: [f64; 3],
     /// What was found or assumed, in words.
     pub notes: Vec<String>,
-    /// Rows left out: outside the ranges, of pauses or of the other branch.
+    /// Rows left out: outside the ranges, of pauses, of the other branch, or the row before again.
     pub left_out: usize,
+    /// The end of the range of a converter at which rows in contact stand.
+    pub clipped: Option<Clipped>,
 }
 
 /// Why points give no branches.
@@ -166,16 +176,26 @@ impl Points {
             })
             .collect();
         let mut notes = Vec::new();
+        let repeated = without_repeats(&mut points);
+        if repeated > 0 {
+            notes.push(format!("{repeated} rows are the row before again, and are left out"));
+        }
         let of_radius = self.abscissa == Abscissa::Radius;
         let segments = self.segments.as_deref();
         let is_in_order = disorder(&points, segments) <= UNORDERED;
-        let turned = signs(&mut points, self.abscissa, segments, is_in_order, &mut notes)
-            .ok_or(BranchError::Swapped)?;
+        let turned = match asked.turned {
+            Some(turned) => {
+                turn(&mut points, turned);
+                turned
+            }
+            None => signs(&mut points, self.abscissa, segments, is_in_order, &mut notes)
+                .ok_or(BranchError::Swapped)?,
+        };
         // Of radii, which are zero while apart, none are turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
-        let parts = self.parts(points, ordered, &mut notes)?;
+        let parts = self.parts(&points, ordered, &mut notes)?;
         let mut list: Vec<(Branch, Vec<Point>)> = Vec::new();
-        let mut left_out = self.x.len() - used.len();
+        let mut left_out = self.x.len() - used.len() + repeated;
         for (segment, in_order) in parts {
             if asked.segment.is_some_and(|wanted| wanted != segment) {
                 left_out += in_order.len();
@@ -198,62 +218,112 @@ impl Points {
             range(used.iter().map(|p| p.force)),
             range(used.iter().map(|p| p.radius)),
         ];
-        let noise = noise(&list, asked, self.steps, ranges, of_radius);
+        let step = quantum(&self.force);
+        let noise = noise(&list, asked, (self.steps, step), ranges, of_radius);
+        same_free_force(&mut list, &noise, &mut notes);
         for (branch, _) in &mut list {
             branch.clears_jump(&noise);
         }
         let free: Vec<f64> =
             list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
         let baseline = median(free);
-        let list = list.into_iter().map(|(branch, _)| branch).collect();
-        Ok(Branches { abscissa: self.abscissa, list, noise, baseline, turned, ranges, notes, left_out })
+        let mut rows: Vec<Point> = list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
+        rows.sort_by_key(|point| point.row);
+        let list: Vec<Branch> = list.into_iter().map(|(branch, _)| branch).collect();
+        let mut attached: Vec<usize> = list.iter().flat_map(|b| b.attached.iter().map(|p| p.row)).collect();
+        attached.sort_unstable();
+        let clipped = clipped(&rows, &|point| attached.binary_search(&point.row).is_ok(), step);
+        one_sided(&list, &mut notes);
+        let abscissa = self.abscissa;
+        Ok(Branches { abscissa, list, noise, baseline, turned, ranges, notes, left_out, clipped })
     }
 
     /// The branches by the file's word, or by the largest x.
     fn parts(
         &self,
-        points: Vec<Point>,
+        points: &[Point],
         ordered: bool,
         notes: &mut Vec<String>,
     ) -> Result<Vec<(Segment, Vec<Point>)>, BranchError> {
+        let mut parts = Vec::new();
         if let Some(segments) = &self.segments {
-            let mut parts = Vec::new();
             for segment in [Segment::Approach, Segment::Retraction] {
-                let part: Vec<Point> =
-                    points.iter().filter(|point| segments[point.row - 1] == segment).copied().collect();
-                if part.len() >= FEWEST {
-                    in_order(&part, ordered)?;
-                    parts.push((segment, part));
+                for run in runs(points, segments, segment).into_iter().filter(|run| run.len() >= FEWEST) {
+                    in_order(&run, ordered)?;
+                    parts.push((segment, run));
                 }
             }
-            return Ok(parts);
-        }
-        in_order(&points, false)?;
-        let most = points.iter().map(|point| point.x).fold(f64::NEG_INFINITY, f64::max);
-        let at = points.iter().position(|point| point.x >= most).unwrap_or(0);
-        let (before, after) = points.split_at(at);
-        let word = |segment: Segment| {
-            format!(
-                "no column names the branches: by the order of x it is {}",
-                match segment {
-                    Segment::Approach => "an approach",
-                    _ => "a retraction",
-                }
-            )
-        };
-        Ok(if before.len() < FEWEST {
-            notes.push(word(Segment::Retraction));
-            vec![(Segment::Retraction, points)]
-        } else if after.len() < FEWEST + 1 {
-            notes.push(word(Segment::Approach));
-            vec![(Segment::Approach, points)]
         } else {
-            notes.push(format!(
+            in_order(points, false)?;
+            let found = one_way(points).into_iter().filter(|part| part.len() >= FEWEST);
+            parts.extend(
+                found.map(|part| (if rises(&part) { Segment::Approach } else { Segment::Retraction }, part)),
+            );
+        }
+        notes.extend(self.order(&parts));
+        Ok(parts)
+    }
+
+    /// What the branches are taken from, in words.
+    fn order(&self, parts: &[(Segment, Vec<Point>)]) -> Option<String> {
+        let count = |segment| parts.iter().filter(|(of, _)| *of == segment).count();
+        let counts = [count(Segment::Approach), count(Segment::Retraction)];
+        let first = |at: usize| parts[at].1.first().map_or(0, |point| point.row);
+        match (&self.segments, counts) {
+            (Some(_), [0 | 1, 0 | 1]) => None,
+            (None, [1, 0]) => {
+                Some("no column names the branches: by the order of x it is an approach".to_owned())
+            }
+            (None, [0, 1]) => {
+                Some("no column names the branches: by the order of x it is a retraction".to_owned())
+            }
+            (None, [1, 1]) if parts[0].0 == Segment::Approach => Some(format!(
                 "no column names the branches: approach up to the largest x in row {}, retraction from there",
-                points[at].row
+                first(1)
+            )),
+            (None, [1, 1]) => Some(format!(
+                "no column names the branches: the retraction comes first, the approach begins at the smallest x in row {}",
+                first(1)
+            )),
+            (_, [approaches, retractions]) => Some(format!(
+                "the rows are of several loops: {approaches} approaches and {retractions} retractions are fitted together"
+            )),
+        }
+    }
+}
+
+/// Takes rows for rows in contact whose force stands still, but not where it does on the branch that has most rows apart: a record that
+/// ends near its smallest force looks like that.
+fn same_free_force(list: &mut [(Branch, Vec<Point>)], noise: &Noise, notes: &mut Vec<String>) {
+    /// Levels are one within so many of their errors, and this share of the range of the branch.
+    const SAME: f64 = 6.0;
+    const SHARE: f64 = 0.1;
+    let level = |branch: &Branch| median(branch.free.iter().map(|point| point.force).collect());
+    let most = list.iter().map(|(branch, _)| branch).max_by_key(|branch| branch.free.len());
+    let Some((most, at)) = most.and_then(|most| Some((most.free.len(), level(most)?))) else { return };
+    for (branch, _) in list {
+        let Some(found) = level(branch) else { continue };
+        let error = noise.sigma[1] * (1.0 / most as f64 + 1.0 / branch.free.len() as f64).sqrt();
+        let off = (found - at).abs();
+        let whole = range(branch.attached.iter().map(|point| point.force));
+        if off > SAME * error && off > SHARE * whole && 2 * branch.free.len() < most {
+            notes.push(format!(
+                "the last {} rows of the {} are taken for rows in contact: their force is not that of the rows apart",
+                branch.free.len(),
+                branch.segment.name()
             ));
-            vec![(Segment::Approach, before.to_vec()), (Segment::Retraction, after.to_vec())]
-        })
+            let rest = std::mem::take(&mut branch.free);
+            branch.attached.extend(rest);
+        }
+    }
+}
+
+/// Says where one branch has rows apart and another has none.
+fn one_sided(list: &[Branch], notes: &mut Vec<String>) {
+    let without: Vec<&str> =
+        list.iter().filter(|branch| branch.free.is_empty()).map(|branch| branch.segment.name()).collect();
+    if let (Some(name), true) = (without.first(), without.len() < list.len()) {
+        notes.push(format!("the {name} has no rows apart: it ends in contact"));
     }
 }
 
@@ -317,30 +387,23 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
         return Branch { segment, attached, free, dropped: 0 };
     }
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
-    if points.len() < 2 * END_ROWS || !free_end(&x, &force)[0] {
+    if let Some(jump) = jump(&x, &force) {
+        let rest = points.split_off(jump.at);
+        let line = Line::of(&rest);
+        let limit = BEYOND * noise_of(&force).max(FLOOR * range(force.iter().copied()));
+        let within = rest.iter().position(|point| point.force >= line.at(point.x) - limit);
+        let dropped = within.unwrap_or(0);
+        return Branch { segment, attached: points, free: rest[dropped..].to_vec(), dropped };
+    }
+    if points.len() < 2 * END_ROWS || !free_end(&x, &force)[0] || !stands_still(&force) {
         return Branch { segment, attached: points, free: Vec::new(), dropped: 0 };
     }
     let count = (points.len() / END_SHARE).max(END_ROWS);
     let end = &force[force.len() - count..];
     let whole = range(force.iter().copied());
     let limit = BEYOND * noise_of(&force).max(FLOOR * whole);
-    let goes_on = trends(&force);
     // Without single rows that are off: a median keeps the place of a step.
     let force = filtered(&force);
-    let least = (0..force.len()).min_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap_or(0);
-    let rise = |i: usize| force[i + 1] - force[i];
-    let jump = (least..force.len() - 1).max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
-    let jump = jump.filter(|&jump| rise(jump) > limit).or_else(|| blurred(&points, least, limit));
-    if let Some(jump) = jump {
-        let rest = points.split_off(jump + 1);
-        let line = Line::of(&rest);
-        let within = rest.iter().position(|point| point.force >= line.at(point.x) - limit);
-        let dropped = within.unwrap_or(0);
-        return Branch { segment, attached: points, free: rest[dropped..].to_vec(), dropped };
-    }
-    if goes_on {
-        return Branch { segment, attached: points, free: Vec::new(), dropped: 0 };
-    }
     // Without a jump the free part ends where three rows in a row are off.
     let base = median(end.to_vec()).unwrap_or(0.0);
     let mut off = 0;
@@ -353,33 +416,35 @@ fn branch(segment: Segment, in_order: &[Point], of_radius: bool) -> Branch {
     Branch { segment, attached: points, free, dropped: 0 }
 }
 
-/// The last row before a jump that is spread over some rows, since the noise of x has put them on either side: the medians beside it
-/// differ most there, by more than `limit`.
-fn blurred(points: &[Point], from: usize, limit: f64) -> Option<usize> {
-    const ROWS: usize = 7;
-    let of = |rows: &[Point]| median(rows.iter().map(|point| point.force).collect());
-    let rise = |at: usize| {
-        let (before, after) = (&points[at + 1 - ROWS..=at], &points[at + 1..=at + ROWS]);
-        Some((of(after)? - of(before)?, at))
-    };
-    let last = points.len().checked_sub(ROWS + 1)?;
-    let rises = (from.max(ROWS)..=last).filter_map(rise).filter(|(rise, _)| *rise > limit);
-    rises.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
-}
-
 /// The running median of five, of fewer at the ends.
 fn filtered(values: &[f64]) -> Vec<f64> {
     let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
     (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
 }
 
-/// Whether the force still goes on at the end, as it does where a file ends before the pull-off: the medians of the thirds of the
-/// last tenth differ by more than noise.
-fn trends(force: &[f64]) -> bool {
-    let end = tenth(force);
+/// Whether the force stands still at the end without a jump before it, as it does where bodies come apart that do not adhere: over the
+/// last eighth of the rows it neither goes on nor is it the least of all, as where a record ends at its smallest force.
+fn stands_still(force: &[f64]) -> bool {
+    const SHARE: usize = 8;
+    const FEWEST: usize = 10;
+    let count = (force.len() / SHARE).max(FEWEST);
+    if force.len() < 2 * count {
+        return false;
+    }
+    let (before, end) = force.split_at(force.len() - count);
     let thirds: Vec<f64> =
-        end.chunks((end.len() / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
-    range(thirds.iter().copied()) > 2.0 * noise_of(force) + FLOOR * range(force.iter().copied())
+        end.chunks((count / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
+    let noise = noise_of(force);
+    let floor = FLOOR * range(force.iter().copied());
+    // The median of m rows is known to 1.25 σ/√m; of three the range is below 4.4 of these 95 of 100 times.
+    let error = 1.25 * noise / (count as f64 / 3.0).sqrt();
+    let goes_on = range(thirds.iter().copied()) > 5.0 * error + floor;
+    let level = median(end.to_vec()).unwrap_or(0.0);
+    let next = median(before[before.len() - count..].to_vec()).unwrap_or(0.0);
+    // The same again before it: a smallest force is rounder than that.
+    !goes_on
+        && ((next - level).abs() <= 2.0 * error + floor
+            || filtered(before).iter().any(|p| *p < level - BEYOND * noise - floor))
 }
 
 /// The line through a free part, by the medians of its halves.
@@ -413,7 +478,7 @@ impl Line {
 fn noise(
     list: &[(Branch, Vec<Point>)],
     asked: &Asked,
-    steps: [f64; 3],
+    (steps, converter): ([f64; 3], Option<f64>),
     ranges: [f64; 3],
     of_radius: bool,
 ) -> Noise {
@@ -448,7 +513,8 @@ fn noise(
         of(apart, Origin::Apart).or(of(neighbours, Origin::Neighbours)),
         of(radius, Origin::Neighbours),
     ];
-    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3] };
+    let step = converter.unwrap_or(0.0);
+    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3], step };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
         if axis == 2 && floor == 0.0 {
@@ -456,7 +522,11 @@ fn noise(
             continue;
         }
         let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
-        let (of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
+        let (mut of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
+        // Noise below a step of the converter is not seen in differences: the force is rounded then.
+        if axis == 1 && of_data < step {
+            of_data = hypot(of_data, step / 12.0_f64.sqrt());
+        }
         let least = floor.max(digits);
         let found = (of_data.max(least), if of_data.max(digits) < floor { Origin::Assumed } else { origin });
         (noise.sigma[axis], noise.from[axis]) =

@@ -50,7 +50,11 @@ pub struct Clipped {
 }
 
 /// The end of the range at which rows in contact stand; `points` in the order of the file, all of them of branches.
-pub(super) fn clipped(points: &[Point], is_attached: &dyn Fn(&Point) -> bool, step: Option<f64>) -> Option<Clipped> {
+pub(super) fn clipped(
+    points: &[Point],
+    is_attached: &dyn Fn(&Point) -> bool,
+    step: Option<f64>,
+) -> Option<Clipped> {
     let force = |end: fn(f64, f64) -> f64, from: f64| points.iter().map(|point| point.force).fold(from, end);
     let (lo, hi) = (force(f64::min, f64::INFINITY), force(f64::max, f64::NEG_INFINITY));
     let same = 1e-9 * (hi - lo);
@@ -84,4 +88,30 @@ pub(super) fn without_repeats(points: &mut Vec<Point>) -> usize {
     }
     points.dedup_by(|b, a| same(a, b));
     repeated
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_ends_of_the_range_and_repeated_rows_are_seen() {
+        let steps: Vec<f64> = (0..50_u32).map(|i| 0.25 + 0.03 * f64::from(i * i % 37)).collect();
+        assert!((quantum(&steps).unwrap() - 0.03).abs() < 1e-9);
+        let smooth: Vec<f64> = (0..50_u32).map(|i| f64::from(i).sqrt()).collect();
+        assert_eq!(quantum(&smooth), None);
+        let point = |(i, force): (usize, f64)| Point { x: i as f64, force, radius: 0.0, row: i + 1 };
+        let rows = |least: f64| -> Vec<Point> {
+            let force = (0..60_u32).map(|i| (f64::from(i) - 30.3).powi(2));
+            force.map(|force| force.max(least)).enumerate().map(point).collect()
+        };
+        assert_eq!(clipped(&rows(-1.0), &|_| true, None), None);
+        let found = clipped(&rows(20.0), &|_| true, None).unwrap();
+        assert_eq!((found.rows, found.is_low), (9, true));
+        // Rows apart all have one force, and that is no end.
+        assert_eq!(clipped(&rows(20.0), &|point| point.force > 20.0, None), None);
+        let mut twice: Vec<Point> = rows(-1.0).into_iter().flat_map(|point| [point, point]).collect();
+        assert_eq!((without_repeats(&mut twice), twice.len()), (60, 60));
+        assert_eq!(without_repeats(&mut twice), 0);
+    }
 }

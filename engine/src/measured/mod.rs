@@ -15,12 +15,17 @@
 //! | [`source`] | a file held by a preset, taken apart once |
 //! | [`branches`] | points → approach and retraction, the free part, the pull-off, noise |
 //! | `signs` | where the bodies are apart, and the signs of x and P |
+//! | `apart` | the jump behind which the bodies are apart |
+//! | `turns` | where the way turns round |
+//! | [`converter`] | steps and ends of the range of a converter, rows that stand there twice |
 //! | `noise` | medians, ranges, scatter |
 //!
 //! Nothing here reads a disk: bytes come from the caller.
 
+mod apart;
 pub mod branches;
 mod choice;
+pub mod converter;
 pub mod error;
 mod header;
 mod lines;
@@ -33,6 +38,7 @@ mod rows;
 mod signs;
 pub mod source;
 pub mod stated;
+mod turns;
 
 pub use branches::{Asked, Branch, BranchError, Branches, Noise, Origin, Span};
 pub use error::ReadError;

@@ -42,6 +42,17 @@ pub struct Point {
     pub row: usize,
 }
 
+/// Whether the signs of x and of P are turned.
+pub type Turned = [bool; 2];
+
+/// Turns the signs of x and P.
+pub(super) fn turn(points: &mut [Point], [x, force]: Turned) {
+    for point in points {
+        point.x = if x { -point.x } else { point.x };
+        point.force = if force { -point.force } else { point.force };
+    }
+}
+
 /// The points of a file, in its order; lengths and forces in SI or reduced units, signs as in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {

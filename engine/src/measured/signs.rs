@@ -1,8 +1,10 @@
 //! Where the bodies are apart, and the signs of x and P that follow from it.
 
+use super::apart::jump;
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
-use super::points::{Abscissa, Point};
+use super::points::{Abscissa, Point, Turned, turn};
 use super::role::Segment;
+use super::turns::{one_way, runs};
 
 /// A free end varies by less than this share of the range, and of the other end.
 const FLAT: [f64; 2] = [0.1, 0.3];
@@ -87,6 +89,11 @@ pub(super) fn signs(
         if is_in_order && stands_still(&x, &force) {
             return None;
         }
+        if let Some(found) = by_jumps(points, segments) {
+            said(abscissa, found, notes);
+            turn(points, found);
+            return Some(found);
+        }
         match free_end(&x, &force) {
             [true, _] => {}
             [_, true] => turned[0] = true,
@@ -116,6 +123,46 @@ pub(super) fn signs(
         notes.push(format!("{words}: its sign is turned"));
     }
     Some(turned)
+}
+
+/// The signs at which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed together most.
+fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Turned> {
+    let pieces = match segments {
+        None => one_way(points),
+        Some(of) => {
+            [Segment::Approach, Segment::Retraction].map(|segment| runs(points, of, segment)).concat()
+        }
+    };
+    let sum = |turned: Turned| -> f64 {
+        let mut sum = 0.0;
+        for piece in &pieces {
+            let mut piece = piece.clone();
+            turn(&mut piece, turned);
+            piece.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
+            let (x, force): (Vec<f64>, Vec<f64>) = piece.iter().map(|point| (point.x, point.force)).unzip();
+            if rises(&x, &force) == Some(true) {
+                sum += jump(&x, &force).map_or(0.0, |jump| jump.deviations);
+            }
+        }
+        sum
+    };
+    let all = [[false, false], [true, false], [false, true], [true, true]];
+    let found = all.map(|turned| (sum(turned), turned)).into_iter();
+    // Of equals the first: signs as they are in the file.
+    found.filter(|(sum, _)| *sum > 0.0).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, turned)| turned)
+}
+
+/// Says which signs are turned.
+fn said(abscissa: Abscissa, turned: Turned, notes: &mut Vec<String>) {
+    if turned[0] {
+        notes.push(format!("the {} grows as the bodies go apart: its sign is turned", abscissa.name()));
+    }
+    if turned[1] {
+        notes.push(
+            "the force is positive before the jump to the free part, where bodies pull: its sign is turned"
+                .to_owned(),
+        );
+    }
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without

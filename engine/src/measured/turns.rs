@@ -68,3 +68,30 @@ pub(super) fn rises(points: &[Point]) -> bool {
     let mean = |of: &[Point]| of.iter().map(|point| point.x).sum::<f64>() / of.len().max(1) as f64;
     mean(&points[points.len() - third..]) > mean(&points[..third])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn loops_are_cut_where_x_turns_round() {
+        // Three ways in and three back, with rows that go back a little.
+        let way =
+            |i: u32| f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 }) + 3.0 * f64::from(i % 2);
+        let point = |i: u32| Point { x: way(i), force: 0.0, radius: f64::NAN, row: i as usize + 1 };
+        let points: Vec<Point> = (0..300).map(point).collect();
+        let parts = one_way(&points);
+        assert_eq!(
+            parts.iter().map(|part| rises(part)).collect::<Vec<_>>(),
+            [true, false, true, false, true, false]
+        );
+        assert_eq!(parts.concat(), points);
+        assert!(
+            parts.iter().all(|part| part.len().abs_diff(50) <= 3),
+            "{:?}",
+            parts.iter().map(Vec::len).collect::<Vec<_>>()
+        );
+        // One way alone has no turn.
+        assert_eq!(one_way(&points[..50]).len(), 1);
+    }
+}

@@ -5,7 +5,7 @@ use super::table::aligned;
 use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
-use crate::fit::run::{Fit, Residual};
+use crate::fit::run::{Fit, Given, Residual};
 use crate::fit::{Reason, Verdict};
 use crate::measured::{Abscissa, Origin, Segment};
 use crate::units::{Quantity, UnitSystem};
@@ -25,6 +25,8 @@ pub struct FitReport {
     pub reasons: Vec<Reason>,
     /// The values.
     pub parameters: Vec<ParameterReport>,
+    /// What was known of values before, with an error, and what it makes up of theirs.
+    pub priors: Vec<Given>,
     /// The correlations of the values, in their order; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
@@ -176,6 +178,7 @@ impl FitReport {
             verdict: fit.verdict,
             reasons: fit.reasons.clone(),
             parameters,
+            priors: fit.priors.clone(),
             correlations: fit.correlations.clone(),
             chi_squared: fit.chi_squared,
             chi_squared_in_contact: fit.chi_squared_of[0],
