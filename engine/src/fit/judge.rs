@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
-//! | `scores` | would a gap of another exponent, or adhesion that grows with speed, fit better |
+//! | `scores` | would a gap of another exponent fit better |
 //! | `spring` | what would another spring give |
 //!
 //! Here: are the values such as anything has.
@@ -70,7 +70,6 @@ pub(super) fn reasons(
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
-    reasons.extend(scores::of_rate(problem, solved, scatter, inner));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     reasons.extend(unlikely(problem, solved, preset));
     reasons.extend(of_range(preset));

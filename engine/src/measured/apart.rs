@@ -16,8 +16,10 @@ const FEWEST: usize = 3;
 /// It is so many times the scatter behind it, and what the force goes on there is at most this share of it.
 const CLEAR: f64 = 3.0;
 const GOES_ON: f64 = 0.5;
-/// Rows that are off by so many σ from the median of five are set to it.
+/// Rows that are off by so many σ from the median of five, and by so many times the range of the other four, are set to it: a force that
+/// falls and jumps within a few rows has no outliers.
 const OFF: f64 = 5.0;
+const ALONE: f64 = 2.0;
 /// Of rises that are larger than those beside them so many are looked at, the largest first.
 const TRIED: usize = 8;
 /// Rows behind the jump by which a slope is told from their scatter.
@@ -60,7 +62,7 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
         let mut peaks: Vec<usize> =
             rows.clone().filter(|at| height(*at) * scale > SURE).filter(is_peak).collect();
         peaks.sort_by(|&a, &b| height(b).total_cmp(&height(a)));
-        let found = peaks.into_iter().take(TRIED).find(|at| is_flat(x, &force, *at, height(*at)));
+        let found = peaks.into_iter().take(TRIED).find(|at| is_flat(x, &force, *at, height(*at), w));
         let found = found.map(|at| Jump { at, deviations: height(at) * scale });
         best = best.into_iter().chain(found).max_by(|a, b| a.deviations.total_cmp(&b.deviations));
         w *= 2;
@@ -68,8 +70,8 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
     best.map(|found| Jump { at: sharpened(&force, found.at, sigma), ..found })
 }
 
-/// Whether the force behind `at` stands still beside a jump of this height.
-fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64) -> bool {
+/// Whether the force behind `at` stands still beside a jump of this height, which was seen in `w` rows.
+fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     let (x, rest) = (&x[at..], &force[at..]);
     if rest.len() < 2 * FEWEST {
         return range(rest.iter().copied()) <= GOES_ON * height;
@@ -82,7 +84,9 @@ fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64) -> bool {
     let off: Vec<f64> = x.iter().zip(rest).map(|(x, p)| p - slope * (x - x0)).collect();
     let middle = of(&off);
     let scatter = 1.4826 * of(&off.iter().map(|p| (p - middle).abs()).collect::<Vec<_>>());
-    (p1 - p0).abs() <= GOES_ON * height && CLEAR * scatter <= height
+    // A force that only goes on rises as much behind as before: that of w rows is then the height.
+    let over_rows = (p1 - p0).abs() * w as f64 / half as f64;
+    (p1 - p0).abs().max(over_rows) <= GOES_ON * height && CLEAR * scatter <= height
 }
 
 /// The values, but for rows that are off from those around them by more than `limit`.
@@ -92,7 +96,12 @@ fn without_outliers(values: &[f64], limit: f64) -> Vec<f64> {
         let middle = median(around(i).to_vec()).unwrap_or(*value);
         // At the ends and beside a jump the median of few is no better.
         let is_inside = i >= 2 && i + 2 < values.len();
-        if is_inside && (value - middle).abs() > limit { middle } else { *value }
+        let off = (value - middle).abs();
+        let is_alone = || {
+            let others = around(i).iter().enumerate().filter(|(k, _)| *k != 2).map(|(_, other)| *other);
+            off > ALONE * range(others)
+        };
+        if is_inside && off > limit && is_alone() { middle } else { *value }
     };
     values.iter().enumerate().map(cleaned).collect()
 }
@@ -134,8 +143,13 @@ mod tests {
             let noisy: Vec<f64> = whole.iter().map(|p| p + noise()).collect();
             let found = jump(&x, &noisy).unwrap();
             assert!(found.at.abs_diff(100) <= 1, "seed {seed}: {found:?}");
+            // Every fifth row: the force falls and jumps within a few.
+            let few = |of: &[f64]| of.iter().skip(4).step_by(5).copied().collect::<Vec<f64>>();
+            let quiet: Vec<f64> = whole.iter().map(|p| p + 0.1 * noise()).collect();
+            assert_eq!(jump(&few(&x), &few(&quiet)).map(|jump| jump.at), Some(20), "seed {seed}");
             let cut: Vec<f64> = contact.iter().map(|p| p + 0.1 * noise()).collect();
             assert_eq!(jump(&x[..100], &cut), None, "seed {seed}");
+            assert_eq!(jump(&few(&x[..100]), &few(&cut)), None, "seed {seed}");
         }
     }
 }

@@ -78,7 +78,7 @@ mod tests {
         // Three ways in and three back, with rows that go back a little.
         let way =
             |i: u32| f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 }) + 3.0 * f64::from(i % 2);
-        let point = |i: u32| Point { x: way(i), force: 0.0, radius: f64::NAN, row: i as usize + 1 };
+        let point = |i: u32| Point { x: way(i), force: 0.0, radius: 0.0, row: i as usize + 1 };
         let points: Vec<Point> = (0..300).map(point).collect();
         let parts = one_way(&points);
         assert_eq!(

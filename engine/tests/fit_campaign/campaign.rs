@@ -70,7 +70,10 @@ fn count(kind: &Kind, numbers: Range<u64>) -> Counted {
                 );
                 kept(kind, outcome);
             }
-            for reason in outcome.reasons.iter().take(1) {
+            if kind.is_model && std::env::var("PULLOFF_SAID").is_ok() {
+                println!("  {}: off by {off:.1} errors: {:#?}", outcome.number, outcome.said);
+            }
+            for reason in &outcome.reasons {
                 *reasons.entry(reason).or_default() += 1;
             }
         }
@@ -140,7 +143,7 @@ fn values_of_plain_kinds_are_right() {
 }
 
 #[test]
-#[ignore = "clipped, doubled, tared and long-ranged curves are still trusted"]
+#[ignore = "adhesion that has a range or grows with the speed of the edge is still trusted"]
 fn values_of_some_seeds_are_right_or_said_to_be_none() {
     let failures = campaign(&all(), &asked(0..4), false);
     assert!(failures.is_empty(), "{failures:#?}");

@@ -30,6 +30,9 @@ pub struct Outcome {
     pub verdict: String,
     /// The kinds of the reasons, or why it was refused.
     pub reasons: Vec<String>,
+    /// What the fit says of itself: the sentences of the reasons, its notes and the rows in contact and apart.
+    #[allow(dead_code, reason = "shown where a value is wrong")]
+    pub said: Vec<String>,
     pub found: Vec<Found>,
 }
 
@@ -72,6 +75,7 @@ pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
                 number,
                 verdict: "refused".to_owned(),
                 reasons: vec![error.clone()],
+                said: Vec::new(),
                 found: Vec::new(),
             };
         }
@@ -94,8 +98,14 @@ pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
             off: error.map(|error| (value - truth).abs() / error),
         }
     });
+    let sentences = fit.reasons.iter().map(|reason| reason.sentence.clone());
+    let points = format!(
+        "{:?} rows in contact and apart, {:?} dropped, {:?} {:?}",
+        fit.points, fit.dropped, fit.noise, fit.scatter
+    );
     Outcome {
         number,
+        said: sentences.chain(fit.notes.iter().cloned()).chain([points]).collect(),
         verdict: document["verdict"].as_str().unwrap_or("none").to_owned(),
         reasons: reasons.iter().map(|reason| reason["kind"].as_str().unwrap_or("").to_owned()).collect(),
         found: found.collect(),

@@ -1,106 +1,62 @@
-//! Whether another law would fit better: adhesion that grows with the speed of the edge, a gap that is no paraboloid.
+//! Whether another law would fit better: a gap that is no paraboloid.
 //!
 //! ```text
 //! r(n) = r + z n,     n = −z⊥ᵀr/|z⊥|²,     t = n |z⊥|/s,     |z⊥|² = zᵀz − (Jᵀz)ᵀ (JᵀJ)⁻¹ Jᵀz
 //! ```
 //!
 //! n is what the law has more than the model, 0 where the model holds; z is how the residuals change with it. What the free values take
-//! of it is left out by z⊥, so the test sees what a trend in fitted values does not. s is the noise of neighbours. C. R. Rao, Proc.
-//! Camb. Phil. Soc. 44, 50 (1948). False alarms: each 1 in 1000.
+//! of it is left out by z⊥, so the test sees what a trend in fitted values does not. s is the noise of neighbours, or that of the rows by
+//! which z is told, whichever is more. C. R. Rao, Proc.
+//! Camb. Phil. Soc. 44, 50 (1948). False alarms: 1 in 1000.
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
-use super::super::problem::{ADHESION, Problem, Target};
+use super::super::problem::{Problem, Target};
 use super::super::scatter::Scatter;
 use super::super::solve::Solved;
 use super::super::verdict::Reason;
 use super::ROUNDING;
-use crate::elementary::{ln, pow};
+use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
-use crate::measured::{Abscissa, Segment};
+use crate::measured::Segment;
 use crate::units::number::short;
 use nalgebra::{DMatrix, DVector};
 
-/// The share of right fits that each test flags.
+/// The share of right fits that the test flags.
 const FALSE_ALARM: f64 = 1e-3;
 /// Residuals count as so many s at most.
 const MOST: f64 = 3.0;
 
 /// n and t of the residuals that change by `z`.
-fn score(solved: &Solved, scatter: &Scatter, inner: &DMatrix<f64>, z: &DVector<f64>) -> Option<[f64; 2]> {
-    let s = scatter.contact?.max(ROUNDING);
-    let at = &solved.minimum.at;
-    let along = at.jacobian.tr_mul(z);
-    let left = z.norm_squared() - along.dot(&(inner * &along));
-    let most = MOST * f64::max(s, solved.scale);
-    let clipped = at.residuals.map(|r| r.clamp(-most, most));
-    // A robust fit leaves other residuals orthogonal to J than these.
-    let across = z.dot(&clipped) - along.dot(&(inner * at.jacobian.tr_mul(&clipped)));
-    let n = -across / left;
-    let t = n * left.sqrt() / (s * scatter.correlation.rows().sqrt());
-    (left > 1e-9 * z.norm_squared() && t.is_finite()).then_some([n, t])
-}
-
-/// Adhesion that grows with the speed of the edge, where the contact radius is measured: γ goes with v^n. Rows are taken as even in
-/// time.
-pub(super) fn of_rate(
+fn score(
     problem: &Problem,
     solved: &Solved,
     scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
-    /// Rows over which a speed is taken, on either side, as a share of all, and rows at least.
-    const SHARE: usize = 12;
-    const FEWEST: usize = 10;
-    let of_radius = problem.abscissa == Abscissa::Radius;
-    let is_adhesion = |target: &Target| {
-        matches!(target, Target::Adhesion(Segment::Retraction)) || *target == Target::Key(ADHESION.to_owned())
-    };
-    let j = problem.parameters.iter().position(|parameter| is_adhesion(&parameter.target))?;
-    if !(of_radius || problem.space) {
-        return None;
+    inner: &DMatrix<f64>,
+    z: &DVector<f64>,
+) -> Option<[f64; 2]> {
+    let s = scatter.contact?.max(ROUNDING);
+    let at = &solved.minimum.at;
+    let along = inner * at.jacobian.tr_mul(z);
+    let across = z - &at.jacobian * &along;
+    let left = z.dot(&across);
+    let most = MOST * f64::max(s, solved.scale);
+    let clipped = at.residuals.map(|r| r.clamp(-most, most));
+    // A robust fit leaves other residuals orthogonal to J than these, and one with priors none.
+    let mut slope = at.jacobian.tr_mul(&clipped);
+    for prior in &problem.priors {
+        slope[prior.parameter] +=
+            (solved.minimum.parameters[prior.parameter] - prior.mean) / prior.sigma.powi(2);
     }
-    let per = problem.per_point();
-    let jacobian = &solved.minimum.at.jacobian;
-    let mut z = DVector::zeros(jacobian.nrows());
-    let mut speeds: Vec<(usize, f64)> = Vec::new();
-    for branch in 0..problem.branches() {
-        let mut rows = problem.rows(solved, branch, false, 0);
-        rows.sort_by_key(|row| problem.data[row.index].point.row);
-        let is_out = rows.first().is_some_and(|row| problem.data[row.index].segment == Segment::Retraction);
-        if !is_out || rows.len() < FEWEST {
-            continue;
-        }
-        let radius = |at: usize| {
-            let point = problem.data[rows[at].index].point;
-            if of_radius { point.x } else { point.radius }
-        };
-        let half = (rows.len() / SHARE).max(2);
-        for at in 0..rows.len() {
-            let (from, to) = (at.saturating_sub(half), (at + half).min(rows.len() - 1));
-            let row = |at: usize| problem.data[rows[at].index].point.row as f64;
-            let speed = (radius(from) - radius(to)) / (row(to) - row(from));
-            if speed > 0.0 {
-                speeds.push((rows[at].index, ln(speed)));
-            }
-        }
-    }
-    let mean = speeds.iter().map(|(_, speed)| speed).sum::<f64>() / speeds.len().max(1) as f64;
-    for (index, speed) in speeds {
-        for part in 0..per {
-            z[per * index + part] = jacobian[(per * index + part, j)] * (speed - mean);
-        }
-    }
-    let [n, t] = score(solved, scatter, inner?, &z)?;
-    (n > 0.0 && beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
-        let sentence = format!(
-            "the work of adhesion grows with the speed of the edge, about as v^{} ({} standard errors): speeds tell of it",
-            short(n, 2),
-            short(t, 2)
-        );
-        Reason::new("rate", n, sentence)
-    })
+    let n = -(z.dot(&clipped) - along.dot(&slope)) / left;
+    // Of noise that differs from row to row; H. White, Econometrica 48, 817 (1980).
+    let used = z.iter().filter(|z| **z != 0.0).count() as f64;
+    let own: f64 = across.iter().zip(&clipped).map(|(z, r)| (z * (r + z * n)).powi(2)).sum();
+    let own = own * used / (used - along.len() as f64 - 1.0).max(1.0);
+    let variance = f64::max(s * s * left, own) * scatter.correlation.rows();
+    let t = n * left / variance.sqrt();
+    (left > 1e-9 * z.norm_squared() && t.is_finite()).then_some([n, t])
 }
 
 /// A gap that is no paraboloid: h goes with r^(2 + n).
@@ -126,7 +82,7 @@ pub(super) fn of_shape(
         LeastSquares::residuals(&other, u)
     };
     let z = (with(STEP)? - with(-STEP)?) / (2.0 * STEP);
-    let [n, t] = score(solved, scatter, inner?, &z)?;
+    let [n, t] = score(problem, solved, scatter, inner?, &z)?;
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
             "a gap that grows as r^n describes the points better than r^2: n near {} ({} standard errors from 2). The gap is no \
