@@ -68,7 +68,6 @@ fn bad_usage_is_refused() {
     let home = Home::new();
     home.refused(&["unload", "fig-9", "--format", "xml"], &["xml"]);
     home.refused(&["trace", "fig-9", "--format", "xml"], &["xml"]);
-    home.refused(&["trace", "fig-9", "--control", "force"], &["--control"]);
     home.refused(&["unload", "fig-9", "extra"], &["extra"]);
     home.refused(&["presets"], &["list"]);
 }
