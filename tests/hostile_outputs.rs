@@ -289,12 +289,22 @@ fn judge(number: u64) -> Result<i32, String> {
         return wrong("a temporary is left");
     }
     let overwrite = arguments.iter().any(|argument| argument == "--overwrite");
+    let command = COMMANDS[usize::try_from(number).unwrap() % COMMANDS.len()];
+    // Standard input is the preset.
+    let reads = |name: &str| {
+        command.split(' ').any(|word| word == name || word == "-" && name == "p.toml")
+            || command.contains("s.toml") && name == "p.toml"
+    };
     for (name, bytes) in &before {
         let name = name.to_string_lossy();
-        // What the command reads it names, and the file beside it; links stay links.
-        let own = name.strip_suffix(".spec.toml").unwrap_or(&name);
-        let is_read = arguments.iter().any(|argument| argument == own);
-        let may_change = overwrite && !is_read && !name.starts_with("to-") && name != "marked.csv";
+        // What the command reads, the file beside it, and the other names of both; links stay links.
+        let own = match name.strip_suffix(".spec.toml").unwrap_or(&name) {
+            "hard-preset.csv" => "p.toml",
+            "hard-points.csv" => "points.csv",
+            "hard-results.csv" => "r.csv",
+            own => own,
+        };
+        let may_change = overwrite && !reads(own) && !name.starts_with("to-") && name != "marked.csv";
         match after.get(&OsString::from(&*name)) {
             None => return wrong(&format!("{name} is gone")),
             Some(now) if now != bytes && !may_change => return wrong(&format!("{name} was changed")),

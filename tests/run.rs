@@ -211,13 +211,11 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
 const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];
 
 #[test]
-fn the_completions_of_every_shell_know_every_subcommand() {
+fn the_completions_of_every_shell_ask_the_program() {
     let home = Home::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = home.quiet(&["completions", shell]);
-        for name in SUBCOMMANDS.into_iter().chain(["overwrite", "anywhere", "config"]) {
-            assert!(text.contains(name), "{shell}: no {name}");
-        }
+        assert!(text.contains("pulloff") && text.contains("COMPLETE"), "{shell}: {text}");
     }
     let path = home.path("pulloff.bash");
     fs::write(&path, home.quiet(&["completions", "bash"])).unwrap();

@@ -16,6 +16,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{MapReport, json, table};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
+use pulloff_engine::text::quote;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -159,7 +160,7 @@ impl Arguments {
 
 /// An axis as typed: KEY=FROM..TO, each end as an assignment of the key.
 fn axis(flag: &str, text: &str, preset: &Preset) -> Result<Axis, Failure> {
-    let wrong = |what: &dyn std::fmt::Display| Failure::Usage(format!("{flag} {text}: {what}"));
+    let wrong = |what: &dyn std::fmt::Display| Failure::Usage(format!("{flag} {}: {what}", quote(text)));
     let expected = "expected KEY=FROM..TO or KEY=log:FROM..TO, such as groups.adhesion=log:0.001..1";
     let (key, range) = text.split_once('=').ok_or_else(|| wrong(&expected))?;
     let (key, range) = (key.trim(), range.trim());

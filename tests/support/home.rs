@@ -3,11 +3,13 @@
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+use std::ffi::OsString;
 use std::fs;
+use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A folder that is home, configuration and current folder of the program.
@@ -55,6 +57,32 @@ impl Home {
 
     pub fn run(&self, arguments: &[&str]) -> Ended {
         Ended::of(self.command(arguments).output().expect("a run"))
+    }
+
+    /// A run that is ended after `patience`; `None` where it had to be.
+    pub fn within(&self, arguments: &[OsString], patience: Duration) -> Option<Ended> {
+        // Files take whatever is written, and nobody need read them meanwhile.
+        let [mut out, mut err] = [(); 2].map(|()| tempfile::tempfile().expect("a file"));
+        let [to_out, to_err] = [&out, &err].map(|file| file.try_clone().expect("a handle"));
+        let mut child =
+            self.command(&[]).args(arguments).stdout(to_out).stderr(to_err).spawn().expect("a run");
+        let begun = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().expect("its state") {
+                break status;
+            }
+            if begun.elapsed() > patience {
+                child.kill().and_then(|()| child.wait()).expect("its end");
+                return None;
+            }
+            sleep(Duration::from_millis(5));
+        };
+        let [stdout, stderr] = [&mut out, &mut err].map(|file| {
+            let mut bytes = Vec::new();
+            file.rewind().and_then(|()| file.read_to_end(&mut bytes)).expect("what was said");
+            bytes
+        });
+        Some(Ended::of(Output { status, stdout, stderr }))
     }
 
     /// Starts the program, sends the signal once it is caught, and says how it ended.
