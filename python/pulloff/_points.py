@@ -45,7 +45,13 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
         raise DataError(f"the columns must have one dimension and one length: {shapes or 'there are none'}")
     units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
     header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
-    rows = (",".join(row) for row in zip(*(_cells(array) for array in arrays.values())))
+    cells = [_cells(array) for array in arrays.values()]
+    # A row of a table begins with a value: of texts before the first number only branches are.
+    for at, array in enumerate(arrays.values()):
+        if array.dtype.kind in "iuf" or any(isinstance(x, (int, float, np.number)) for x in array.tolist()):
+            break
+        cells[at] = [cell if _engine.is_branch(cell) else "-" for cell in cells[at]]
+    rows = (",".join(row) for row in zip(*cells))
     return "data", "\n".join([*stated, header, *rows, ""]).encode(errors="replace")
 
 

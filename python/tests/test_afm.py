@@ -75,8 +75,8 @@ def test_a_file_of_a_microscope_gives_what_it_was_made_of(file):
     start = pulloff.Problem(SPHERE).replace({"material.effective_modulus": 3 * MODULUS})
     found = start.fit(curve, FREE, sigma_x=1e-10, sigma_force=1e-9)
     assert found.problem["path.control.stiffness"] == STIFFNESS
-    assert found.values["material.effective_modulus"] == pytest.approx(MODULUS, rel=1e-3)
-    assert found.values["material.work_of_adhesion"] == pytest.approx(GAMMA, rel=1e-3)
+    assert found.parameters["material.effective_modulus"] == pytest.approx(MODULUS, rel=1e-3)
+    assert found.parameters["material.work_of_adhesion"] == pytest.approx(GAMMA, rel=1e-3)
 
 
 def test_what_contradicts_the_problem_is_refused_with_both(file):
