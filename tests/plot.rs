@@ -286,7 +286,7 @@ fn streams(pdf: &[u8]) -> Vec<String> {
 fn a_pdf_is_a_page_of_the_figure_with_letters_dashes_and_hatches() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |arguments: &[&str]| {
-        let output = pulloff(folder.path(), &[&["plot", "-o", "a.pdf"], arguments].concat());
+        let output = pulloff(folder.path(), &[&["plot", "-o", "a.pdf", "--overwrite"], arguments].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         std::fs::read(folder.path().join("a.pdf")).unwrap()
     };
