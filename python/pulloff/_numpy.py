@@ -2,9 +2,12 @@
 
 from typing import Any
 
+from ._engine import arrays_ready
+
 
 class _Numpy:
     def __getattr__(self, name: str) -> Any:
+        arrays_ready()
         import numpy
 
         value = getattr(numpy, name)

@@ -508,6 +508,7 @@ def _of_state(text: str, rows: Any, points: Any) -> _engine.Problem:
     if rows is not None:
         name, folder, radii, gaps, *more = rows
         rows = (name, folder, plain(radii), plain(gaps), *more)
+    _engine.arrays_ready()
     return _engine.Problem.of_state(text, rows, points)
 
 

@@ -1,5 +1,6 @@
 //! A result: its JSON, the very one that the program writes, and the columns of its CSV as arrays.
 
+use crate::arrays::arrays_ready;
 use crate::errors::in_python;
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
@@ -101,6 +102,7 @@ fn array<'py, 'a>(
     name: &str,
     cells: impl Iterator<Item = &'a Value> + Clone,
 ) -> PyResult<Bound<'py, PyAny>> {
+    arrays_ready(py)?;
     if TEXTS.contains(&name) {
         return Ok(cells.map(Value::as_str).collect::<Vec<_>>().into_pyobject(py)?.into_any());
     }

@@ -5,6 +5,7 @@
 //!
 //! | file | what lives there |
 //! |---|---|
+//! | `arrays` | numpy, imported so that Ctrl-C cannot leave half of it |
 //! | `errors` | errors of the engine as exceptions of the package |
 //! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is told |
 //! | `document` | a result: its JSON, its columns as arrays |
@@ -12,6 +13,7 @@
 //! | `fit` | a problem fitted to a measured curve |
 //! | `sweep` | many problems on all cores |
 
+mod arrays;
 mod document;
 mod errors;
 mod fit;
@@ -25,6 +27,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(arrays::arrays_ready, module)?)?;
     module.add_class::<document::Document>()?;
     module.add_class::<problem::Problem>()?;
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;

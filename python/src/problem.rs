@@ -1,5 +1,6 @@
 //! A problem, and all that is computed of it.
 
+use crate::arrays::arrays_ready;
 use crate::document::Document;
 use crate::errors;
 use crate::running::long;
@@ -158,7 +159,8 @@ impl Problem {
     }
 
     /// All that it is: the text of its preset, and what the files that this names hold.
-    fn state<'py>(&self, py: Python<'py>) -> State<'py> {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<State<'py>> {
+        arrays_ready(py)?;
         let rows = match &self.preset.gap {
             Shape::Profile(measured) => Some(measured.rows()),
             _ => None,
@@ -174,7 +176,7 @@ impl Problem {
             .source
             .as_ref()
             .map(|source| (source.name.clone(), source.folder.clone(), PyBytes::new(py, &source.bytes)));
-        (write(&self.preset), rows, points)
+        Ok((write(&self.preset), rows, points))
     }
 
     /// The way back from [`state`](Self::state): no file is read.
@@ -355,6 +357,7 @@ impl Problem {
                 format!("there is no equilibrium at the contact radius {s}: the gap is not known so far out");
             return Err(errors::of_state(py, &sentence));
         };
+        arrays_ready(py)?;
         let array = |values| PyArray1::from_vec(py, values);
         Ok((state.approach, array(state.pressure), array(state.gap)))
     }

@@ -1,5 +1,6 @@
 //! Many problems on all cores: the rows of a sweep as columns.
 
+use crate::arrays::arrays_ready;
 use crate::errors;
 use crate::problem::Problem;
 use crate::running::Listener;
@@ -213,6 +214,7 @@ fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
 }
 
 fn columns<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Bound<'py, PyDict>> {
+    arrays_ready(py)?;
     let all = PyDict::new(py);
     all.set_item("row", PyArray1::from_iter(py, made.numbers.iter().map(|row| row.cast_signed())))?;
     let values: Vec<Vec<Value>> = made.numbers.iter().map(|row| spec.values(*row)).collect();

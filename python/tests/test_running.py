@@ -27,8 +27,7 @@ WORK = {
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_ends_it(name):
     code = f"""
-        # numpy too: pulloff imports it at first use, and an interrupted import of it fails in a way of its own.
-        import numpy, pulloff, sys
+        import pulloff, sys
         problem, loop = pulloff.Problem("fig-9"), pulloff.Problem("fig-9-cycle")
         begun = False
         def fit():
