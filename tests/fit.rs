@@ -178,6 +178,65 @@ fn a_rerun_says_how_good_the_rows_are_that_it_passes_over() {
     }
 }
 
+/// However many threads there are, the files come in order, and the end sums them up.
+#[test]
+fn many_files_are_summed_up_in_their_order_on_any_number_of_threads() {
+    let home = Home::new();
+    let files: Vec<String> = (0..5).map(|i| format!("{i}.csv")).collect();
+    for file in &files {
+        home.file(file, LENS);
+    }
+    home.file("2.csv", "x,force\n1,2\n");
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let with =
+        |more: &[&str]| home.run(&[&["fit"], &files[..], &["lens", "--no-scan"], &FREE, more].concat());
+    let [one, four] = ["--jobs=1", "--jobs=4"].map(|jobs| with(&[jobs, "--format=json"]));
+    assert_eq!((one.status, four.status), (2, 2), "{}", one.err);
+    assert!(one.out == four.out && one.err == four.err);
+    let json: serde_json::Value = serde_json::from_str(&one.out).unwrap();
+    let names: Vec<&str> =
+        json["fits"].as_array().unwrap().iter().map(|fit| fit["file"].as_str().unwrap()).collect();
+    assert_eq!(names, ["0.csv", "1.csv", "3.csv", "4.csv"]);
+    let value = &json["fits"][0]["parameters"][0];
+    let summed = &json["summary"]["values"][0];
+    assert_eq!((&summed["key"], &summed["count"]), (&value["key"], &serde_json::json!(4)));
+    // Four times the same.
+    let [mean, of_one] = [&summed["mean"], &value["value"]].map(|number| number.as_f64().unwrap());
+    assert!(
+        (mean / of_one - 1.0).abs() < 1e-12 && summed["standard_deviation"].as_f64().unwrap() < 1e-9 * mean
+    );
+    // With a table what cannot be fitted is in it, and in the list.
+    let said = with(&["--table", "t.csv"]).out;
+    assert!(said.contains("4 of 5 files are described by the model"), "{said}");
+    assert!(said.contains("material.effective_modulus: mean ") && said.contains("\n  2.csv: "), "{said}");
+}
+
+/// What is known with an error is in the errors, by the option as by the key.
+#[test]
+fn an_error_of_what_is_given_is_in_those_of_the_values() {
+    let home = Home::new();
+    let fit = |more: &[&str]| {
+        let ran = home.run(&[&["fit", "lens", "--no-scan", "--format=json"], &FREE[..], more].concat());
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        let json: serde_json::Value = serde_json::from_str(&ran.out).unwrap();
+        json
+    };
+    let error = |json: &serde_json::Value| json["parameters"][0]["standard_error"].as_f64().unwrap();
+    let held = fit(&[]);
+    let known = fit(&["--uncertain", "R=3%"]);
+    assert!(error(&known) > 1.2 * error(&held), "{known}");
+    assert_eq!(known["priors"][0]["key"], "gap.radius_of_curvature");
+    assert_eq!(held["priors"], serde_json::json!([]));
+    let by_key = fit(&["--set", "data.uncertain=gap.radius_of_curvature=3%"]);
+    assert_eq!(known["parameters"], by_key["parameters"]);
+    let refused = |given: &str, said: &[&str]| {
+        home.refused(&[&["fit", "lens", "--no-scan"], &FREE[..], &["--uncertain", given]].concat(), said);
+    };
+    refused("gap.radus=3%", &["data.uncertain", "gap.radus=3%", "did you mean gap.radius_of_curvature"]);
+    refused("R=0%", &["data.uncertain", "above 0"]);
+    refused("R", &["expected KEY=ERROR"]);
+}
+
 /// The columns are said of the file that is given, whatever the preset's own file has.
 #[test]
 fn columns_are_judged_by_the_file_that_is_given() {

@@ -387,6 +387,7 @@ class Problem:
         data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike], Any, None] = None,
         free: Union[str, Sequence[str], None] = None,
         *,
+        uncertain: Optional[Mapping[str, Union[float, str]]] = None,
         columns: Optional[str] = None,
         segment: Optional[str] = None,
         x_range: Optional[Range] = None,
@@ -414,6 +415,10 @@ class Problem:
         free : sequence of str, optional
             The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument; those of the problem's
             ``data.free`` when left out.
+        uncertain : mapping, optional
+            Values that are known with an error, as ``{"path.control.stiffness": "10 %", "gap.radius_of_curvature": 1e-6}``: they
+            change as far as their standard deviations let them, which are then in those of the others; those of the problem's
+            ``data.uncertain`` when left out.
         columns : str, optional
             What the columns are where their names do not say it, as ``"x=1,force=2"`` or ``"position=Z,force=F"``.
         segment : {"approach", "retraction"}, optional
@@ -453,6 +458,7 @@ class Problem:
             "columns": columns,
             "segment": segment,
             "free": [free] if isinstance(free, str) else None if free is None else list(free),
+            "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
             "separate": separate,
             "robust": robust,
             "sigma": (sigma_x, sigma_force),

@@ -50,6 +50,7 @@ pub struct Wanted {
     columns: Option<String>,
     segment: Option<String>,
     free: Option<Vec<String>>,
+    uncertain: Option<String>,
     separate: bool,
     robust: bool,
     sigma: [Option<f64>; 2],
@@ -104,7 +105,11 @@ pub fn fitted(
         changes.push((data_keys::FILE, PresetValue::Points(Arc::new(source))));
     }
     // With the file that they are of, not with the one before.
-    for (key, text) in [(data_keys::COLUMNS, &wanted.columns), (data_keys::SEGMENT, &wanted.segment)] {
+    for (key, text) in [
+        (data_keys::COLUMNS, &wanted.columns),
+        (data_keys::SEGMENT, &wanted.segment),
+        (data_keys::UNCERTAIN, &wanted.uncertain),
+    ] {
         changes.extend(text.as_ref().map(|text| (key, PresetValue::Text(text.clone()))));
     }
     preset.set_all(changes).map_err(|invalid| match invalid {

@@ -185,3 +185,17 @@ def test_what_is_not_determined_is_said():
 def test_refused_data(data, free):
     with pytest.raises(pulloff.DataError):
         SPHERE.fit(data, free)
+
+
+def test_what_is_known_with_an_error_is_in_the_errors():
+    problem = pulloff.Problem("lens")
+    held = problem.fit(free=["E*", "gamma", "data.offset"])
+    given = {"gap.radius_of_curvature": "3 %"}
+    known = problem.fit(free=["E*", "gamma", "data.offset"], uncertain=given)
+    for key in ("material.effective_modulus", "material.work_of_adhesion"):
+        assert known.errors[key] > 1.2 * held.errors[key]
+    [prior] = known.to_dict()["priors"]
+    assert prior["key"] == "gap.radius_of_curvature"
+    assert prior["standard_error"] == pytest.approx(0.03 * prior["value"])
+    with pytest.raises(pulloff.DataError, match="did you mean|is no key"):
+        problem.fit(free=["E*"], uncertain={"gap.radus": "3 %"})

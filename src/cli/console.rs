@@ -26,6 +26,11 @@ pub struct Console {
 }
 
 impl Messages {
+    /// The share that is done.
+    pub fn bar(self, stop: Option<&Stop>) -> Bar<'_> {
+        Bar::begin(stop, self.quiet)
+    }
+
     /// For a command that begins now.
     pub fn open(self) -> Console {
         Console { messages: self, warned: Cell::new(0) }
@@ -57,7 +62,7 @@ impl Console {
 
     /// The share that is done.
     pub fn bar<'a>(&self, stop: Option<&'a Stop>) -> Bar<'a> {
-        Bar::begin(stop, self.is_quiet())
+        self.messages.bar(stop)
     }
 
     pub fn is_quiet(&self) -> bool {

@@ -1,29 +1,35 @@
 //! `pulloff fit`: the values of a problem that a measured curve gives, with their errors.
 
+mod done;
 mod files;
+mod summary;
 mod table;
 
+use self::done::Done;
 use self::table::Table;
 use super::console::{Console, Messages};
 use super::format::{self, Format, FormatArgument};
+use super::jobs::Jobs;
 use super::measured::{attach, columns, typed};
 use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown};
 use super::problem::Changes;
 use super::watch::Stop;
-use super::{Failure, Status, problem};
-use crate::store::atomic::folder_of;
+use super::{Failure, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
+use crate::sweep::in_order;
 use clap::{Args, ValueEnum};
-use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
+use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
 use pulloff_engine::measured::branches::{Asked, Span};
 use pulloff_engine::preset::{Preset, Value, data, write};
-use pulloff_engine::report::fit::{FitReport, residuals};
-use pulloff_engine::report::json;
+use pulloff_engine::progress::Progress;
 use pulloff_engine::text::{quote, show_path};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Fits that may wait for an earlier one.
+const WINDOW: u64 = 256;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
@@ -40,6 +46,10 @@ pub struct Arguments {
     free: Option<Vec<String>>,
     #[command(flatten)]
     changes: Changes,
+    /// Values that are known with an error, and change as far as it lets them: path.control.stiffness=10%,R=1um; those of the
+    /// preset's data.uncertain when left out
+    #[arg(long, value_name = "KEY=ERROR,...", value_delimiter = ',', allow_hyphen_values = true)]
+    uncertain: Option<Vec<String>>,
     /// Fit this key for approach and retraction apart
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
@@ -79,6 +89,8 @@ pub struct Arguments {
     /// Exit with 0, not 4, where the model does not describe the points; the verdict stays
     #[arg(long)]
     accept: bool,
+    #[command(flatten)]
+    jobs: Jobs,
     /// Write the points with their residuals to this file; of one file of points alone
     #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
@@ -125,110 +137,39 @@ enum Robust {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let console = arguments.messages.open();
+    let messages = arguments.messages;
+    let console = messages.open();
     let (files, loaded, options) = arguments.read(&console)?;
-    let mut sinks = arguments.sinks(&files, &loaded)?;
-    let table = &mut sinks.table;
+    let sinks = arguments.sinks(&files, &loaded)?;
     let stop = Stop::catch()?;
     let said = arguments.said()?;
-    let mut reports = Vec::new();
-    let mut worst = Status::Done;
-    for path in &files {
-        let shown = show_path(path);
-        if let Some(state) = table.as_ref().and_then(|table| table.state(path)) {
-            console.note(Some(&format!("{shown}: is in the table already: {state}")));
-            worst = worst.max(status_of(state));
-            continue;
+    let mut done = Done::new(arguments, &options, &console, sinks);
+    let left = done.left(&files);
+    let many = files.len() > 1;
+    let compute = |index: u64| {
+        let path = usize::try_from(index).ok().and_then(|index| left.get(index))?;
+        // Of many files each is a share of the whole, which is soon done.
+        let bar = (!many).then(|| messages.bar(Some(&stop)));
+        let progress = bar.as_ref().map_or(&stop as &dyn Progress, |bar| bar);
+        Some(one(path, &loaded, &said, &options, progress))
+    };
+    let bar = console.bar(None);
+    let (all, mut paths) = (left.len() as u64, left.iter());
+    in_order(0..all, arguments.jobs.count(), WINDOW, &compute, &stop, |found| {
+        let Some((found, path)) = found.and_then(|found| Some((found, paths.next()?))) else { return Ok(()) };
+        if many {
+            bar.report(1.0 - paths.len() as f64 / all as f64);
         }
-        let found = match one(path, &loaded, &said, &options, &console, &stop) {
-            Ok(done) => done,
-            Err(_) if stop.signal().is_some() => break,
-            // One bad file among many is told, and the others are fitted.
-            Err(failure) if files.len() > 1 => {
-                console.warn(&[failure.to_string()]);
-                worst = worst.max(failure.status());
-                if let Some(table) = table {
-                    table.add(path, None, &failed(shown, &failure))?;
-                }
-                continue;
-            }
-            Err(failure) => return Err(failure),
-        };
-        let report = FitReport::new(&shown, &found, arguments.poisson);
-        console.warn(&report.doubts);
-        // What was cut off is computed again by a rerun.
-        if let Some(table) = table.as_mut().filter(|_| stop.signal().is_none()) {
-            let fingerprint = table.fingerprint(path);
-            table.add(path, Some(&fingerprint), &report.row())?;
+        match found {
+            Ok(found) => done.keep(path, &found, &stop),
+            // What was stopped before there was anything.
+            Err(_) if stop.signal().is_some() => Ok(()),
+            Err(failure) if many => done.refuse(path, &failure),
+            Err(failure) => Err(failure),
         }
-        if let Some(sink) = &sinks.residuals {
-            sink.write(residuals(&found.residuals))?;
-        }
-        if let Some(sink) = &sinks.fitted {
-            let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));
-            let free = Value::Text(options.free.join(","));
-            preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
-            sink.write(write(&preset))?;
-        }
-        worst = worst.max(status_of(report.verdict.word()));
-        reports.push(report);
-        if stop.signal().is_some() {
-            break;
-        }
-    }
-    sinks.report.write(match (sinks.format, reports.as_slice()) {
-        (Format::Json, [report]) if files.len() == 1 => json(report)?,
-        (Format::Json, reports) => json(&serde_json::json!({ "schema": 1, "fits": reports }))?,
-        (Format::Csv, reports) => table::csv(&reports.iter().map(FitReport::row).collect::<Vec<_>>())?,
-        (Format::Table, reports) => reports.iter().map(FitReport::text).collect::<Vec<_>>().join("\n"),
     })?;
-    if let Some(signal) = stop.signal() {
-        let text = if table.is_some() {
-            "stopped: the table has the files that are done; the same command goes on from there"
-        } else if reports.is_empty() {
-            "stopped: nothing was fitted"
-        } else {
-            "stopped: the result has the best values so far"
-        };
-        let text = text.to_owned();
-        return Err(Failure::Interrupted { signal, text });
-    }
-    match worst {
-        Status::Done => console.end(),
-        Status::Doubtful => {
-            let text = "the points do not determine all values; the result says which";
-            Err(Failure::Doubtful(text.to_owned()))
-        }
-        Status::NotDescribed if arguments.accept => Ok(ExitCode::SUCCESS),
-        Status::NotDescribed => {
-            let text = "the model does not describe all points; the result says why, and --accept takes it all the same";
-            Err(Failure::NotDescribed(text.to_owned()))
-        }
-        Status::Mendable => {
-            let text = "not every file could be fitted; a warning says why";
-            Err(Failure::Usage(text.to_owned()))
-        }
-        _ => {
-            let text = "not every fit came to its end; the result has the best values so far";
-            Err(Failure::Incomplete(text.to_owned()))
-        }
-    }
-}
-
-/// The header and the row of a file that could not be fitted.
-fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
-    let text = failure.to_string().replace('\n', "; ");
-    [["file", "verdict"].map(str::to_owned).to_vec(), vec![file, text]]
-}
-
-/// How good a fit of this verdict is.
-fn status_of(verdict: &str) -> Status {
-    match Verdict::of(verdict) {
-        Some(Verdict::Describes) => Status::Done,
-        Some(Verdict::DoesNotDescribe) => Status::NotDescribed,
-        Some(Verdict::NotDetermined) => Status::Doubtful,
-        Some(Verdict::NotConverged) | None => Status::Failed,
-    }
+    drop(bar);
+    done.end(many, &loaded, &stop)
 }
 
 /// The fit to one file, or to the curve of the preset itself.
@@ -237,14 +178,13 @@ fn one(
     loaded: &Loaded,
     said: &[(&'static str, Value)],
     options: &Options,
-    console: &Console,
-    stop: &Stop,
+    progress: &dyn Progress,
 ) -> Result<Fit, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
     let mut preset = loaded.preset.clone();
     let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
     attach(&mut preset, other, said)?;
-    let fitted = fit_own(&preset, options, &console.bar(Some(stop)));
+    let fitted = fit_own(&preset, options, progress);
     fitted.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
         error => Failure::Usage(named(&error)),
@@ -285,7 +225,8 @@ impl Arguments {
     /// What is said of the files, with its keys.
     fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         let segment = self.segment.map(|branch| (data::SEGMENT, Value::Text(branch.word().to_owned())));
-        Ok(columns(self.columns.as_deref())?.into_iter().chain(segment).collect())
+        let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
+        Ok(columns(self.columns.as_deref())?.into_iter().chain(segment).chain(uncertain).collect())
     }
 
     /// Looks at all outputs. What ends in .toml is the preset with the fitted values, and the report goes to standard output.
@@ -384,10 +325,12 @@ impl Arguments {
 
     /// What decides the rows of a table, but for the files themselves.
     fn fingerprint(&self, preset: &Preset) -> String {
-        let Self { free, changes, separate, columns, range, segment, sigma_x, sigma_force, .. } = self;
+        let Self {
+            free, uncertain, changes, separate, columns, range, segment, sigma_x, sigma_force, ..
+        } = self;
         let Self { robust, no_scan, .. } = self;
         let said = format!(
-            "{free:?} {changes:?} {separate:?} {columns:?} {range:?} {segment:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
+            "{free:?} {uncertain:?} {changes:?} {separate:?} {columns:?} {range:?} {segment:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

@@ -12,6 +12,7 @@ mod failure;
 mod figures;
 mod fit;
 mod format;
+mod jobs;
 mod man;
 mod map;
 mod measured;

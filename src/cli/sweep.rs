@@ -3,6 +3,7 @@
 use super::Failure;
 use super::console::{Console, Messages};
 use super::format::{self, Format};
+use super::jobs::Jobs;
 use super::output::{self, Inputs, OUTPUT, Outputs, Replacing, Sink};
 use super::problem::Changes;
 use super::sweep_status::{Reporter, Subject};
@@ -20,10 +21,9 @@ use pulloff_engine::sweep::spec::Design;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
 use pulloff_engine::text::{quote, show_name, show_path};
 use std::fmt::Write as _;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::thread::{available_parallelism, sleep};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// The arguments of `pulloff sweep`.
@@ -83,9 +83,8 @@ struct Sweep {
     changes: Changes,
     #[command(flatten)]
     results: Results,
-    /// Threads, at most 1024 [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    jobs: Jobs,
     /// Compute the part i of n alone, such as 3/8
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
@@ -232,8 +231,7 @@ impl Sweep {
         let spec = loaded.spec;
         let results = self.open(&spec, &console)?;
         let stop = Stop::catch()?;
-        let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
-        let jobs = self.jobs.map_or_else(cores, usize::from);
+        let jobs = self.jobs.count();
         let [before, of] = [results.rows, self.shard.len(spec.rows)];
         let mut status = Reporter::begin(status, subject, [before, of])?;
         let bar = bar(of, before, console.is_quiet());

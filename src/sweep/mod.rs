@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`spec`] | the spec from the disk; the form by which its results are known again |
 //! | [`record`] | a row as a line of CSV |
+//! | [`in_order`](mod@in_order) | computations on every core, their results in order |
 //! | [`run`](mod@run) | rows on every core, written in order |
 //! | [`sidecar`] | the file beside the results that says what they are of |
 //! | [`output`] | the file of the results: begun, gone on with, appended to |
@@ -16,6 +17,7 @@
 //! | [`results`] | the results read by the name of a column |
 
 pub mod check;
+pub mod in_order;
 pub mod merge;
 pub mod output;
 pub mod record;
@@ -26,6 +28,7 @@ pub mod sidecar;
 pub mod spec;
 
 pub use check::check;
+pub use in_order::in_order;
 pub use merge::merge;
 pub use output::{Existing, Output, OutputError};
 pub use results::Results;

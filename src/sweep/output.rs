@@ -15,6 +15,7 @@ use crate::store::lock::lock_file;
 use crate::store::stream;
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::text::show_path;
+use rayon::ThreadPoolBuildError;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Seek, Write};
@@ -58,7 +59,7 @@ pub enum OutputError {
         what: Wrong,
     },
     #[error("cannot start the threads: {0}")]
-    Threads(String),
+    Threads(#[from] ThreadPoolBuildError),
 }
 
 impl Mend for OutputError {

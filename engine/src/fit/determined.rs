@@ -11,8 +11,7 @@
 
 use super::least_squares::Evaluated;
 use super::options::letter;
-use super::prior::Prior;
-use super::problem::{Parameter, Problem};
+use super::problem::{Parameter, Prior, Problem};
 use super::scatter::Correlation;
 use super::solve::{HUBER, Solved};
 use crate::elementary::{exp, exp_m1, ln};

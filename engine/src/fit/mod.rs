@@ -6,7 +6,7 @@
 //! | [`way`] | the ways of a device along a curve with snaps |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
-//! | [`prior`] | what is known of values before, with its errors |
+//! | [`prior`] | the minimum with what is known of values before |
 //! | [`problem`] | parameters, data, the paths of values |
 //! | [`derivatives`] | residuals and their derivatives |
 //! | `rings` | loading with rings of contact, which is left out |
@@ -19,6 +19,7 @@
 //! | [`scatter`] | the noise of the rows as neighbours show it |
 //! | [`chance`] | how likely a statistic is by chance |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
+//! | `uncertain` | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`run`] | all of it, in order |
 //!
@@ -43,6 +44,7 @@ pub mod run;
 pub mod scatter;
 pub mod solve;
 pub mod start;
+mod uncertain;
 pub mod verdict;
 pub mod way;
 
@@ -53,5 +55,7 @@ pub use verdict::{Reason, Verdict};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_given;
 #[cfg(test)]
 mod tests_of_waves;

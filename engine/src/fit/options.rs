@@ -4,7 +4,7 @@ use super::problem::{ADHESION, Target};
 use crate::measured::branches::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
-use crate::preset::schema::{Kind, Row};
+use crate::preset::schema::{CHOOSERS, Kind, Row};
 use crate::preset::{Preset, Value};
 use crate::text::{closest, greek, quote};
 use thiserror::Error;
@@ -56,6 +56,14 @@ pub enum FitError {
     Key {
         /// What was given, safe to show.
         key: String,
+        /// Why not.
+        why: String,
+    },
+    /// A value that is given with an error, as it cannot be given.
+    #[error("data.uncertain \"{given}\": {why}")]
+    Uncertain {
+        /// What was given, safe to show.
+        given: String,
         /// Why not.
         why: String,
     },
@@ -115,7 +123,8 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let gamma = ["γ", "gamma", "w"].contains(&name).then_some(ADHESION);
     let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
     else {
-        let known = rows.iter().map(|row| &*row.key);
+        let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
+        let known = rows.iter().filter(applies).map(|row| &*row.key);
         let meant = closest(name, known);
         return Err(refused(format!(
             "is no key of this preset{}",

@@ -2,8 +2,8 @@
 
 use super::options::{FitError, Options, target};
 use super::path::Reach;
-use super::prior::Prior;
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
+use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
 use crate::measured::branches::{Point, median};
 use crate::measured::{Abscissa, Branches, Segment};
@@ -42,16 +42,34 @@ pub fn posed(
     let has_waves = preset.gap.feature_length().is_some();
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let mut targets = targets(preset, branches, options)?;
-    let instrument = instrument(preset, branches, options, &mut targets, notes)?;
+    let known = known(preset, branches, options)?;
+    let is_known = known.iter().any(|known| known.target == Target::Baseline);
+    let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes)?;
+    targets.extend(
+        known
+            .iter()
+            .map(|known| &known.target)
+            .filter(|target| !targets.contains(target))
+            .cloned()
+            .collect::<Vec<_>>(),
+    );
     let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
     let parameters: Vec<Parameter> = parameters.collect();
     let attached = data.iter().filter(|datum| !datum.free).count();
-    let needed = PER_PARAMETER * parameters.len().max(2);
+    // What is known before takes the place of points.
+    let needed = PER_PARAMETER * (parameters.len() - known.len()).max(2);
     if attached < needed {
         return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
     }
     let abscissa = branches.abscissa;
-    let priors = of_baseline(&preset.data, branches, &parameters);
+    let at = |target: &Target| parameters.iter().position(|parameter| parameter.target == *target);
+    let mut priors: Vec<Prior> = known
+        .iter()
+        .filter_map(|known| at(&known.target).map(|at| known.prior(&parameters[at], at)))
+        .collect();
+    if !is_known {
+        priors.extend(of_baseline(&preset.data, branches, &parameters));
+    }
     let reach = reach(branches, &data);
     let sigma = branches.noise.sigma;
     let space = sigma[2] > 0.0 && abscissa != Abscissa::Radius;
@@ -107,13 +125,28 @@ fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Ve
     Ok(targets)
 }
 
+/// What is known of values before, where a fit is asked for.
+fn known(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<Uncertain>, FitError> {
+    if options.free.is_empty() {
+        return Ok(Vec::new());
+    }
+    let known = uncertain(preset, branches.abscissa, &preset.data.uncertain)?;
+    let splits =
+        options.separate && known.iter().any(|known| known.target == Target::Key(ADHESION.to_owned()));
+    if splits {
+        let why = "--separate makes two values of it, of which neither is given".to_owned();
+        return Err(FitError::Uncertain { given: ADHESION.to_owned(), why });
+    }
+    Ok(known)
+}
+
 /// Where the values between model and instrument start; a baseline that the points show is free too, and so is that of radii without
-/// rows apart, as far as a tare may be off.
+/// rows apart, as far as a tare may be off, unless it `is_known` before with an error of its own.
 fn instrument(
     preset: &Preset,
     branches: &Branches,
     options: &Options,
-    targets: &mut Vec<Target>,
+    (targets, is_known): (&mut Vec<Target>, bool),
     notes: &mut Vec<String>,
 ) -> Result<Instrument, FitError> {
     let given = &preset.data;
@@ -135,6 +168,7 @@ fn instrument(
             // One that a former fit has left says less than the points.
             instrument.baseline = found;
         }
+        None if is_known => {}
         None if branches.abscissa == Abscissa::Radius && is_asked => {
             let off = said(&preset.units, Quantity::Force, tare(branches));
             too(&format!("known to {off} before, since there is no free part"));
@@ -158,13 +192,13 @@ fn tare(branches: &Branches) -> f64 {
 }
 
 /// What is known of a baseline that no rows show.
-fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[Parameter]) -> Vec<Prior> {
+fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[Parameter]) -> Option<Prior> {
     let at = parameters.iter().position(|parameter| parameter.target == Target::Baseline);
     let unseen = branches.baseline.is_none().then_some(at).flatten();
-    unseen.map_or_else(Vec::new, |parameter| {
+    unseen.map(|parameter| {
         let inner = |value| parameters[parameter].inner(value);
         let mean = inner(given.baseline.unwrap_or(0.0));
-        vec![Prior { parameter, mean, sigma: inner(tare(branches)) }]
+        Prior { parameter, mean, sigma: inner(tare(branches)) }
     })
 }
 

@@ -12,17 +12,6 @@ use super::problem::Problem;
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
-/// What is known of one parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prior {
-    /// Its number.
-    pub parameter: usize,
-    /// Its u.
-    pub mean: f64,
-    /// The standard deviation of u.
-    pub sigma: f64,
-}
-
 impl Problem {
     /// The derivatives of the terms by u, a row for each.
     pub(super) fn of_priors(&self) -> DMatrix<f64> {

@@ -2,7 +2,6 @@
 
 use super::distance::{Nearest, Scaled};
 use super::path::{Path, Place, Reach};
-use super::prior::Prior;
 use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;
@@ -27,6 +26,20 @@ pub enum Target {
     Baseline,
     /// Its slope.
     Tilt,
+}
+
+impl Target {
+    /// Its dotted key; that of a branch's adhesion has the branch behind it.
+    #[must_use]
+    pub fn key(&self) -> String {
+        match self {
+            Self::Key(key) => key.clone(),
+            Self::Adhesion(segment) => format!("{ADHESION}.{}", segment.name()),
+            Self::Offset => OFFSET.to_owned(),
+            Self::Baseline => BASELINE.to_owned(),
+            Self::Tilt => TILT.to_owned(),
+        }
+    }
 }
 
 /// The key of the work of adhesion.
@@ -65,14 +78,19 @@ impl Parameter {
     /// Its dotted key; that of a branch's adhesion has the branch behind it.
     #[must_use]
     pub fn key(&self) -> String {
-        match &self.target {
-            Target::Key(key) => key.clone(),
-            Target::Adhesion(segment) => format!("{ADHESION}.{}", segment.name()),
-            Target::Offset => OFFSET.to_owned(),
-            Target::Baseline => BASELINE.to_owned(),
-            Target::Tilt => TILT.to_owned(),
-        }
+        self.target.key()
     }
+}
+
+/// What is known of one parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Its number.
+    pub parameter: usize,
+    /// Its u.
+    pub mean: f64,
+    /// The standard deviation of u.
+    pub sigma: f64,
 }
 
 /// One point that is fitted.

@@ -8,11 +8,11 @@ use super::judge::{doubts, of_spring, reasons};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
-use super::prior::Prior;
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
 use super::scatter::Scatter;
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
+use super::uncertain::{uncertain, written};
 use super::verdict::{Reason, Verdict};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Asked, Noise, Origin, Points, Segment};
@@ -115,6 +115,7 @@ impl Fit {
         let mut same = preset.clone();
         same.title.clone_from(&found.title);
         same.data.free.clone_from(&found.data.free);
+        same.data.uncertain.clone_from(&found.data.uncertain);
         same.basis.clone_from(&found.basis);
         let has_same_device = preset.path.control == found.path.control;
         same.path = found.path;
@@ -357,6 +358,16 @@ fn laid(
     notes: &mut Vec<String>,
 ) -> Preset {
     let mut laid = preset.clone();
+    // What was known before stays so: the next fit has the same points, which count once.
+    let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
+    let known: Vec<String> = problem
+        .priors
+        .iter()
+        .map(|prior| (&problem.parameters[prior.parameter], prior))
+        .filter(|(parameter, _)| known.iter().any(|known| known.target == parameter.target))
+        .map(|(parameter, prior)| written(parameter, prior))
+        .collect();
+    laid.data.uncertain = known.join(",");
     for parameter in &problem.parameters {
         let (key, value) = match &parameter.target {
             Target::Key(key) => (key.as_str(), found.get(key)),

@@ -27,10 +27,10 @@ impl Normal {
 }
 
 /// A loading device with a body: δ and P by s.
-struct Body<'a> {
-    state: &'a dyn Fn(f64) -> (f64, f64),
-    compliance: f64,
-    most: f64,
+pub(super) struct Body<'a> {
+    pub(super) state: &'a dyn Fn(f64) -> (f64, f64),
+    pub(super) compliance: f64,
+    pub(super) most: f64,
 }
 
 impl Body<'_> {
@@ -64,7 +64,7 @@ impl Body<'_> {
     }
 
     /// `n` samples of an approach to the radius `most` and of the retraction, evenly by the way, both from as far apart.
-    fn samples(&self, n: usize) -> Points {
+    pub(super) fn samples(&self, n: usize) -> Points {
         let (top, fold) = (self.way(self.most), self.way(self.fold()));
         let bottom = fold - 0.4 * (top - fold);
         let mut points = Points {
@@ -91,7 +91,7 @@ impl Body<'_> {
     }
 }
 
-fn sphere(e: f64, w: f64, r: f64) -> impl Fn(f64) -> (f64, f64) {
+pub(super) fn sphere(e: f64, w: f64, r: f64) -> impl Fn(f64) -> (f64, f64) {
     move |s| {
         let delta = s * s / r - (TAU * w * s / e).sqrt();
         (delta, 4.0 * e * s.powi(3) / (3.0 * r) - (8.0 * PI * w * e * s.powi(3)).sqrt())
@@ -106,7 +106,7 @@ pub(super) fn preset(gap: &str, e: f64, w: f64, more: &str) -> Preset {
     read("test", &text).unwrap()
 }
 
-const SPHERE: &str = "shape='sphere'\nradius_of_curvature=2.0";
+pub(super) const SPHERE: &str = "shape='sphere'\nradius_of_curvature=2.0";
 
 pub(super) fn run(preset: &Preset, points: &Points, free: &[&str]) -> Fit {
     let free = free.iter().map(|key| (*key).to_owned()).collect();

@@ -2,6 +2,7 @@
 
 use super::data::{
     BASELINE, COLUMNS, DataSpec, FILE, FREE, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF, TILT,
+    UNCERTAIN,
 };
 use super::given::Given;
 use super::invalid::Invalid;
@@ -39,6 +40,7 @@ impl Given<'_> {
             baseline: optional(self, BASELINE),
             tilt: optional(self, TILT),
             free: self.text(FREE),
+            uncertain: self.text(UNCERTAIN),
             segment: segment
                 .map(|word| if word == SEGMENTS[0] { Segment::Approach } else { Segment::Retraction }),
         };

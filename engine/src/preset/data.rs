@@ -21,6 +21,8 @@ pub const COLUMNS: &str = "data.columns";
 pub const SEGMENT: &str = "data.segment";
 /// The key of the keys that a fit may change.
 pub const FREE: &str = "data.free";
+/// The key of the values that are given with an error.
+pub const UNCERTAIN: &str = "data.uncertain";
 /// The key of whose word counts of the instrument.
 pub const SETTINGS: &str = "data.settings";
 /// The words of [`SETTINGS`].
@@ -47,6 +49,8 @@ pub struct DataSpec {
     pub segment: Option<Segment>,
     /// The keys that a fit may change, dotted or by their letters, with commas between.
     pub free: String,
+    /// The values that are given with an error: `path.control.stiffness=10%`, with commas between.
+    pub uncertain: String,
 }
 
 impl DataSpec {

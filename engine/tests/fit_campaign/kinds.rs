@@ -30,9 +30,11 @@ pub const ADHESION: &str = "material.work_of_adhesion";
 pub const STIFFNESS: &str = "path.control.stiffness";
 
 /// The kinds of the thousand seeds.
-pub const MEASURED: [Kind; 9] = [
+pub const MEASURED: [Kind; 11] = [
     Kind { name: "white noise", is_model: true, make: white },
     Kind { name: "k free", is_model: true, make: free_spring },
+    Kind { name: "k known to 10 %", is_model: true, make: uncertain_spring },
+    Kind { name: "R known to 3 %", is_model: true, make: uncertain_radius },
     Kind { name: "20 rows", is_model: true, make: |random| few(random, 20) },
     Kind { name: "10 rows", is_model: true, make: |random| few(random, 10) },
     Kind { name: "tilt", is_model: true, make: tilted },
@@ -192,6 +194,30 @@ fn free_spring(random: &mut Random) -> Made {
     let mut made = ball.behind(k * random.scale(0.8, 1.25), &record, random);
     made.free.push("k");
     made.truth.push((STIFFNESS, k));
+    made
+}
+
+/// A spring that is off by as much as is said of it.
+fn uncertain_spring(random: &mut Random) -> Made {
+    let ball = Ball::draw(random);
+    let k = random.scale(0.3, 2.0) * ball.contact();
+    let device = Device { stiffness: k, rows: 200, apart: 0.25 };
+    let sigma = random.scale(0.002, 0.01) * ball.critical();
+    let record = Record::of(&device.cycle(&ball.body()), Seen::Position).noisy(sigma, random);
+    let mut made = ball.behind(k * (1.0 + 0.1 * random.normal()), &record, random);
+    made.preset.push_str("\n[data.uncertain]\n\"path.control.stiffness\" = \"10 %\"\n");
+    made.truth.push((STIFFNESS, k));
+    made
+}
+
+/// A radius that is off by as much as is said of it.
+fn uncertain_radius(random: &mut Random) -> Made {
+    let mut ball = Ball::draw(random);
+    let sigma = random.scale(0.003, 0.02) * ball.critical();
+    let record = looped(&ball, 150, 0.3).noisy(sigma, random);
+    ball.radius *= 1.0 + 0.03 * random.normal();
+    let mut made = ball.under_grips(&record, random);
+    made.preset.push_str("\n[data]\nuncertain = \"gap.radius_of_curvature=3%\"\n");
     made
 }
 

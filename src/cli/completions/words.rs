@@ -17,10 +17,11 @@ use std::path::Path;
 const GAP_SHAPE: &str = "gap.shape";
 
 /// What the value of an argument is, by the name of the argument; in every subcommand the same.
-const KNOWN: [(&str, Words); 10] = [
+const KNOWN: [(&str, Words); 11] = [
     ("preset", presets_or_files),
     ("assignments", assignments),
     ("free", free),
+    ("uncertain", uncertain),
     ("x_key", axes),
     ("y_key", axes),
     ("control", controls),
@@ -166,10 +167,19 @@ fn values(row: &Parameter, typed: &str, key: &str) -> Vec<CompletionCandidate> {
 
 /// Keys with commas between.
 fn free(current: &OsStr) -> Vec<CompletionCandidate> {
+    numbers(current, "")
+}
+
+fn uncertain(current: &OsStr) -> Vec<CompletionCandidate> {
+    numbers(current, "=")
+}
+
+/// The keys that a fit can change, the last of a list, each with what stands behind it.
+fn numbers(current: &OsStr, behind: &str) -> Vec<CompletionCandidate> {
     let (Some(preset), typed) = (preset(), typed(current)) else { return Vec::new() };
     let (before, last) = typed.rfind(',').map_or(("", typed), |at| typed.split_at(at + 1));
     let numbers = preset.rows().filter(|row| row.kind.is_number() && !row.key.starts_with("path.start"));
-    let keys = numbers.filter_map(|row| candidate(last, row.key.to_string(), &row.meaning));
+    let keys = numbers.filter_map(|row| candidate(last, format!("{}{behind}", row.key), &row.meaning));
     keys.map(|candidate| candidate.add_prefix(before)).collect()
 }
 

@@ -60,6 +60,16 @@ impl Table {
         Ok(table)
     }
 
+    /// The names of its columns.
+    pub(super) fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// Its rows.
+    pub(super) fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// What a row of `path` is computed from.
     pub(super) fn fingerprint(&self, path: &Path) -> String {
         let bytes = std::fs::read(path).unwrap_or_default();
@@ -118,20 +128,30 @@ impl Table {
     }
 }
 
-/// The rows of fits with their headers as one table; a cell that a fit lacks is empty.
-pub(super) fn csv(fits: &[[Vec<String>; 2]]) -> Result<String, Failure> {
-    let mut columns: Vec<&String> = Vec::new();
+/// The rows of fits with their headers under one header; a cell that a fit lacks is empty.
+pub(super) fn csv_rows(fits: &[[Vec<String>; 2]]) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut columns: Vec<String> = Vec::new();
     for [header, _] in fits {
-        columns.extend(header.iter().filter(|name| !columns.contains(name)).collect::<Vec<_>>());
+        columns.extend(header.iter().filter(|name| !columns.contains(name)).cloned().collect::<Vec<_>>());
     }
+    let row = |[header, row]: &[Vec<String>; 2]| {
+        let cell = |name: &String| {
+            let place = header.iter().position(|own| own == name);
+            place.and_then(|place| row.get(place)).cloned().unwrap_or_default()
+        };
+        columns.iter().map(cell).collect()
+    };
+    let rows = fits.iter().map(row).collect();
+    (columns, rows)
+}
+
+/// The same as CSV.
+pub(super) fn csv(fits: &[[Vec<String>; 2]]) -> Result<String, Failure> {
+    let (columns, rows) = csv_rows(fits);
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&columns)?;
-    for [header, row] in fits {
-        let cell = |name: &&String| {
-            let place = header.iter().position(|own| own == *name);
-            place.and_then(|place| row.get(place)).map_or("", String::as_str)
-        };
-        writer.write_record(columns.iter().map(cell))?;
+    for row in rows {
+        writer.write_record(row)?;
     }
     let bytes = writer.into_inner().map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())

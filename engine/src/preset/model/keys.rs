@@ -61,6 +61,7 @@ impl Preset {
             data::FILE => Value::Points(std::sync::Arc::clone(data.source.as_ref()?)),
             data::COLUMNS => Some(&*data.columns).filter(|columns| !columns.is_empty())?.into(),
             data::FREE => Some(&*data.free).filter(|free| !free.is_empty())?.into(),
+            data::UNCERTAIN => Some(&*data.uncertain).filter(|given| !given.is_empty())?.into(),
             data::SETTINGS => data.is_alone.then_some(data::SETTINGS_OF[1])?.into(),
             data::SEGMENT => data.segment?.name().into(),
             data::OFFSET => data.offset?.into(),

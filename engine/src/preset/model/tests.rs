@@ -39,6 +39,7 @@ fn another(key: &str) -> Value {
         "data.file" => Value::Points(Arc::new(points())),
         "data.columns" => "x=1,force=2".into(),
         "data.free" => "E*,gamma".into(),
+        "data.uncertain" => "gap.radius_of_curvature=1%".into(),
         "data.segment" => "approach".into(),
         "data.settings" => "preset".into(),
         _ => Value::Number(0.75),
@@ -91,6 +92,7 @@ const FIELDS: &[&str] = &[
     "data.file",
     "data.columns",
     "data.free",
+    "data.uncertain",
     "data.segment",
     "data.settings",
     "data.offset",
@@ -108,8 +110,17 @@ const FIELDS: &[&str] = &[
 fn the_table_is_total() {
     // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
     let Preset { title: _, units: _, material, gap, basis, path, data, files: _ } = wavy();
-    let DataSpec { source: _, columns: _, offset: _, baseline: _, tilt: _, segment: _, free: _, is_alone: _ } =
-        data;
+    let DataSpec {
+        source: _,
+        columns: _,
+        offset: _,
+        baseline: _,
+        tilt: _,
+        segment: _,
+        free: _,
+        uncertain: _,
+        is_alone: _,
+    } = data;
     let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}

@@ -4,6 +4,7 @@ use super::MISTAKES;
 use super::mistake::Origin;
 use super::sheet::{Place, Sheet};
 use crate::gap::shapes::harmonics::MOST_WAVES;
+use crate::preset::data;
 use crate::preset::family;
 use crate::preset::former::{self, Kept};
 use crate::preset::groups;
@@ -59,6 +60,13 @@ impl Sheet {
                         }
                         _ => self.lay(table, inner, place),
                     }
+                }
+                (DeValue::Table(inner), Some(row), None) if row.key == data::UNCERTAIN => {
+                    let mut parts = Vec::new();
+                    let value = assigned("", inner, &mut parts).map(|()| Value::Text(parts.join(",")));
+                    let value =
+                        value.and_then(|value| row.check(value).map_err(|invalid| invalid.to_string()));
+                    self.put(&row, value.map_err(|found| row.wrong_type(found)), origin);
                 }
                 (other, Some(row), _) => {
                     let value = Value::from_toml(other).map_err(|found| row.wrong_type(found));
@@ -166,6 +174,19 @@ impl Sheet {
         }
         self.mistake(origin, Invalid::Syntax { what });
     }
+}
+
+/// The keys of a table with their values, as `KEY=VALUE`; what is wrong with one in words.
+fn assigned(prefix: &str, table: &DeTable<'_>, parts: &mut Vec<String>) -> Result<(), String> {
+    for (name, value) in table {
+        let name = name.get_ref();
+        let key = if prefix.is_empty() { name.to_string() } else { format!("{prefix}.{name}") };
+        match value.get_ref() {
+            DeValue::Table(inner) => assigned(&key, inner, parts)?,
+            value => parts.push(format!("{key}={}", Value::from_toml(value)?)),
+        }
+    }
+    Ok(())
 }
 
 /// Whether a key holds other keys.

@@ -275,6 +275,13 @@ pub static PARAMETERS: &[Parameter] = &[
         Kind::Text { max_chars: 300 },
     )
     .or(Fallback::Text("")),
+    row(
+        data::UNCERTAIN,
+        "uncertain",
+        "values that are known with an error, and may change in a fit as far as it lets them: path.control.stiffness=10%",
+        Kind::Text { max_chars: 300 },
+    )
+    .or(Fallback::Text("")),
     row(data::SEGMENT, "segment", "the branch of it that is used alone", Kind::Choice(&data::SEGMENTS))
         .or(Fallback::Described("none: both are used")),
     row(

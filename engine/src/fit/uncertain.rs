@@ -1,0 +1,97 @@
+//! Values that are given with an error: `path.control.stiffness=10%,gap.radius_of_curvature=50 um+-1 um`.
+//!
+//! An error is a share of the value in per cent, or a number with or without a unit. The value is that of the preset, unless one
+//! stands before `+-` or `±`: so writes it a fit, whose own value is known from the points too and must not be counted twice.
+
+use super::options::{FitError, target};
+use super::problem::{Parameter, Prior, Target};
+use crate::measured::Abscissa;
+use crate::preset::{Preset, Value};
+use crate::text::quote;
+
+/// The signs between a value and its error; the first is written.
+const BETWEEN: [&str; 2] = ["+-", "±"];
+/// The largest error in units of the value: more is no knowledge of what must be positive.
+const MOST: f64 = 1.0;
+
+/// A value that is given with an error.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Uncertain {
+    /// What it is.
+    pub(super) target: Target,
+    /// The value, in base units.
+    mean: f64,
+    /// Its standard deviation, likewise.
+    sigma: f64,
+}
+
+/// The values that `text` gives with an error.
+///
+/// # Errors
+/// [`FitError::Uncertain`]: a key that cannot be fitted or stands twice, no number, an error of zero, below it or above the value
+/// of what must be positive.
+pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Result<Vec<Uncertain>, FitError> {
+    let mut all: Vec<Uncertain> = Vec::new();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let refused = |why: String| FitError::Uncertain { given: quote(part), why };
+        let (key, error) = part.split_once('=').ok_or_else(|| {
+            refused(
+                "expected KEY=ERROR, as in path.control.stiffness=10% or gap.radius_of_curvature=1 um"
+                    .to_owned(),
+            )
+        })?;
+        let target = target(preset, abscissa, key.trim()).map_err(|error| match error {
+            FitError::Key { why, .. } => refused(why),
+            other => other,
+        })?;
+        if all.iter().any(|other| other.target == target) {
+            return Err(refused("stands twice".to_owned()));
+        }
+        let name = target.key();
+        let row = preset.row(&name).ok_or_else(|| refused("has no value".to_owned()))?;
+        let number =
+            |text: &str| preset.number(&row, text.trim()).map_err(|invalid| refused(invalid.to_string()));
+        let split = BETWEEN.iter().find_map(|sign| error.split_once(sign));
+        let (mean, error) = match split {
+            Some((mean, error)) => (number(mean)?, error),
+            None => match preset.get(&name) {
+                Some(Value::Number(value)) => (value, error),
+                // What lies between model and instrument is nothing unless it is said.
+                _ => (0.0, error),
+            },
+        };
+        let sigma = match error.trim().strip_suffix('%') {
+            Some(share) => {
+                let share: f64 =
+                    share.trim().parse().map_err(|_| refused("expected a number before %".to_owned()))?;
+                0.01 * share * mean.abs()
+            }
+            None => number(error)?,
+        };
+        if !(sigma > 0.0 && sigma.is_finite()) {
+            return Err(refused("a standard deviation is above 0".to_owned()));
+        }
+        if matches!(target, Target::Key(_)) && sigma > MOST * mean {
+            return Err(refused(
+                "a standard deviation of what is positive is at most its value, 100 %".to_owned(),
+            ));
+        }
+        all.push(Uncertain { target, mean, sigma });
+    }
+    Ok(all)
+}
+
+impl Uncertain {
+    /// What it says of the parameter number `at`; an error of a logarithm is a share.
+    pub(super) fn prior(&self, parameter: &Parameter, at: usize) -> Prior {
+        let sigma = self.sigma / parameter.slope(self.mean).abs();
+        Prior { parameter: at, mean: parameter.inner(self.mean), sigma }
+    }
+}
+
+/// The text of what was known of a parameter before its fit, for the next fit of the same points.
+pub(super) fn written(parameter: &Parameter, prior: &Prior) -> String {
+    let mean = parameter.value(prior.mean);
+    let sigma = prior.sigma * parameter.slope(mean).abs();
+    format!("{}={mean:?}{}{sigma:?}", parameter.key(), BETWEEN[0])
+}

@@ -1,0 +1,159 @@
+//! The fits of many files as they come: told, put into the table, and in the end summed up.
+
+use super::summary::Summary;
+use super::{Arguments, Sinks, table};
+use crate::cli::console::Console;
+use crate::cli::format::Format;
+use crate::cli::watch::Stop;
+use crate::cli::{Failure, Status};
+use crate::store::Loaded;
+use crate::store::atomic::folder_of;
+use pulloff_engine::fit::{Fit, Options, Verdict};
+use pulloff_engine::preset::{Value, data, write};
+use pulloff_engine::report::fit::{FitReport, residuals};
+use pulloff_engine::report::json;
+use pulloff_engine::text::show_path;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// What has been fitted so far.
+pub(super) struct Done<'a> {
+    arguments: &'a Arguments,
+    options: &'a Options,
+    console: &'a Console,
+    sinks: Sinks,
+    reports: Vec<FitReport>,
+    worst: Status,
+}
+
+impl<'a> Done<'a> {
+    pub(super) fn new(
+        arguments: &'a Arguments,
+        options: &'a Options,
+        console: &'a Console,
+        sinks: Sinks,
+    ) -> Self {
+        Self { arguments, options, console, sinks, reports: Vec::new(), worst: Status::Done }
+    }
+
+    /// The files that the table does not have yet.
+    pub(super) fn left(&mut self, files: &[PathBuf]) -> Vec<PathBuf> {
+        let mut left = Vec::new();
+        for path in files {
+            let Some(state) = self.sinks.table.as_ref().and_then(|table| table.state(path)) else {
+                left.push(path.clone());
+                continue;
+            };
+            self.console.note(Some(&format!("{}: is in the table already: {state}", show_path(path))));
+            self.worst = self.worst.max(status_of(state));
+        }
+        left
+    }
+
+    /// Writes what was found of a file to all that is asked for.
+    pub(super) fn keep(&mut self, path: &Path, found: &Fit, stop: &Stop) -> Result<(), Failure> {
+        let arguments = self.arguments;
+        let report = FitReport::new(&show_path(path), found, arguments.poisson);
+        self.console.warn(&report.doubts);
+        // What was cut off is computed again by a rerun.
+        if let Some(table) = self.sinks.table.as_mut().filter(|_| stop.signal().is_none()) {
+            let fingerprint = table.fingerprint(path);
+            table.add(path, Some(&fingerprint), &report.row())?;
+        }
+        if let Some(sink) = &self.sinks.residuals {
+            sink.write(residuals(&found.residuals))?;
+        }
+        if let Some(sink) = &self.sinks.fitted {
+            let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));
+            let free = Value::Text(self.options.free.join(","));
+            preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
+            sink.write(write(&preset))?;
+        }
+        self.worst = self.worst.max(status_of(report.verdict.word()));
+        self.reports.push(report);
+        Ok(())
+    }
+
+    /// Says why a file among many could not be fitted.
+    pub(super) fn refuse(&mut self, path: &Path, failure: &Failure) -> Result<(), Failure> {
+        self.console.warn(&[failure.to_string()]);
+        self.worst = self.worst.max(failure.status());
+        match &mut self.sinks.table {
+            Some(table) => table.add(path, None, &failed(show_path(path), failure)),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the report, of one of `many` files with a summary, and says how it ended.
+    pub(super) fn end(self, many: bool, loaded: &Loaded, stop: &Stop) -> Result<ExitCode, Failure> {
+        let Self { arguments, console, sinks, reports, worst, .. } = self;
+        let summary = match &sinks.table {
+            Some(table) => Summary::of(table.header(), table.rows()),
+            None => Summary::of_reports(&reports),
+        };
+        let summary = Some(summary).filter(|_| many);
+        sinks.report.write(match (sinks.format, reports.as_slice()) {
+            (Format::Json, [report]) if !many => json(report)?,
+            (Format::Json, reports) => {
+                json(&serde_json::json!({ "schema": 1, "fits": reports, "summary": summary }))?
+            }
+            (Format::Csv, reports) => table::csv(&reports.iter().map(FitReport::row).collect::<Vec<_>>())?,
+            (Format::Table, reports) => {
+                let summary = summary.map(|summary| summary.text(&loaded.preset));
+                reports.iter().map(FitReport::text).chain(summary).collect::<Vec<_>>().join("\n")
+            }
+        })?;
+        if let Some(signal) = stop.signal() {
+            let text = if sinks.table.is_some() {
+                "stopped: the table has the files that are done; the same command goes on from there"
+            } else if reports.is_empty() {
+                "stopped: nothing was fitted"
+            } else {
+                "stopped: the result has the best values so far"
+            };
+            let text = text.to_owned();
+            return Err(Failure::Interrupted { signal, text });
+        }
+        ended(worst, arguments.accept, console)
+    }
+}
+
+/// The end of a command whose worst fit ended so.
+fn ended(worst: Status, accepts: bool, console: &Console) -> Result<ExitCode, Failure> {
+    match worst {
+        Status::Done => console.end(),
+        Status::Doubtful => {
+            let text = "the points do not determine all values; the result says which";
+            Err(Failure::Doubtful(text.to_owned()))
+        }
+        Status::NotDescribed if accepts => Ok(ExitCode::SUCCESS),
+        Status::NotDescribed => {
+            let text = "the model does not describe all points; the result says why, and --accept takes it all the same";
+            Err(Failure::NotDescribed(text.to_owned()))
+        }
+        Status::Mendable => {
+            let text = "not every file could be fitted; a warning says why";
+            Err(Failure::Usage(text.to_owned()))
+        }
+        _ => {
+            let text = "not every fit came to its end; the result has the best values so far";
+            Err(Failure::Incomplete(text.to_owned()))
+        }
+    }
+}
+
+/// The header and the row of a file that could not be fitted.
+fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
+    let text = failure.to_string().replace('\n', "; ");
+    [["file", "verdict"].map(str::to_owned).to_vec(), vec![file, text]]
+}
+
+/// How good a fit of this verdict is.
+fn status_of(verdict: &str) -> Status {
+    match Verdict::of(verdict) {
+        Some(Verdict::Describes) => Status::Done,
+        Some(Verdict::DoesNotDescribe) => Status::NotDescribed,
+        Some(Verdict::NotDetermined) => Status::Doubtful,
+        Some(Verdict::NotConverged) | None => Status::Failed,
+    }
+}
