@@ -232,7 +232,10 @@ fn an_error_of_what_is_given_is_in_those_of_the_values() {
     let refused = |given: &str, said: &[&str]| {
         home.refused(&[&["fit", "lens", "--no-scan"], &FREE[..], &["--uncertain", given]].concat(), said);
     };
-    refused("gap.radus=3%", &["data.uncertain", "gap.radus=3%", "did you mean gap.radius_of_curvature"]);
+    refused(
+        "gap.radius_of_curvatre=3%",
+        &["data.uncertain", "gap.radius_of_curvatre=3%", "did you mean gap.radius_of_curvature"],
+    );
     refused("R=0%", &["data.uncertain", "above 0"]);
     refused("R", &["expected KEY=ERROR"]);
 }

@@ -6,7 +6,7 @@ use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::{CHOOSERS, Kind, Row};
 use crate::preset::{Preset, Value};
-use crate::text::{closest, greek, quote};
+use crate::text::{closest_key, greek, quote};
 use thiserror::Error;
 
 /// What is asked of a fit.
@@ -124,8 +124,8 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     let Some(row) = rows.iter().find(is_named).or_else(|| rows.iter().find(|row| Some(&*row.key) == gamma))
     else {
         let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
-        let known = rows.iter().filter(applies).map(|row| &*row.key);
-        let meant = closest(name, known);
+        let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
+        let meant = closest_key(name, known);
         return Err(refused(format!(
             "is no key of this preset{}",
             meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
