@@ -1,9 +1,9 @@
 //! What the words above a table say of its columns: their names, their units, the branch of its rows.
 
-use super::lines::{Table, Words, is_gap, is_number};
+use super::lines::Table;
 use super::role::{Role, Segment, named, squashed, unit_named};
+use super::words::{Words, count_known, is_units, keyed, unit_cells};
 use crate::cells::{Head, Separator, heads};
-use crate::units::Unit;
 use std::collections::HashMap;
 
 /// A header: the names and units of the columns.
@@ -11,18 +11,6 @@ use std::collections::HashMap;
 pub(super) struct Header {
     pub line: usize,
     pub heads: Vec<Head>,
-}
-
-/// The value behind `key` in a remark such as `columns: height vDeflection`.
-fn keyed<'a>(words: &Words<'a>, key: &str) -> Option<&'a str> {
-    let (before, value) = words.text.split_once(':')?;
-    before.trim().eq_ignore_ascii_case(key).then(|| value.trim())
-}
-
-/// Whether a remark begins another table: JPK writes one for each segment.
-pub(super) fn parts_tables(remark: &str) -> bool {
-    let words = Words { line: 0, text: remark, is_remark: true };
-    ["segment", "segmentIndex", "columns"].iter().any(|key| keyed(&words, key).is_some())
 }
 
 /// The names in the line by which an Igor text file begins waves: `WAVES/D/N=(512) ZSnsr, Defl`.
@@ -62,11 +50,6 @@ fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<Head>> {
         }
         way => heads(text, way, &dimensions),
     })
-}
-
-/// How many columns of a header are known.
-fn count_known(heads: &[Head]) -> usize {
-    heads.iter().filter(|(name, _)| named(name).is_some()).count()
 }
 
 /// `heads` as those of the columns of `table`, if they can be: names behind the last column must mean nothing, and columns
@@ -142,44 +125,6 @@ fn with_units(mut heads: Vec<Head>, units: &[&str]) -> Vec<Head> {
             head.1.take().or_else(|| Some((*unit).to_owned()).filter(|unit| !unit.is_empty() && unit != "-"));
     }
     heads
-}
-
-/// How a row is parted that has a fault in its first cell, below a header with at least a force and a way.
-pub(super) fn row_under(above: &[Words], text: &str) -> Option<(Separator, usize)> {
-    let names =
-        above.iter().rev().find(|words| !words.is_remark && !is_units(words.text, Separator::of(text)))?;
-    let separator = Separator::of(names.text);
-    let heads = heads(names.text, separator, &super::role::dimensions());
-    let cells = separator.cells(text);
-    let is =
-        heads.len() == cells.len() && count_known(&heads) >= 2 && cells.iter().any(|cell| is_number(cell));
-    (is && cells.iter().skip(1).all(|cell| is_number(cell) || is_gap(cell) || Segment::of(cell).is_some()))
-        .then_some((separator, cells.len()))
-}
-
-/// The cells of a line of units, without brackets.
-fn unit_cells(line: &str, separator: Separator) -> Vec<&str> {
-    let cells = separator.cells(line);
-    let cells = if cells.len() > 1 { cells } else { Separator::of(line).cells(line) };
-    cells.into_iter().map(|cell| cell.trim_matches(['(', ')', '[', ']'])).collect()
-}
-
-/// Whether a line has units and nothing else: a length, a force or an area at least, and no name of a column.
-fn is_units(line: &str, separator: Separator) -> bool {
-    /// The longest unit, in bytes: the others may be of quantities that nobody knows here.
-    const LONGEST: usize = 10;
-    let cells = unit_cells(line, separator);
-    let is_ours = |cell: &&str| {
-        unit_named(cell, true).is_some_and(|unit| super::role::dimensions().contains(&unit.dimension()))
-    };
-    let is_unit = |cell: &&str| {
-        cell.is_empty()
-            || *cell == "-"
-            || Unit::parse(cell, 0).is_ok()
-            || is_ours(cell)
-            || (cell.len() <= LONGEST && named(cell).is_none() && !cell.contains(char::is_whitespace))
-    };
-    cells.len() > 1 && cells.iter().any(is_ours) && cells.iter().all(is_unit)
 }
 
 /// The branch of all rows of a table: `# segment: retract`, or a line that names it alone.

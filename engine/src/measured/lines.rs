@@ -5,23 +5,11 @@
 //! the rows that begins like a number stays a row, so that its fault is told.
 
 use super::error::{MOST_COLUMNS, ROW_RANGE, ReadError};
-use super::header::{parts_tables, row_under};
-use super::role::Segment;
+use super::words::{Words, is_branch, is_gap, is_number, is_stamp, parts_tables, row_under};
 use crate::cells::{LONGEST_LINE, LineFault, Separator, is_unprintable, remark};
 
 /// At most so many lines of words above a table are looked at for its header.
 const LINES_ABOVE: usize = 256;
-
-/// A line of words.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Words<'a> {
-    /// Its number, from 1.
-    pub line: usize,
-    /// It, without what marks a remark.
-    pub text: &'a str,
-    /// Whether it is a remark.
-    pub is_remark: bool,
-}
 
 /// A table: rows of as many cells each.
 #[derive(Debug)]
@@ -59,73 +47,12 @@ pub(super) struct Outline<'a> {
     pub footer: Option<(usize, usize)>,
 }
 
-/// Whether a cell says that nothing was measured: empty, not a number, out of the range of the instrument.
-pub(super) fn is_gap(cell: &str) -> bool {
-    const WORDS: [&str; 22] = [
-        "nan",
-        "na",
-        "n/a",
-        "null",
-        "none",
-        "inf",
-        "infinity",
-        "overload",
-        "overrange",
-        "overflow",
-        "ovld",
-        "ovl",
-        "ol",
-        "saturated",
-        "sat",
-        "out of range",
-        "nan(ind)",
-        "1.#qnan",
-        "1.#ind",
-        "1.#inf",
-        "missing",
-        "invalid",
-    ];
-    let cell = cell.trim_start_matches(['-', '+', '#', '*']).trim_end_matches('!');
-    cell.is_empty()
-        || ["num", "div/0", "value", "ref"].iter().chain(&WORDS).any(|word| cell.eq_ignore_ascii_case(word))
-}
-
-/// Whether a cell is a number, its decimals behind a point or a comma.
-pub(super) fn is_number(cell: &str) -> bool {
-    let mut digits = cell.strip_prefix(['-', '+', '\u{2212}']).unwrap_or(cell);
-    if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.' || c == ',') {
-        return false;
-    }
-    if let Some(at) = digits.find(['e', 'E', 'd', 'D']) {
-        let exponent = digits[at + 1..].trim_start_matches(['-', '+']);
-        if exponent.is_empty() || !exponent.bytes().all(|byte| byte.is_ascii_digit()) {
-            return false;
-        }
-        digits = &digits[..at];
-    }
-    digits.bytes().filter(|byte| !byte.is_ascii_digit()).count() <= 1
-        && digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.' || byte == b',')
-        && digits.bytes().any(|byte| byte.is_ascii_digit())
-}
-
-/// The word of a branch, by letters.
-fn is_branch(cell: &str) -> bool {
-    cell.starts_with(char::is_alphabetic) && Segment::of(cell).is_some()
-}
-
 /// Whether a line begins as numbers do, and goes on with something that is no rule.
 fn begins_as_number(text: &str) -> bool {
     let text = text.trim_start_matches(['"', '\t']);
     let rest = text.trim_start_matches(['+', '-', '\u{2212}']);
     text.starts_with(|c: char| c.is_ascii_digit() || c == '.')
         || (rest.len() < text.len() && rest.starts_with(|c: char| c.is_alphanumeric() || c == '.'))
-}
-
-/// A time or a date.
-fn is_stamp(cell: &str) -> bool {
-    cell.starts_with(|c: char| c.is_ascii_digit())
-        && cell.contains([':', '/', '-'])
-        && cell.chars().all(|c| c.is_ascii_digit() || ":/-.,TZ".contains(c))
 }
 
 /// How the cells of a line are parted, if it is a row on its own: at least two values, a number among them, or one number.

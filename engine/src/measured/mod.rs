@@ -5,6 +5,7 @@
 //! | [`role`] | what a column is: its unit, what a person says of columns |
 //! | `names` | the names by which headers say it |
 //! | [`read`](mod@read) | the text of a file → columns, every fault with its line and column |
+//! | `words` | what a line says beside its numbers, and what a cell is |
 //! | `lines` | the lines of a file → tables of rows, and the words above them |
 //! | `header` | the names, units and branches that words above a table say |
 //! | `choice` | which columns are used, as a header or a person says |
@@ -39,6 +40,7 @@ mod signs;
 pub mod source;
 pub mod stated;
 mod turns;
+mod words;
 
 pub use branches::{Asked, Branch, BranchError, Branches, Noise, Origin, Span};
 pub use error::ReadError;

@@ -2,9 +2,9 @@
 
 use super::choice::Wanted;
 use super::error::Fault;
-use super::lines::is_gap;
 use super::role::{Role, Segment};
 use super::stated::Stated;
+use super::words::{is_gap, last_digit};
 use crate::cells::{self, CellFault, Faults};
 use crate::text::quote;
 use crate::units::Unit;
@@ -196,12 +196,4 @@ impl Measured {
             self.notes.push(format!("column {number} is the {word} of the contact: its radius is {formula}"));
         }
     }
-}
-
-/// The place of the last digit of a number: 0.01 of 1.23, 1e-9 of 12e-9.
-pub(super) fn last_digit(text: &str) -> f64 {
-    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    10.0_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)).clamp(-300, 300))
 }

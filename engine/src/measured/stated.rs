@@ -3,8 +3,8 @@
 //! Settings are lines such as `Force Constant, nN/nm: 0.2`, `k (N/m)<tab>0.018`, `# springConstant: 0.04` or, of afmformats,
 //! a block of JSON in the remarks (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
 
-use super::lines::Words;
 use super::role::squashed;
+use super::words::{Words, last_digit};
 use crate::cells::{LARGEST_NUMBER, Separator, heads};
 use crate::text::quote;
 use crate::units::{Dimension, Quantity, Unit};
@@ -154,7 +154,7 @@ impl Settings {
                 return;
             }
         };
-        self.add(setting, number, 0.5 * super::rows::last_digit(&pointed), unit.as_ref());
+        self.add(setting, number, 0.5 * last_digit(&pointed), unit.as_ref());
     }
 
     /// Adds what is stated in `unit`, in SI without one.
