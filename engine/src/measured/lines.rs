@@ -1,7 +1,7 @@
 //! The lines of a file → its tables of rows, with the words above each.
 //!
 //! A row is a line of which a first cell is a number, a missing value or the name of a branch, and which is parted into as
-//! many cells as the rows above it. Words part tables: settings and headers above them, a footer below them. A line among
+//! many cells as the rows above it. In a file without such rows it may begin with texts, such as the name of a sample. Words part tables: settings and headers above them, a footer below them. A line among
 //! the rows that begins like a number stays a row, so that its fault is told.
 
 use super::error::{MOST_COLUMNS, ROW_RANGE, ReadError};
@@ -20,6 +20,8 @@ pub(super) struct Table<'a> {
     pub separator: Separator,
     /// How many there are, in the first row.
     pub cells: usize,
+    /// The cell by which a row is known, the first that is no text.
+    pub lead: usize,
     /// The rows with their lines.
     pub rows: Vec<(usize, &'a str)>,
 }
@@ -41,6 +43,8 @@ pub(super) struct Outline<'a> {
     pub words: Vec<Words<'a>>,
     /// The lines that are wrong as a whole.
     pub faults: Vec<(usize, LineFault)>,
+    /// Whether rows may begin with texts.
+    is_led: bool,
     /// Whether it is a text file of Igor.
     pub is_igor: bool,
     /// The words below the last table that are no remarks, first and last line.
@@ -53,6 +57,29 @@ fn begins_as_number(text: &str) -> bool {
     let rest = text.trim_start_matches(['+', '-', '\u{2212}']);
     text.starts_with(|c: char| c.is_ascii_digit() || c == '.')
         || (rest.len() < text.len() && rest.starts_with(|c: char| c.is_alphanumeric() || c == '.'))
+}
+
+/// Whether a cell may be the first of a row.
+fn is_value(cell: &str) -> bool {
+    is_number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell)
+}
+
+/// How the cells of a line are parted that begins with texts, if it is a row: two numbers at least; and where the first number is.
+fn led_row(text: &str) -> Option<(Separator, usize, usize)> {
+    let of = |separator: Separator| {
+        let cells = separator.cells(text);
+        let lead = cells.iter().position(|cell| is_number(cell))?;
+        let is_row = cells.iter().filter(|cell| is_number(cell)).count() >= 2
+            && cells[lead..].iter().all(|cell| is_value(cell) || separator != Separator::Spaces);
+        is_row.then_some((separator, cells.len(), lead))
+    };
+    separators(text).find_map(of)
+}
+
+/// What may part the cells of a line.
+fn separators(text: &str) -> impl Iterator<Item = Separator> {
+    let parting = [';', '\t', '|', ','].into_iter().filter(|c| text.contains(*c)).map(Separator::Character);
+    parting.chain([Separator::Spaces])
 }
 
 /// How the cells of a line are parted, if it is a row on its own: at least two values, a number among them, or one number.
@@ -71,17 +98,28 @@ fn row(text: &str) -> Option<(Separator, usize)> {
             && (values >= 2 || cells.len() == 1);
         is_row.then_some((separator, cells.len()))
     };
-    let parting = [';', '\t', '|', ','].into_iter().filter(|c| text.contains(*c)).map(Separator::Character);
-    parting.chain([Separator::Spaces]).find_map(of)
+    separators(text).find_map(of)
 }
 
 impl<'a> Outline<'a> {
-    /// The pieces of a text.
+    /// The pieces of a text. Rows begin with a value, or where there are too few of these, with texts.
     ///
     /// # Errors
     /// [`ReadError`] where there is no use in reading on.
     pub(super) fn of(text: &'a str) -> Result<Self, ReadError> {
+        let outline = Self::led(text, false)?;
+        let most = |of: &Self| of.tables.iter().map(|table| table.rows.len()).max().unwrap_or(0);
+        if most(&outline) >= *ROW_RANGE.start() {
+            return Ok(outline);
+        }
+        let led = Self::led(text, true)?;
+        Ok(if most(&led) > most(&outline) { led } else { outline })
+    }
+
+    /// The pieces of a text, whose rows may begin with texts if `is_led`.
+    fn led(text: &'a str, is_led: bool) -> Result<Self, ReadError> {
         let mut outline = Self {
+            is_led,
             is_igor: text.lines().next().is_some_and(|first| first.trim() == "IGOR"),
             ..Self::default()
         };
@@ -135,10 +173,9 @@ impl<'a> Outline<'a> {
             return false;
         }
         let cells = || table.separator.cells(text);
-        let first = |cell: &&str| is_number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell);
         let is_row = begins_as_number(text) || {
             let cells = cells();
-            cells.len() == table.cells && cells.first().is_some_and(first)
+            cells.len() == table.cells && cells.get(table.lead).is_some_and(|cell| is_value(cell))
         };
         if is_row {
             table.rows.push((line, text));
@@ -148,7 +185,10 @@ impl<'a> Outline<'a> {
 
     /// Begins a table with a line that is a row, the words above it in `above`.
     fn begins(&mut self, line: usize, text: &'a str, above: &mut Vec<Words<'a>>) -> Result<bool, ReadError> {
-        let Some((separator, cells)) = row(text).or_else(|| row_under(above, text)) else {
+        let plain =
+            || row(text).or_else(|| row_under(above, text)).map(|(separator, cells)| (separator, cells, 0));
+        let Some((separator, cells, lead)) = self.is_led.then(|| led_row(text)).flatten().or_else(plain)
+        else {
             return Ok(false);
         };
         if cells > MOST_COLUMNS {
@@ -168,7 +208,13 @@ impl<'a> Outline<'a> {
         }
         let separator = commas(separator, above, text).ok_or(ReadError::Commas(line))?;
         let cells = separator.cells(text).len();
-        self.tables.push(Table { above: std::mem::take(above), separator, cells, rows: vec![(line, text)] });
+        self.tables.push(Table {
+            above: std::mem::take(above),
+            separator,
+            cells,
+            lead,
+            rows: vec![(line, text)],
+        });
         Ok(true)
     }
 }

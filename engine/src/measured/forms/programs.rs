@@ -130,6 +130,17 @@ pub(super) fn of_own_programs() -> Vec<Form> {
         })
         .position()
         .halves(),
+        form("texts before the numbers", {
+            let rows = lines(&rows(), |i, x, p| format!("PDMS {};good;{x};{p}", i / 10));
+            format!("sample;remark;indentation (nm);force (nN)\n{rows}")
+        }),
+        form("a text before the numbers, parted by spaces", {
+            format!("name indentation_nm force_nN\n{}", lines(&rows(), |i, x, p| format!("S{i} {x} {p}")))
+        }),
+        form("texts before the numbers, without a header", {
+            lines(&rows(), |i, x, p| format!("PDMS-{i},{x},{p},ok"))
+        })
+        .after("x=2 [nm],force=3 [nN]"),
         form("settings behind equal signs", {
             let rows = lines(&rows(), |_, x, p| format!("{x} {p}"));
             format!("# k = 42.5 mN/m\n# bead diameter: 10 um\n# z [nm] force [nN]\n{rows}")
