@@ -105,6 +105,17 @@ fn turning(keymap: &Keymap) -> String {
     if is_short { format!(" {}", keys.join(" ")) } else { String::new() }
 }
 
+/// The ways to write a standard error behind its value, the longest first; nothing without one. With one digit it is rounded up.
+fn errors(theme: Theme, error: Option<f64>) -> Vec<String> {
+    let Some(error) = error else { return vec![String::new()] };
+    let up = |error: f64| {
+        let place = 10.0_f64.powf(error.log10().floor());
+        // What is one digit already stays what it is.
+        place * (error / place - 1e-6).ceil()
+    };
+    [short(error, 2), short(up(error), 1)].map(|text| theme.text(&format!(" ±{text}"))).to_vec()
+}
+
 fn knob_line(
     theme: Theme,
     units: &UnitSystem,
@@ -116,28 +127,25 @@ fn knob_line(
     let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
     // A standard error is worth more than the signs that the value can be turned.
     let ends = if error.is_some() { "" } else { ends };
-    let error = error.map_or_else(String::new, |error| {
-        theme.text(&format!(" ±{}", short(row.shown(units, error).number.abs(), 2)))
-    });
+    let error = error.map(|error| row.shown(units, error).number.abs());
     let name = theme.symbols(&row.label);
     let label = format!("{mark}{:<9} ", if is_free { format!("{name}?") } else { name });
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
-    let room_of_number = room.saturating_sub(error.chars().count());
-    // As many digits as there is room for, so that no unit is cut.
-    let shown = |x, most: usize| {
+    // As many digits as there is room for, so that neither a unit nor an error is cut.
+    let shown = |x, most: usize, errors: &[String]| {
         let shown = row.shown(units, x);
         let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
-        (4..=most)
-            .rev()
-            .map(text)
-            .find(|text| text.chars().count() <= room_of_number)
-            .unwrap_or_else(|| text(3))
+        let with = |error: &String| {
+            let texts = (3..=most).rev().map(|digits| text(digits) + error);
+            texts.into_iter().find(|text| text.chars().count() <= room)
+        };
+        errors.iter().find_map(with).unwrap_or_else(|| text(3))
     };
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => shown(*x, 7) + &error,
+        Some(Value::Number(x)) => shown(*x, 7, &errors(theme, error)),
         Some(Value::Control(Control::Stiffness(k))) => {
-            format!("k {}", shown(*k, 5))
+            format!("k {}", shown(*k, 5, &errors(theme, None)))
         }
         Some(value) => theme.text(&value.to_string()),
     };
