@@ -23,7 +23,7 @@ fn says(session: &mut Session, line: &str) {
 fn drawn(session: &Session, view: View) -> [Vec<(f64, f64)>; 2] {
     let figure = Subject::of(&session.model).unwrap().figure(view);
     [true, false].map(|approach| {
-        let is = |mark: &&Mark| mark.sign == Sign::Measured { loading: approach };
+        let is = |mark: &&Mark| matches!(mark.sign, Sign::Measured { loading, .. } if loading == approach);
         figure.marks.iter().filter(is).map(|mark| mark.at).collect()
     })
 }
@@ -98,7 +98,8 @@ fn many_points_are_thinned_for_drawing_alone() {
     let path = session.folder.path().join("many.csv");
     std::fs::write(&path, format!("delta,force\n{}\n", rows.join("\n"))).unwrap();
     says(&mut session, &format!("data {}", path.display()));
-    assert!(session.status().contains("many.csv: 20000 points"), "{}", session.status());
+    let said = session.status();
+    assert!(said.contains("many.csv: approach: ") && said.contains(" in contact, "), "{said}");
     let count: usize = drawn(&session, View::ForceApproach).iter().map(Vec::len).sum();
     assert!((2000..=3000).contains(&count), "{count}");
 }
@@ -149,8 +150,30 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
         says(&mut again, &line);
     }
     assert_eq!(again.model.preset, session.model.preset);
-    // Beside another value the errors of all of them are gone; u takes the whole fit back.
+    // Beside another R, another file or other rows the errors of all of them are gone.
     let fitted = session.model.preset.clone();
+    let file = tempfile::tempdir().unwrap();
+    let curve = include_str!("../presets/data/lens.csv").replace("-227.8", "-227.9");
+    std::fs::write(file.path().join("other.csv"), curve).unwrap();
+    let file = file.path().join("other.csv");
+    for (key, value) in [
+        ("gap.radius_of_curvature", "1.1 mm"),
+        (data::FILE, file.to_str().unwrap()),
+        (data::FREE_PART, "x=..9um"),
+        (data::SIGNS, "x=+,force=+"),
+        (data::SKIP, "2"),
+    ] {
+        session.set(key, value);
+        assert_ne!(session.model.preset, fitted, "{key}: {}", session.status());
+        assert!([adhesion, modulus].iter().all(|key| session.model.standard_error(key).is_none()), "{key}");
+        session.does(Id::Undo);
+        assert_eq!(session.model.preset, fitted, "{key}");
+    }
+    session.set(data::SKIP, "2");
+    let said = session.status();
+    assert!(said.contains("approach: 191 in contact, 157 apart; retraction: "), "{said}");
+    session.does(Id::Undo);
+    // And so they are beside another value; u takes the whole fit back.
     session.set(adhesion, "60 mJ/m^2");
     assert!([adhesion, modulus].iter().all(|key| session.model.standard_error(key).is_none()));
     session.does(Id::Undo);

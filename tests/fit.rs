@@ -47,13 +47,87 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
         let (at, error) = (found["value"].as_f64().unwrap(), found["standard_error"].as_f64().unwrap());
         assert!((at - value).abs() < 4.0 * error && error < 0.05 * value, "{key}: {at} +- {error}");
     }
-    assert_eq!(document["points"].as_u64(), Some(700));
+    let rows = &document["rows"];
+    assert_eq!(rows["approach"], serde_json::json!({"contact": 191, "free": 159, "jump": 0, "dropped": 0}));
+    assert_eq!(counted(rows, "contact") + counted(rows, "free"), 700);
+    let residuals = home.text("r.csv");
+    assert!(residuals.starts_with("row,segment,part,"), "{residuals}");
+    assert_eq!(residuals.matches(",retraction,free,").count(), counted(&rows["retraction"], "free"));
     assert_eq!(document["correlations"].as_array().unwrap().len(), 4);
     assert_eq!(home.text("r.csv").lines().count(), 701);
     // The fitted preset is a preset, and fits as it is.
     assert!(home.text("fitted.toml").contains("stiffness"));
     let again = home.run(&["fit", "shipped:lens.csv", "fitted.toml", "--no-scan", FREE[0], FREE[1]]);
     assert_eq!(again.status, 0, "{}", again.err);
+}
+
+/// The rows of this part, of one branch or of both.
+fn counted(rows: &Value, part: &str) -> usize {
+    let of = |rows: &Value| usize::try_from(rows[part].as_u64().unwrap()).unwrap();
+    if rows[part].is_u64() { of(rows) } else { of(&rows["approach"]) + of(&rows["retraction"]) }
+}
+
+#[test]
+fn rows_are_mended_by_hand_and_counted() {
+    let home = Home::new();
+    let fit = |more: &[&str]| {
+        let ended = home.run(&[&["fit", "lens", "--format=json", "--accept"], more].concat());
+        assert_eq!(ended.status, 0, "{more:?}: {}", ended.err);
+        serde_json::from_str::<Value>(&ended.out).unwrap()
+    };
+    // Rows between the jump of the approach and the part that is named are neither in contact nor apart.
+    let named = fit(&["--free-part", "x=..9um"]);
+    let (approach, rows) = (&named["rows"]["approach"], &named["rows"]);
+    assert_eq!([counted(approach, "contact"), counted(approach, "free")], [191, 102]);
+    assert_eq!(counted(approach, "dropped") + counted(approach, "jump"), 57, "{rows}");
+    assert_eq!(named["verdict"], "describes");
+    assert_eq!(fit(&["--set", "data.free_part=x=..9um"])["rows"], *rows);
+    let retraction = fit(&["--segment", "retraction", "--free-part", "x=..9um"]);
+    assert_eq!(retraction["rows"]["approach"]["dropped"], 350);
+    let none = fit(&["--free-part", "none", "--segment=retraction", "--range", "x=10um.."]);
+    assert_eq!(counted(&none["rows"], "free"), 0);
+    let notes = none["notes"].to_string();
+    assert!(notes.contains("there is no free part: the baseline is held"), "{notes}");
+    let skipped = fit(&["--skip", "50", "--signs", "x=+,f=+"]);
+    assert_eq!(skipped["rows"]["approach"]["dropped"], 50);
+    assert_eq!(skipped["rows"]["retraction"], fit(&[])["rows"]["retraction"]);
+    // What is written has it.
+    let ended =
+        home.run(&["fit", "lens", "--skip=50", "--signs=x=+,force=+", "--free-part=x=..9um", "-o", "f.toml"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let written = home.text("f.toml");
+    for line in ["skip = 50", "signs = \"x=+,force=+\"", "free_part = \"x=..9um\""] {
+        assert!(written.contains(line), "{written}");
+    }
+    assert!(ended.out.contains("rows        contact  free  jump  dropped"), "{}", ended.out);
+    for (arguments, expected) in [
+        (["--free-part", "9um"], "--free-part: \"9um\": expected x=LO..HI, or none"),
+        (["--free-part", "x=9um..2um"], "--free-part: \"x=9um..2um\": the range is empty"),
+        (["--free-part", "x=1N..2N"], "--free-part: "),
+        (["--free-part", "x=1m..2m"], "no row lies in the free part"),
+        (["--signs", "x=-"], "--signs: \"x=-\": expected the signs of both columns, as x=-,force=+"),
+        (["--skip", "697"], "only 3 rows are left after the range, the segment and the rows to skip"),
+        (["--skip", "-1"], "--skip"),
+        (["--range", "y=1..2"], "--range: \"y=1..2\": expected x=LO..HI or force=LO..HI"),
+    ] {
+        for command in
+            ["fit", "plot"].iter().filter(|command| **command == "fit" || arguments[0] != "--range")
+        {
+            let ended = home.run(&[&[*command, "lens"], &arguments[..]].concat());
+            assert!(
+                ended.status == 2 && ended.err.contains(expected),
+                "{arguments:?}: {} {}",
+                ended.status,
+                ended.err
+            );
+        }
+    }
+    let ended =
+        home.run(&["plot", "lens", "--free-part=x=..9um", "--view=residuals", "-o", "o.svg", "--data"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let data = home.text("o.csv");
+    assert_eq!(data.matches("measured approach,").count(), 191);
+    assert_eq!(data.matches("\"measured approach, apart\",").count(), 102);
 }
 
 #[test]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from operator import index
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve
@@ -46,11 +46,6 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
     header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
     cells = [_cells(array) for array in arrays.values()]
-    # A row of a table begins with a value: of texts before the first number only branches are.
-    for at, array in enumerate(arrays.values()):
-        if array.dtype.kind in "iuf" or any(isinstance(x, (int, float, np.number)) for x in array.tolist()):
-            break
-        cells[at] = [cell if _engine.is_branch(cell) else "-" for cell in cells[at]]
     rows = (",".join(row) for row in zip(*cells))
     return "data", "\n".join([*stated, header, *rows, ""]).encode(errors="replace")
 
@@ -78,6 +73,24 @@ def range_of(name: str, given: Optional[Range]) -> Optional[Tuple[float, float]]
     if not lo < hi:
         raise DataError(f"{name} = {given!r} is empty: a range is (from, to), from below to")
     return lo, hi
+
+
+def free_part_of(given: Union[Range, str, None]) -> Optional[str]:
+    """The rows that are apart as ``data.free_part`` says it."""
+    if given is None or isinstance(given, str):
+        return given
+    lo, hi = range_of("free_part", given) or (float("-inf"), float("inf"))
+    return "x=" + "..".join("" if np.isinf(end) else repr(end) for end in (lo, hi))
+
+
+def skip_of(given: int) -> int:
+    try:
+        skip = index(given)
+    except TypeError as error:
+        raise DataError(f"skip = {given!r}: it is a number of rows") from error
+    if not 0 <= skip <= 1_000_000:
+        raise DataError(f"skip = {skip} is out of range: it must be from 0 to 1000000")
+    return skip
 
 
 def draws_of(bootstrap: Optional[int], seed: int) -> Optional[Tuple[int, int]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, 
 
 from . import _engine
 from ._gap import column, plain, sampled
-from ._points import Range, draws_of, points_of, range_of
+from ._points import Range, draws_of, free_part_of, points_of, range_of, skip_of
 from ._progress import Progress, told
 from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError
 from .results import Cycle, Fit, Map, Stability, Trace, Unloading
@@ -390,6 +390,9 @@ class Problem:
         uncertain: Optional[Mapping[str, Union[float, str]]] = None,
         columns: Optional[str] = None,
         segment: Optional[str] = None,
+        free_part: Union[Range, str, None] = None,
+        signs: Optional[str] = None,
+        skip: int = 0,
         x_range: Optional[Range] = None,
         force_range: Optional[Range] = None,
         separate: bool = False,
@@ -423,6 +426,13 @@ class Problem:
             What the columns are where their names do not say it, as ``"x=1,force=2"`` or ``"position=Z,force=F"``.
         segment : {"approach", "retraction"}, optional
             The branch that is used alone.
+        free_part : (from, to) or "none", optional
+            Which rows are apart, by x as it is in the data, in SI or reduced units; None leaves an end open. ``"none"`` where all
+            rows are in contact; found where it is not given.
+        signs : str, optional
+            Which way the columns run: ``"x=-,force=+"`` turns the sign of x alone; found where it is not given.
+        skip : int
+            So many rows at the beginning are left out.
         x_range, force_range : (from, to), optional
             Rows in this range alone are used, as they are in the data; None leaves an end open.
         separate : bool
@@ -457,6 +467,9 @@ class Problem:
         wanted = {
             "columns": columns,
             "segment": segment,
+            "free_part": free_part_of(free_part),
+            "signs": signs,
+            "skip": skip_of(skip),
             "free": [free] if isinstance(free, str) else None if free is None else list(free),
             "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
             "separate": separate,

@@ -329,6 +329,12 @@ class Fit(Result):
         return dict(zip(self.key.tolist(), self.value.tolist()))
 
     @property
+    def rows(self) -> Dict[str, Any]:
+        """How many rows there are by branch, ``"approach"`` and ``"retraction"``, and part: ``"contact"``, ``"free"``, within the
+        ``"jump"``, and ``"dropped"``; and of ``"pause"``."""
+        return dict(self._said()["rows"])
+
+    @property
     def residuals(self) -> Table:
         """The points beside the fit: ``row``, ``segment``, ``part``, ``x``, ``force``, ``residual`` in standard deviations, ``outlier``,
         each of the shape (points,). x and the force are in SI or reduced units, their signs put right."""

@@ -49,6 +49,9 @@ impl Report for FitReport {
 pub struct Wanted {
     columns: Option<String>,
     segment: Option<String>,
+    free_part: Option<String>,
+    signs: Option<String>,
+    skip: u32,
     free: Option<Vec<String>>,
     uncertain: Option<String>,
     separate: bool,
@@ -109,11 +112,16 @@ pub fn fitted(
         (data_keys::COLUMNS, &wanted.columns),
         (data_keys::SEGMENT, &wanted.segment),
         (data_keys::UNCERTAIN, &wanted.uncertain),
+        (data_keys::FREE_PART, &wanted.free_part),
+        (data_keys::SIGNS, &wanted.signs),
     ] {
         changes.extend(text.as_ref().map(|text| (key, PresetValue::Text(text.clone()))));
     }
+    if wanted.skip > 0 {
+        changes.push((data_keys::SKIP, PresetValue::Integer(wanted.skip.into())));
+    }
     preset.set_all(changes).map_err(|invalid| match invalid {
-        Invalid::Made { cause, .. } => errors::of_data(py, &cause),
+        Invalid::Made { key, cause } if key == data_keys::FILE => errors::of_data(py, &cause),
         invalid => refused(&invalid),
     })?;
     let options = wanted.options(&preset);

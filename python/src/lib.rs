@@ -34,7 +34,6 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fit::fitted, module)?)?;
     module.add_function(wrap_pyfunction!(problem::between, module)?)?;
     module.add_function(wrap_pyfunction!(problem::unit_of, module)?)?;
-    module.add_function(wrap_pyfunction!(problem::is_branch, module)?)?;
     module.add_function(wrap_pyfunction!(problem::read_file, module)?)?;
     module.add_function(wrap_pyfunction!(problem::write_files, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;

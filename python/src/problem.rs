@@ -13,7 +13,7 @@ use pulloff_engine::disc::{Basis, Exact, TableError, outside};
 use pulloff_engine::gap::panels::Refused;
 use pulloff_engine::gap::shapes::{Measured, Profile, Rows, Smoothing};
 use pulloff_engine::gap::{Gap, Shape};
-use pulloff_engine::measured::{Role, Segment, Source};
+use pulloff_engine::measured::{Role, Source};
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::read::{Held, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
@@ -425,12 +425,6 @@ pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> 
 #[pyfunction]
 pub fn unit_of(column: &str) -> &'static str {
     Role::of_bare(column).and_then(Role::si).unwrap_or("")
-}
-
-/// Whether a cell names a branch of a measured curve.
-#[pyfunction]
-pub fn is_branch(cell: &str) -> bool {
-    Segment::of(cell).is_some()
 }
 
 /// What makes two problems the same: the text of the preset without the names of files, and what these hold.

@@ -74,12 +74,33 @@ def test_units_stand_in_the_names_of_columns():
     assert bare.unit.tolist() == ["Pa", "J/m2"] or bare.unit[0] == "Pa"
 
 
+def fitted_rows(found):
+    return sum(found.rows[way][part] for way in ("approach", "retraction") for part in ("contact", "free"))
+
+
+def test_rows_are_mended_by_hand():
+    whole = points()
+    cut = {name: np.concatenate([[7.0, -3.0], values]) for name, values in whole.items()}
+    mended = SPHERE.fit(cut, FREE, skip=2, **SIGMA)
+    assert mended.parameters["material.work_of_adhesion"] == pytest.approx(GAMMA, rel=1e-4)
+    assert fitted_rows(mended) == 60 and mended.problem.to_dict()["data.skip"] == 2
+    flipped = {**whole, "approach": -whole["approach"]}
+    turned = SPHERE.fit(flipped, FREE, signs="x=-,force=+", **SIGMA)
+    assert turned.parameters == pytest.approx(SPHERE.fit(whole, FREE, signs="x=+,force=+", **SIGMA).parameters, rel=1e-6)
+    none = SPHERE.fit(whole, FREE, free_part="none", **SIGMA)
+    assert none.rows["approach"]["free"] + none.rows["retraction"]["free"] == 0
+    for wrong in ({"signs": "x=-"}, {"signs": "up"}, {"skip": -1}, {"skip": 1.5}, {"free_part": (1.0, 0.0)},
+                  {"free_part": "x"}, {"free_part": (90.0, 91.0)}):
+        with pytest.raises(pulloff.DataError):
+            SPHERE.fit(whole, FREE, **wrong, **SIGMA)
+
+
 def test_ranges_and_segments():
     whole = points()
     near = SPHERE.fit(whole, FREE, x_range=(None, 0.05), **SIGMA)
-    assert near.residuals.x.max() <= 0.05 and near.points < len(whole["force"]) == SPHERE.fit(whole, FREE, **SIGMA).points
+    assert near.residuals.x.max() <= 0.05 and fitted_rows(near) < len(whole["force"]) == fitted_rows(SPHERE.fit(whole, FREE, **SIGMA))
     pulled = SPHERE.fit(whole, FREE, force_range=(0.0, None), **SIGMA)
-    assert pulled.residuals.force.min() >= 0.0 and pulled.left_out > 0
+    assert pulled.residuals.force.min() >= 0.0 and sum(pulled.rows[way]["dropped"] for way in ("approach", "retraction")) > 0
     both = {name: np.concatenate([values[::-1], values]) for name, values in whole.items()}
     both["segment"] = np.array(["approach"] * 60 + ["retraction"] * 60)
     both["force"][:60] += 1.0
@@ -96,7 +117,7 @@ def test_what_a_fit_has():
     found = SPHERE.fit(points(), FREE, poisson=0.5, **SIGMA)
     beside = found.residuals
     assert {"row", "segment", "part", "x", "force", "residual", "outlier"} <= set(beside)
-    assert beside.row_count == found.points == 60 and beside.outlier.dtype == np.bool_ and np.abs(beside.residual).max() < 1.0
+    assert beside.row_count == fitted_rows(found) == 60 and beside.outlier.dtype == np.bool_ and np.abs(beside.residual).max() < 1.0
     assert beside.x.tolist() == points()["approach"].tolist()
     assert found.chi_squared == found.to_dict()["chi_squared"] and found.determined is True
     assert found.youngs_modulus[0] == pytest.approx(0.75 * MODULUS, rel=1e-4)

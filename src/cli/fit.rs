@@ -10,7 +10,7 @@ use self::table::Table;
 use super::console::{Console, Messages};
 use super::format::{self, Format, FormatArgument};
 use super::jobs::Jobs;
-use super::measured::{attach, columns, typed};
+use super::measured::{Reading, attach, typed};
 use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown};
 use super::problem::Changes;
 use super::watch::Stop;
@@ -20,7 +20,8 @@ use crate::store::{Loaded, stream};
 use crate::sweep::in_order;
 use clap::{Args, ValueEnum};
 use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
-use pulloff_engine::measured::branches::{Asked, Span};
+use pulloff_engine::measured::asked::AskedError;
+use pulloff_engine::measured::{Asked, Span};
 use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::text::{quote, show_path};
@@ -53,15 +54,11 @@ pub struct Arguments {
     /// Fit this key for approach and retraction apart
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
-    /// What the columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
-    #[arg(long, value_name = "ROLE=COLUMN,...")]
-    columns: Option<String>,
+    #[command(flatten)]
+    reading: Reading,
     /// Use rows in this range alone, as they are in the file: x=LO..HI or force=LO..HI (repeatable)
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     range: Vec<String>,
-    /// Use one branch alone
-    #[arg(long, value_enum)]
-    segment: Option<Branch>,
     /// Standard deviation of x; that of the free part, or the last digit, when left out
     #[arg(long, value_name = "LENGTH")]
     sigma_x: Option<String>,
@@ -112,22 +109,6 @@ struct Sinks {
     fitted: Option<Sink>,
     residuals: Option<Sink>,
     table: Option<Table>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum Branch {
-    Approach,
-    Retraction,
-}
-
-impl Branch {
-    /// The word of `data.segment`.
-    fn word(self) -> &'static str {
-        match self {
-            Self::Approach => data::SEGMENTS[0],
-            Self::Retraction => data::SEGMENTS[1],
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -224,9 +205,8 @@ impl Arguments {
 
     /// What is said of the files, with its keys.
     fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
-        let segment = self.segment.map(|branch| (data::SEGMENT, Value::Text(branch.word().to_owned())));
         let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
-        Ok(columns(self.columns.as_deref())?.into_iter().chain(segment).chain(uncertain).collect())
+        Ok(self.reading.said()?.into_iter().chain(uncertain).collect())
     }
 
     /// Looks at all outputs. What ends in .toml is the preset with the fitted values, and the report goes to standard output.
@@ -285,23 +265,21 @@ impl Arguments {
             asked.sigma[slot] = Some(sigma);
         }
         for text in &self.range {
-            let form =
-                || Failure::Usage(format!("--range \"{}\": expected x=LO..HI or force=LO..HI", quote(text)));
-            let (axis, span) = text.split_once('=').ok_or_else(form)?;
-            let (lo, hi) = span.split_once("..").ok_or_else(form)?;
+            const EXPECTED: &str = "x=LO..HI or force=LO..HI";
+            let (axis, range) = text.split_once('=').unwrap_or_default();
             let (key, slot) = match axis.trim() {
-                "x" => (length, &mut asked.x),
                 "force" | "P" => (force, &mut asked.force),
-                _ => return Err(form()),
+                "x" => (length, &mut asked.x),
+                _ => {
+                    return Err(Failure::Usage(format!("--range: \"{}\": expected {EXPECTED}", quote(text))));
+                }
             };
-            let end = |text: &str, open: f64| {
-                if text.trim().is_empty() { Ok(open) } else { number("--range", key, text.trim()) }
-            };
-            let span = Span { lo: end(lo, f64::NEG_INFINITY)?, hi: end(hi, f64::INFINITY)? };
-            if span.lo >= span.hi {
-                return Err(Failure::Usage(format!("--range \"{}\": is empty", quote(text))));
-            }
-            *slot = Some(span);
+            let number = |text: &str| number("--range", key, text).map_err(|failure| failure.to_string());
+            let span = Span::parse(text, range, EXPECTED, &number).map_err(|error| match error {
+                AskedError::Number(text) => Failure::Usage(text),
+                error => Failure::Usage(format!("--range: {error}")),
+            });
+            *slot = Some(span?);
         }
         let options = Options {
             free: match &self.free {
@@ -325,12 +303,10 @@ impl Arguments {
 
     /// What decides the rows of a table, but for the files themselves.
     fn fingerprint(&self, preset: &Preset) -> String {
-        let Self {
-            free, uncertain, changes, separate, columns, range, segment, sigma_x, sigma_force, ..
-        } = self;
+        let Self { free, uncertain, changes, separate, reading, range, sigma_x, sigma_force, .. } = self;
         let Self { robust, no_scan, .. } = self;
         let said = format!(
-            "{free:?} {uncertain:?} {changes:?} {separate:?} {columns:?} {range:?} {segment:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
+            "{free:?} {uncertain:?} {changes:?} {separate:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

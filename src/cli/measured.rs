@@ -2,6 +2,7 @@
 
 use super::Failure;
 use crate::store::data::read_points;
+use clap::{Args, ValueEnum};
 use pulloff_engine::measured::Spec;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::{Preset, Value, data};
@@ -19,16 +20,71 @@ pub(super) fn attach(
     let file = path.map(|path| Ok::<_, Failure>(Value::Points(Arc::new(read_points(path)?)))).transpose()?;
     let file = file.map(|points| (data::FILE, points));
     preset.set_all(file.into_iter().chain(said.iter().cloned())).map_err(|invalid| match invalid {
+        Invalid::Made { key, cause } if said.iter().any(|(of, _)| *of == key) => {
+            Failure::Usage(format!("{}: {cause}", option(&key)))
+        }
         Invalid::Made { cause, .. } => Failure::Usage(cause),
         invalid => Failure::Usage(invalid.to_string()),
     })
 }
 
-/// What `--columns` says, if it can be said of any file.
-pub(super) fn columns(text: Option<&str>) -> Result<Option<(&'static str, Value)>, Failure> {
-    let Some(text) = text else { return Ok(None) };
-    Spec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
-    Ok(Some((data::COLUMNS, Value::Text(text.to_owned()))))
+/// What a person says of the columns and rows of a measured curve.
+#[derive(Debug, Clone, Args)]
+pub(super) struct Reading {
+    /// What its columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
+    #[arg(long, value_name = "ROLE=COLUMN,...")]
+    columns: Option<String>,
+    /// Use one branch of it alone
+    #[arg(long, value_enum)]
+    segment: Option<Branch>,
+    /// Which of its rows are apart, by x as it is in the file: x=LO..HI, or none where all are in contact
+    #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
+    free_part: Option<String>,
+    /// Which way its columns run, where the points do not show it: x=-,force=+ turns the sign of x alone
+    #[arg(long, value_name = "x=-,force=+", allow_hyphen_values = true)]
+    signs: Option<String>,
+    /// Leave out so many of its first rows
+    #[arg(long, value_name = "N")]
+    skip: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum Branch {
+    Approach,
+    Retraction,
+}
+
+impl Branch {
+    /// The word of `data.segment`.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Approach => data::SEGMENTS[0],
+            Self::Retraction => data::SEGMENTS[1],
+        }
+    }
+}
+
+impl Reading {
+    /// What is said, with its keys, if it can be said of any file.
+    pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
+        if let Some(text) = &self.columns {
+            Spec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
+        }
+        let texts = [
+            (data::COLUMNS, self.columns.clone()),
+            (data::SEGMENT, self.segment.map(|branch| branch.word().to_owned())),
+            (data::FREE_PART, self.free_part.clone()),
+            (data::SIGNS, self.signs.clone()),
+        ];
+        let texts = texts.into_iter().filter_map(|(key, text)| Some((key, Value::Text(text?))));
+        let skip = self.skip.map(|skip| (data::SKIP, Value::Integer(skip.into())));
+        Ok(texts.chain(skip).collect())
+    }
+}
+
+/// The option that says what `key` does, as messages name it.
+fn option(key: &str) -> String {
+    format!("--{}", key.trim_start_matches("data.").replace('_', "-"))
 }
 
 /// A number as typed behind `flag`, in SI or reduced units, of what the key `key` measures.

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::console::{Console, Messages};
-use super::measured::{attach, columns, typed};
+use super::measured::{Reading, attach, typed};
 use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown as shown_path};
 use super::problem::Problem;
 use crate::explorer::fitting::FitWish;
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[command(flatten)]
     problem: Problem,
     /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
-    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius"])]
+    #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius", "columns", "segment", "free_part", "signs", "skip"])]
     sweep: Option<PathBuf>,
     /// The column of the results that is drawn [default: enhancement]
     #[arg(long, value_name = "COLUMN")]
@@ -62,9 +62,8 @@ pub struct Arguments {
     /// Lay the points of a measured curve behind it
     #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
     measured: Option<PathBuf>,
-    /// What the columns of the measured curve are, where its header does not say it: x=1,force=2
-    #[arg(long, value_name = "ROLE=COLUMN,...", conflicts_with = "sweep")]
-    columns: Option<String>,
+    #[command(flatten)]
+    reading: Reading,
     /// The x of the measured curve at which the approach is zero
     #[arg(long, value_name = "LENGTH", conflicts_with = "sweep", allow_hyphen_values = true)]
     offset: Option<String>,
@@ -199,8 +198,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 impl Arguments {
     /// Gives the preset the measured curve that is asked for, and says what was found in its own.
     fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
-        let said = columns(self.columns.as_deref())?;
-        attach(preset, self.measured.as_deref(), said.as_slice())?;
+        attach(preset, self.measured.as_deref(), &self.reading.said()?)?;
         for (flag, key, text) in
             [("--offset", data::OFFSET, &self.offset), ("--baseline", data::BASELINE, &self.baseline)]
         {
@@ -210,9 +208,9 @@ impl Arguments {
         }
         let Some(source) = &preset.data.source else { return Ok(()) };
         let wrong = |error: String| Failure::Usage(format!("{}: {error}", shown_path(&source.path())));
-        let measured = source.measured(&preset.data.columns).map_err(wrong)?;
+        let notes = preset.notes_of_reading().map_err(wrong)?;
         let branches = source.branches(&preset.reading()).map_err(wrong)?;
-        for text in measured.notes.iter().chain(&branches.notes) {
+        for text in notes.iter().chain(&branches.notes) {
             console.note(Some(text));
         }
         Ok(())

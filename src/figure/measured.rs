@@ -12,7 +12,7 @@ pub const DRAWN: usize = 3000;
 
 /// Measured points as δ, P and s in base units, not a number where one is not measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Points(Vec<(Segment, [f64; 3])>);
+pub struct Points(Vec<(Sign, [f64; 3])>);
 
 impl Points {
     /// The points of a preset's measured curve, less its offset δ₀ and its baseline P₀; `None` without a curve.
@@ -37,9 +37,11 @@ impl Points {
         let count: usize = branches.list.iter().map(|branch| branch.attached.len() + branch.free.len()).sum();
         let step = count.div_ceil(DRAWN).max(1);
         let all = branches.list.iter().flat_map(|branch| {
-            let points =
-                [&branch.attached, &branch.free].into_iter().flat_map(|part| part.iter().step_by(step));
-            points.map(|point| (branch.segment, of(point.x, point.force, point.radius)))
+            let loading = branch.segment == Segment::Approach;
+            [(false, &branch.attached), (true, &branch.free)].into_iter().flat_map(move |(apart, part)| {
+                let sign = Sign::Measured { loading, apart };
+                part.iter().step_by(step).map(move |point| (sign, of(point.x, point.force, point.radius)))
+            })
         });
         Self(all.collect())
     }
@@ -49,12 +51,11 @@ impl Points {
         if !(view.is_curve() || matches!(view, View::Unloading | View::Cycle)) {
             return;
         }
-        let mark = |(segment, place): &(Segment, [f64; 3])| {
-            let sign = Sign::Measured { loading: *segment == Segment::Approach };
+        let mark = |(sign, place): &(Sign, [f64; 3])| {
             let at = scale.place(view, *place);
-            (at.0.is_finite() && at.1.is_finite()).then_some(Mark { sign, at })
+            (at.0.is_finite() && at.1.is_finite()).then_some(Mark { sign: *sign, at })
         };
-        // Sorted by branch: each is drawn as one.
+        // Sorted by branch and part: each is drawn as one.
         let marks: Vec<Mark> = self.0.iter().filter_map(mark).collect();
         if marks.is_empty() {
             return;

@@ -102,9 +102,10 @@ pub enum Sign {
     Letter(char),
     /// A computed value, on a line through all of them.
     Value,
-    /// A measured point, of an approach or of a retraction: behind everything.
+    /// A measured point, of an approach or of a retraction, in contact or apart: behind everything.
     Measured {
         loading: bool,
+        apart: bool,
     },
 }
 

@@ -41,9 +41,11 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let offset = subject.preset.data.offset.unwrap_or(0.0);
     let at = |residual: &Residual| (scale.length(residual.datum.point.x - offset), residual.residual);
     let step = residuals.len().div_ceil(DRAWN).max(1);
-    for segment in [Segment::Approach, Segment::Retraction] {
-        let of = residuals.iter().filter(|residual| residual.datum.segment == segment);
-        let sign = Sign::Measured { loading: segment == Segment::Approach };
+    let parts = [Segment::Approach, Segment::Retraction].map(|segment| [(segment, false), (segment, true)]);
+    for (segment, apart) in parts.into_iter().flatten() {
+        let is_of = |residual: &&Residual| residual.datum.segment == segment && residual.datum.free == apart;
+        let of = residuals.iter().filter(is_of);
+        let sign = Sign::Measured { loading: segment == Segment::Approach, apart };
         let marks = of.step_by(step).map(|residual| Mark { sign, at: at(residual) });
         figure.marks.extend(marks.filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()));
     }

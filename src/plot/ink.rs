@@ -104,8 +104,18 @@ pub fn stamp(sign: Sign) -> Stamp {
         // Written as numbers; a letter beside a point.
         Sign::Snaps(_) | Sign::OfCrest(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
         Sign::Letter(_) => stamp(MarkerShape::Circle, BLACK, 1.6, ""),
-        Sign::Measured { loading: true } => stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach"),
-        Sign::Measured { loading: false } => stamp(MarkerShape::Square, GREY, 1.1, "measured retraction"),
+        Sign::Measured { loading: true, apart: false } => {
+            stamp(MarkerShape::Circle, GREEN, 1.1, "measured approach")
+        }
+        Sign::Measured { loading: true, apart: true } => {
+            stamp(MarkerShape::Plus, GREEN, 1.3, "measured approach, apart")
+        }
+        Sign::Measured { loading: false, apart: false } => {
+            stamp(MarkerShape::Square, GREY, 1.1, "measured retraction")
+        }
+        Sign::Measured { loading: false, apart: true } => {
+            stamp(MarkerShape::Cross, GREY, 1.3, "measured retraction, apart")
+        }
         // The axes say what it is.
         Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }

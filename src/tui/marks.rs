@@ -109,8 +109,10 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
         Sign::Preset => "+".to_owned(),
         Sign::OfCrest(crest) => format!("c{crest}"),
         Sign::Snaps(n) => COUNTS[n.min(COUNTS.len() - 1)].to_owned(),
-        Sign::Measured { loading: true } => ",".to_owned(),
-        Sign::Measured { loading: false } => ".".to_owned(),
+        Sign::Measured { loading: true, apart: false } => ",".to_owned(),
+        Sign::Measured { loading: false, apart: false } => ".".to_owned(),
+        Sign::Measured { loading: true, apart: true } => "`".to_owned(),
+        Sign::Measured { loading: false, apart: true } => "'".to_owned(),
     }
 }
 

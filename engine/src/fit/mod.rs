@@ -21,7 +21,9 @@
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
 //! | `uncertain` | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
+//! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`run`] | all of it, in order |
+//! | `directed` | the same, in the direction in which the columns run |
 //!
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps with the values where the
 //! pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
@@ -29,6 +31,7 @@
 pub mod chance;
 pub mod derivatives;
 pub mod determined;
+mod directed;
 pub mod distance;
 pub mod fitted;
 pub mod intervals;
@@ -40,6 +43,7 @@ pub mod pose;
 pub mod prior;
 pub mod problem;
 mod rings;
+pub mod rows;
 pub mod run;
 pub mod scatter;
 pub mod solve;
@@ -48,9 +52,11 @@ mod uncertain;
 pub mod verdict;
 pub mod way;
 
+pub use directed::{fit, fit_own};
 pub use fitted::Fitted;
 pub use options::{FitError, Options};
-pub use run::{Fit, fit, fit_own};
+pub use rows::{BranchRows, Rows};
+pub use run::Fit;
 pub use verdict::{Reason, Verdict};
 
 #[cfg(test)]

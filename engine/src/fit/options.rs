@@ -1,7 +1,7 @@
 //! What is asked of a fit, what can be free, and why there is none.
 
 use super::problem::{ADHESION, Target};
-use crate::measured::branches::Asked;
+use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::{CHOOSERS, Kind, Row};
@@ -93,6 +93,16 @@ pub enum FitError {
         "loading on this gap takes rings of contact, which are not fitted: {0}. Use the retraction, without --separate"
     )]
     Loading(String),
+    /// Two directions of the columns that fit alike.
+    #[error(
+        "the points do not show which way their columns run: {one} and {other} fit them alike. Say it with --signs, or in data.signs"
+    )]
+    Direction {
+        /// The signs of one, as `--signs` says them.
+        one: String,
+        /// Those of the other.
+        other: String,
+    },
     /// No start gives a curve that comes near to the points.
     #[error(
         "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"

@@ -9,13 +9,14 @@ use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
+use super::rows::Rows;
 use super::scatter::Scatter;
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
 use super::uncertain::{uncertain, written};
 use super::verdict::{Reason, Verdict};
 use crate::measured::branches::FLOOR;
-use crate::measured::{Abscissa, Asked, Noise, Origin, Points, Segment};
+use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::progress::{Part, Progress};
@@ -74,12 +75,10 @@ pub struct Fit {
     pub degrees: f64,
     /// The noise of the rows as neighbours show it.
     pub scatter: Scatter,
-    /// Points in contact, and apart.
-    pub points: [usize; 2],
+    /// The rows of the file by branch and part.
+    pub rows: Rows,
     /// How many are outliers.
     pub outliers: usize,
-    /// Samples within jumps, and rows left out otherwise.
-    pub dropped: [usize; 2],
     /// The condition of the whitened Jacobian.
     pub condition: f64,
     /// What cannot be told, in words; `None` where all is determined.
@@ -123,20 +122,6 @@ impl Fit {
     }
 }
 
-/// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
-///
-/// # Errors
-/// [`FitError`].
-pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
-    let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
-    let points = source.points(&reading).map_err(FitError::Data)?;
-    let asked = Asked { segment: preset.data.segment, ..options.asked };
-    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
-    let read = source.measured(&reading.columns).map_err(FitError::Data)?;
-    found.notes.splice(0..0, read.notes.iter().cloned());
-    Ok(found)
-}
-
 /// What x is, and the distances of the points of a preset's own measured curve from its curve as it is.
 ///
 /// # Errors
@@ -159,23 +144,15 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
 }
 
-/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`. Where
-/// `progress` says stop, the best so far is what there is.
-///
-/// # Errors
-/// [`FitError`].
-pub fn fit(
+/// Fits the free keys of `preset` to `branches`.
+pub(super) fn fit_branches(
     preset: &Preset,
-    points: &Points,
+    branches: &Branches,
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
-    if options.free.is_empty() {
-        return Err(FitError::NothingFree);
-    }
-    let branches = points.branches(&options.asked)?;
     let mut notes = branches.notes.clone();
-    let mut problem = posed(preset, &branches, options, &mut notes)?;
+    let mut problem = posed(preset, branches, options, &mut notes)?;
     // Without rows apart neighbours say how well the force is known, never the residuals themselves.
     let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
     let least = of_neighbours.then_some(FLOOR * branches.ranges[1]);
@@ -214,22 +191,20 @@ pub fn fit(
     let reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
     let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-    let count = |free: bool| problem.data.iter().filter(|datum| datum.free == free).count();
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
-    let rows = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let lists = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
     let left = (real.len() - u.len().min(real.len())).max(1) as f64;
     Ok(Fit {
         verdict: verdict(ending, what.errors.is_some(), &reasons),
         reasons,
-        abscissa: points.abscissa,
-        correlations: what.correlations.map(rows),
+        abscissa: branches.abscissa,
+        correlations: what.correlations.map(lists),
         chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
         chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
         degrees,
         priors,
-        points: [count(false), count(true)],
+        rows: Rows::of(&problem, branches),
         outliers: residuals.iter().filter(|residual| residual.outlier).count(),
-        dropped: [branches.list.iter().map(|branch| branch.dropped).sum(), branches.left_out],
         condition: what.condition,
         direction: what.direction,
         ending,

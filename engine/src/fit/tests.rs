@@ -3,7 +3,7 @@
 use super::least_squares::Ending;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
-use crate::measured::branches::Asked;
+use crate::measured::Asked;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::{Preset, read};
 use crate::progress::{Unwatched, until};
@@ -129,7 +129,7 @@ fn a_sphere_is_found_from_values_three_times_off() {
         assert_eq!(fit.ending, Ending::Converged);
         close(&fit, &[1.3, 0.02], 1e-8);
         assert!(fit.direction.is_none() && fit.condition < 50.0, "{}", fit.condition);
-        assert_eq!(fit.points.iter().sum::<usize>() + fit.dropped[0], 600);
+        assert_eq!(fit.rows.all(), 600);
     }
     // With an offset, a baseline and a tilt of the instrument.
     let mut shifted = points.clone();
@@ -239,7 +239,7 @@ fn coverage(seeds: std::ops::Range<u64>, outliers: bool) -> [[f64; 2]; 2] {
             let off = (fit.parameters[j].value - truth) / fit.parameters[j].standard_error.unwrap();
             found[j][0] += f64::from(u8::from(off.abs() <= 1.96)) / count;
             found[j][1] += off / count;
-            assert!(off.abs() < 6.0, "seed {seed}: {off} {:?} {:?}", fit.notes, fit.points);
+            assert!(off.abs() < 6.0, "seed {seed}: {off} {:?} {:?}", fit.notes, fit.rows);
         }
     }
     println!("{flagged} of {count} right fits are flagged");

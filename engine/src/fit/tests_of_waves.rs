@@ -110,7 +110,7 @@ fn looped(preset: &Preset, top: f64, n: usize) -> Points {
 fn a_loop_on_waves_is_found_by_its_own_ways_up_and_back() {
     let points = looped(&preset(WAVES, 1.0, 0.004, ""), 0.09, 300);
     let found = run(&preset(WAVES, 3.0, 0.0013, ""), &points, &[E, W]);
-    assert!(found.points[0] > 350 && found.snaps >= 3, "{:?} {}", found.points, found.snaps);
+    assert!(found.rows.contact() > 350 && found.snaps >= 3, "{:?} {}", found.rows, found.snaps);
     close(&found, &[1.0, 0.004], 1e-8);
     assert!(found.residuals.iter().any(|at| !at.datum.free && at.datum.segment == Segment::Approach));
     // The approach alone; each branch with a work of adhesion of its own.

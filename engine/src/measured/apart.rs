@@ -11,8 +11,10 @@ use super::noise::{FLOOR, median, range, scatter_over};
 
 /// A jump is so many deviations of its own noise.
 const SURE: f64 = 6.0;
-/// Rows on either side, at least.
+/// Rows on either side, at least; behind the jump of few rows in all, at least.
 const FEWEST: usize = 3;
+const BEHIND: usize = 2;
+const FEW: usize = 40;
 /// It is so many times the scatter behind it, and what the force goes on there is at most this share of it.
 const CLEAR: f64 = 3.0;
 const GOES_ON: f64 = 0.5;
@@ -50,11 +52,12 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
         sums[i + 1] = sums[i] + p;
     }
     let mean = |from: usize, to: usize| (sums[to] - sums[from]) / (to - from) as f64;
+    let behind = if n < FEW { BEHIND } else { FEWEST };
     let mut best: Option<Jump> = None;
     let mut w = 1;
     while w <= (n / 8).max(1) {
         let scale = (w as f64 / 2.0).sqrt() / sigma;
-        let rows = w.max(FEWEST)..=(n - w.max(FEWEST));
+        let rows = w.max(FEWEST)..=(n - w.max(behind));
         let height = |at: usize| mean(at, at + w) - mean(at - w, at);
         let is_peak = |at: &usize| {
             [at - 1, at + 1].iter().all(|beside| !rows.contains(beside) || height(*at) >= height(*beside))
@@ -67,14 +70,15 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
         best = best.into_iter().chain(found).max_by(|a, b| a.deviations.total_cmp(&b.deviations));
         w *= 2;
     }
-    best.map(|found| Jump { at: sharpened(&force, found.at, sigma), ..found })
+    best.map(|found| Jump { at: sharpened(&force, found.at, sigma, behind), ..found })
 }
 
 /// Whether the force behind `at` stands still beside a jump of this height, which was seen in `w` rows.
 fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
-    let (x, rest) = (&x[at..], &force[at..]);
+    let (before, (x, rest)) = (&force[..at], (&x[at..], &force[at..]));
     if rest.len() < 2 * FEWEST {
-        return range(rest.iter().copied()) <= GOES_ON * height;
+        let over_rows = w as f64 / rest.len().saturating_sub(1).max(1) as f64;
+        return range(rest.iter().copied()) * over_rows.max(1.0) <= GOES_ON * height;
     }
     // A slope of the baseline is the instrument's.
     let half = rest.len() / 2;
@@ -86,7 +90,10 @@ fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     let scatter = 1.4826 * of(&off.iter().map(|p| (p - middle).abs()).collect::<Vec<_>>());
     // A force that only goes on rises as much behind as before: that of w rows is then the height.
     let over_rows = (p1 - p0).abs() * w as f64 / half as f64;
-    (p1 - p0).abs().max(over_rows) <= GOES_ON * height && CLEAR * scatter <= height
+    // It goes on less than in contact, which begins with the larger x: else the rows apart are those before.
+    let (near, far) = before.split_at(before.len() / 2);
+    let goes_less = (p1 - p0).abs() <= (of(near) - of(far)).abs();
+    goes_less && (p1 - p0).abs().max(over_rows) <= GOES_ON * height && CLEAR * scatter <= height
 }
 
 /// The values, but for rows that are off from those around them by more than `limit`.
@@ -107,11 +114,11 @@ fn without_outliers(values: &[f64], limit: f64) -> Vec<f64> {
 }
 
 /// The place near `at` where the force rises most from row to row, where one rise stands out.
-fn sharpened(force: &[f64], at: usize, sigma: f64) -> usize {
+fn sharpened(force: &[f64], at: usize, sigma: f64, behind: usize) -> usize {
     const NEAR: usize = 4;
     const STANDS_OUT: f64 = 4.0;
     let rise = |i: usize| force[i] - force[i - 1];
-    let near = at.saturating_sub(NEAR).max(FEWEST)..=(at + NEAR).min(force.len() - FEWEST);
+    let near = at.saturating_sub(NEAR).max(FEWEST)..=(at + NEAR).min(force.len() - behind);
     let best = near.max_by(|&a, &b| rise(a).total_cmp(&rise(b)).then(b.cmp(&a)));
     best.filter(|&best| rise(best) > STANDS_OUT * sigma && rise(best) > rise(at)).unwrap_or(at)
 }

@@ -14,7 +14,10 @@
 //! | [`error`] | what is wrong with a text |
 //! | [`points`] | columns → points (x, P, s) in SI or reduced units |
 //! | [`source`] | a file held by a preset, taken apart once |
-//! | [`branches`] | points → approach and retraction, the free part, the pull-off, noise |
+//! | [`asked`] | what a person says of the rows |
+//! | [`branches`] | points → approach and retraction, with their parts and their noise |
+//! | `free` | a branch → the rows in contact, within the jump, and apart |
+//! | `sigma` | how well the columns are known |
 //! | `signs` | where the bodies are apart, and the signs of x and P |
 //! | `apart` | the jump behind which the bodies are apart |
 //! | `turns` | where the way turns round |
@@ -24,10 +27,12 @@
 //! Nothing here reads a disk: bytes come from the caller.
 
 mod apart;
+pub mod asked;
 pub mod branches;
 mod choice;
 pub mod converter;
 pub mod error;
+mod free;
 mod header;
 mod lines;
 mod names;
@@ -36,13 +41,15 @@ pub mod points;
 pub mod read;
 pub mod role;
 mod rows;
+mod sigma;
 mod signs;
 pub mod source;
 pub mod stated;
 mod turns;
 mod words;
 
-pub use branches::{Asked, Branch, BranchError, Branches, Noise, Origin, Span};
+pub use asked::{Asked, FreePart, Span};
+pub use branches::{Branch, BranchError, Branches, Noise, Origin};
 pub use error::ReadError;
 pub use points::{Abscissa, Points, PointsError};
 pub use read::{Column, Measured, Seen, columns, parse};

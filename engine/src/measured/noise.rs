@@ -1,5 +1,7 @@
 //! Medians, ranges and the noise of what varies slowly from row to row.
 
+use serde::Serialize;
+
 /// The least noise, as a share of the range: a distance to a curve needs both axes.
 pub const FLOOR: f64 = 1e-4;
 /// Deviations of the free part beyond so many σ belong to the contact.
@@ -7,6 +9,32 @@ pub(super) const BEYOND: f64 = 6.0;
 /// The share of the rows, and the fewest, by which the ends are judged.
 pub(super) const END_SHARE: usize = 40;
 pub(super) const END_ROWS: usize = 5;
+
+/// Where a standard deviation is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Origin {
+    /// A person gave it.
+    Given,
+    /// The rows apart.
+    Apart,
+    /// What neighbouring rows in contact differ by.
+    Neighbours,
+    /// The last digit, or the least share of the range.
+    #[default]
+    Assumed,
+}
+
+/// How well the columns are known, one standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Of x, P and s.
+    pub sigma: [f64; 3],
+    /// Where each is from.
+    pub from: [Origin; 3],
+    /// The step of the converter of the force; 0 where none is seen.
+    pub step: f64,
+}
 
 /// The median; `None` of nothing.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -127,12 +127,42 @@ pub enum PointsError {
     Constant(&'static str),
 }
 
+/// What a file may state of its instrument: in words, the key that says the same, and what it measures.
+pub type Statement = (&'static str, &'static str, Quantity);
+
+/// The stiffness of the spring.
+pub const SPRING: Statement = ("a spring", "path.control.stiffness", Quantity::ForcePerLength);
+/// The radius of the tip.
+pub const TIP: Statement = ("a tip radius", "gap.radius_of_curvature", Quantity::Length);
+
+/// What a file states and a preset does not say, or says otherwise, in words; `None` where they agree.
+#[must_use]
+pub fn overridden(
+    stated: Option<Stated>,
+    preset: Option<f64>,
+    units: &UnitSystem,
+    statement: Statement,
+) -> Option<String> {
+    let (what, key, quantity) = statement;
+    match compare(stated, preset, units, statement) {
+        Ok(()) => {
+            let value = stated.filter(|_| preset.is_none())?.value;
+            Some(format!("{what} of {}, which the file states,", said(units, quantity, value)))
+        }
+        Err(PointsError::Contradicts { file, preset, .. }) => {
+            Some(format!("{what} of {file}, which the file states where {key} is {preset},"))
+        }
+        Err(PointsError::ReducedSetting { what }) => Some(format!("{what}, which the file states,")),
+        Err(_) => None,
+    }
+}
+
 /// Compares what a file states with what a preset says, in base units, where both say something.
 fn compare(
     stated: Option<Stated>,
     preset: Option<f64>,
     units: &UnitSystem,
-    (what, key, quantity): (&'static str, &'static str, Quantity),
+    (what, key, quantity): Statement,
 ) -> Result<(), PointsError> {
     let Some(stated) = stated else { return Ok(()) };
     if *units == UnitSystem::Reduced {
@@ -158,7 +188,7 @@ pub fn stiffness(
     units: &UnitSystem,
 ) -> Result<Option<f64>, PointsError> {
     let preset = if let Control::Stiffness(k) = control { Some(k) } else { None };
-    compare(file, preset, units, ("a spring", "path.control.stiffness", Quantity::ForcePerLength))?;
+    compare(file, preset, units, SPRING)?;
     Ok(preset.or(file.map(|stated| stated.value)))
 }
 
@@ -167,7 +197,7 @@ pub fn stiffness(
 /// # Errors
 /// [`PointsError`] where both are there and differ, or the problem has no units.
 pub fn tip_radius(file: Option<Stated>, gap: Option<f64>, units: &UnitSystem) -> Result<(), PointsError> {
-    compare(file, gap, units, ("a tip radius", "gap.radius_of_curvature", Quantity::Length))
+    compare(file, gap, units, TIP)
 }
 
 impl Measured {

@@ -1,6 +1,7 @@
 //! Where the bodies are apart, and the signs of x and P that follow from it.
 
 use super::apart::jump;
+use super::asked::{FreePart, Span};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
 use super::points::{Abscissa, Point, Turned, turn};
 use super::role::Segment;
@@ -12,6 +13,13 @@ const FLAT: [f64; 2] = [0.1, 0.3];
 const PAUSE: f64 = 0.1;
 /// The shares of the range of x over which the force is looked at, where much noise is on it.
 const SHARES: [f64; 2] = [0.08, 0.16];
+
+/// Jumps of this share of the surest are as likely.
+const LIKELY: f64 = 0.5;
+/// What is said where the sign of the force is turned.
+const PULLED: &str =
+    "the force is positive before the jump to the free part, where bodies pull: its sign is turned";
+const FALLS: &str = "the force falls as the bodies are pressed together: its sign is turned";
 
 /// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
@@ -73,60 +81,96 @@ fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]>
     Some([trend(first)?, trend(last - BINS as f64 * bin)?])
 }
 
-/// Turns the signs where the free end and the rise in contact say so; whether x and P were turned. `None` where x stands still while P
-/// goes on, as in columns that are swapped; only rows in order show it.
-pub(super) fn signs(
-    points: &mut [Point],
-    abscissa: Abscissa,
-    segments: Option<&[Segment]>,
-    is_in_order: bool,
-    notes: &mut Vec<String>,
-) -> Option<[bool; 2]> {
-    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
-    let force: Vec<f64> = points.iter().map(|point| point.force).collect();
-    let mut turned = [false; 2];
-    if abscissa != Abscissa::Radius {
-        if is_in_order && stands_still(&x, &force) {
+/// Whether the signs of x and P are turned, and for which other signs as much speaks.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Direction {
+    pub(super) turned: Turned,
+    pub(super) or: Option<Turned>,
+}
+
+/// What is known of points whose signs are not.
+pub(super) struct Seen<'a> {
+    pub(super) abscissa: Abscissa,
+    pub(super) segments: Option<&'a [Segment]>,
+    /// Whether the rows are in order.
+    pub(super) is_in_order: bool,
+    /// Which rows are apart, as a person says.
+    pub(super) free: FreePart,
+}
+
+impl Seen<'_> {
+    /// Turns the signs where the free end and the rise in contact say so. `None` where x stands still while P goes on, as in columns that
+    /// are swapped; only rows in order show it.
+    pub(super) fn signs(&self, points: &mut [Point], notes: &mut Vec<String>) -> Option<Direction> {
+        if self.abscissa == Abscissa::Radius {
+            return Some(self.of_force(points, [false; 2], notes));
+        }
+        let x: Vec<f64> = points.iter().map(|point| point.x).collect();
+        let force: Vec<f64> = points.iter().map(|point| point.force).collect();
+        if self.is_in_order && stands_still(&x, &force) {
             return None;
         }
-        if let Some(found) = by_jumps(points, segments) {
-            said(abscissa, found, notes);
-            turn(points, found);
-            return Some(found);
-        }
-        match free_end(&x, &force) {
+        let end = match self.free {
+            FreePart::Found => {
+                if let Some(found) = by_jumps(points, self.segments) {
+                    turn(points, found.turned);
+                    let [x, force] = found.turned;
+                    notes.extend(x.then(|| self.turned_x()));
+                    notes.extend(force.then(|| PULLED.to_owned()));
+                    return Some(found);
+                }
+                free_end(&x, &force)
+            }
+            FreePart::None => [false; 2],
+            FreePart::Within(span) => end_of(&x, span),
+        };
+        let mut turned = [false; 2];
+        match end {
             [true, _] => {}
             [_, true] => turned[0] = true,
             _ => {
                 // Without a free end the sense of a way is a matter of the instrument, that of a force is not.
-                turned[0] = abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
+                turned[0] = self.abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
                 notes.push("there is no free part: the signs are taken as they are in the file".to_owned());
             }
         }
         if turned[0] {
-            for point in &mut *points {
-                point.x = -point.x;
-            }
-            notes.push(format!("the {} grows as the bodies go apart: its sign is turned", abscissa.name()));
+            turn(points, [true, false]);
+            notes.push(self.turned_x());
         }
+        Some(self.of_force(points, turned, notes))
     }
-    let x: Vec<f64> = points.iter().map(|point| point.x).collect();
-    let (compression, words) = match pulls(points, segments) {
-        Some(pulls) => (pulls, "the force is positive before the jump to the free part, where bodies pull"),
-        None => (rises(&x, &force) != Some(false), "the force falls as the bodies are pressed together"),
-    };
-    if !compression {
-        turned[1] = true;
-        for point in points {
-            point.force = -point.force;
+
+    fn turned_x(&self) -> String {
+        format!("the {} grows as the bodies go apart: its sign is turned", self.abscissa.name())
+    }
+
+    /// Turns the sign of the force, that of x being right. It rises where the bodies are pressed together; what it is before the jump to the
+    /// free part may speak against that.
+    fn of_force(&self, points: &mut [Point], [x, _]: Turned, notes: &mut Vec<String>) -> Direction {
+        let pulls = if self.free == FreePart::None { None } else { pulls(points, self.segments) };
+        let (ways, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
+        let rises = rises(&ways, &force);
+        let turned = rises.or(pulls) == Some(false);
+        if turned {
+            turn(points, [false, true]);
+            notes.push(if rises == Some(false) { FALLS } else { PULLED }.to_owned());
         }
-        notes.push(format!("{words}: its sign is turned"));
+        let is_doubtful = pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
+        Direction { turned: [x, turned], or: is_doubtful.then_some([x, !turned]) }
     }
-    Some(turned)
+}
+
+/// The end of x at which `span` is, low and high.
+fn end_of(x: &[f64], span: Span) -> [bool; 2] {
+    let middle = |of: Vec<f64>| median(of).unwrap_or(f64::NAN);
+    let (within, rest): (Vec<f64>, Vec<f64>) = x.iter().partition(|x| span.holds(**x));
+    let (within, rest) = (middle(within), middle(rest));
+    [within < rest, within > rest]
 }
 
 /// The signs at which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed together most.
-fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Turned> {
+fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Direction> {
     let pieces = match segments {
         None => one_way(points),
         Some(of) => {
@@ -147,22 +191,12 @@ fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Turned> {
         sum
     };
     let all = [[false, false], [true, false], [false, true], [true, true]];
-    let found = all.map(|turned| (sum(turned), turned)).into_iter();
+    let mut found: Vec<(f64, Turned)> = all.map(|turned| (sum(turned), turned)).to_vec();
     // Of equals the first: signs as they are in the file.
-    found.filter(|(sum, _)| *sum > 0.0).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, turned)| turned)
-}
-
-/// Says which signs are turned.
-fn said(abscissa: Abscissa, turned: Turned, notes: &mut Vec<String>) {
-    if turned[0] {
-        notes.push(format!("the {} grows as the bodies go apart: its sign is turned", abscissa.name()));
-    }
-    if turned[1] {
-        notes.push(
-            "the force is positive before the jump to the free part, where bodies pull: its sign is turned"
-                .to_owned(),
-        );
-    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
+    let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
+    Some(Direction { turned, or })
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
@@ -170,8 +204,9 @@ fn said(abscissa: Abscissa, turned: Turned, notes: &mut Vec<String>) {
 fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
     /// A jump is trusted from this share of the largest force.
     const LARGE: f64 = 0.3;
-    /// Rows behind the jump whose median is taken.
+    /// At most so many rows before the jump, and at most this share of all, whose median is taken.
     const ROWS: usize = 3;
+    const SHARE: usize = 20;
     let groups: Vec<Vec<Point>> = match segments {
         None => vec![points.to_vec()],
         Some(of) => [Segment::Approach, Segment::Retraction]
@@ -189,9 +224,14 @@ fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
         let limit = BEYOND * noise_of(&force).max(FLOOR * range(force.iter().copied()));
         let base = median(end.to_vec())?;
         let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
+        let rows = (force.len() / SHARE).clamp(1, ROWS);
+        // Among few rows a pull may be less than what is taken for noise.
+        if limit > LARGE * most {
+            continue;
+        }
         let Some(last) = force.iter().rposition(|p| (p - base).abs() > limit) else { continue };
         let behind =
-            median(force[(last + 1).saturating_sub(ROWS)..=last].iter().map(|p| p - base).collect())?;
+            median(force[(last + 1).saturating_sub(rows)..=last].iter().map(|p| p - base).collect())?;
         if behind.abs() > LARGE * most && found.is_none_or(|found| behind.abs() > found.abs()) {
             found = Some(behind);
         }

@@ -1,6 +1,7 @@
 //! The file of a measured curve as a preset holds it: its bytes, taken apart once for each way of reading them.
 
-use super::branches::{Asked, Branches};
+use super::asked::Asked;
+use super::branches::Branches;
 use super::points::Points;
 use super::read::{Measured, parse};
 use super::role::Spec;

@@ -1,6 +1,5 @@
 //! Files good, bad and damaged; signs, branches, noise.
 
-use super::branches::Asked;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::problem::Control;
@@ -365,7 +364,7 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
     let baseline = found.baseline.unwrap();
     for branch in &found.list {
         let jump = branch.attached.last().unwrap().force;
-        assert!(jump < -0.01 && branch.dropped > 0, "{jump} {}", branch.dropped);
+        assert!(jump < -0.01 && branch.jump > 0, "{jump} {}", branch.jump);
         assert!(branch.free.iter().all(|point| (point.force - baseline).abs() < 1e-3));
     }
 }

@@ -1,18 +1,19 @@
 //! The table `[data]` of a preset, read; and its points.
 
 use super::data::{
-    BASELINE, COLUMNS, DataSpec, FILE, FREE, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF, TILT,
-    UNCERTAIN,
+    BASELINE, COLUMNS, DataSpec, FILE, FREE, FREE_PART, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF,
+    SIGNS, SKIP, TILT, UNCERTAIN,
 };
 use super::given::Given;
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::value::Value;
-use crate::measured::branches::Asked;
-use crate::measured::points::{stiffness, tip_radius};
+use crate::measured::asked::{AskedError, signs};
+use crate::measured::points::{SPRING, TIP, Turned, overridden, stiffness, tip_radius};
 use crate::measured::source::Reading;
-use crate::measured::{Branches, Segment, Source};
+use crate::measured::{Asked, Branches, FreePart, Segment, Source};
 use crate::problem::Control;
+use crate::units::{Quantity, UnitSystem, parse_quantity};
 use std::sync::Arc;
 
 impl Given<'_> {
@@ -32,8 +33,13 @@ impl Given<'_> {
             },
             _ => None,
         };
+        let (free_part, apart) = self.free_part();
         let spec = DataSpec {
             source,
+            free_part,
+            apart,
+            turned: self.turned(),
+            skip: usize::try_from(self.integer(SKIP)).unwrap_or_default(),
             columns: self.text(COLUMNS),
             is_alone: self.values.contains_key(SETTINGS) && self.text(SETTINGS) == SETTINGS_OF[1],
             offset: optional(self, OFFSET),
@@ -67,6 +73,40 @@ impl Given<'_> {
     }
 }
 
+impl Given<'_> {
+    /// Which rows are apart, as it is said and in base units.
+    fn free_part(&mut self) -> (String, FreePart) {
+        let text = self.text(FREE_PART);
+        let units = self.units.clone();
+        let number = |text: &str| {
+            let typed = parse_quantity(text).map_err(|error| error.to_string())?;
+            let found = match units {
+                UnitSystem::Reduced => typed.pure(),
+                UnitSystem::Si(_) => typed.in_si(Quantity::Length, None),
+            };
+            found.map_err(|error| error.to_string())
+        };
+        let found = FreePart::parse(&text, &number);
+        let apart = self.asked(FREE_PART, found);
+        (text, apart)
+    }
+
+    /// Whether the signs of x and P are turned, where it is said.
+    fn turned(&mut self) -> Option<Turned> {
+        let text = self.text(SIGNS);
+        let found = (!text.trim().is_empty()).then(|| signs(&text)).transpose();
+        self.asked(SIGNS, found)
+    }
+
+    /// What is said of rows; a fault where it is not understood.
+    fn asked<T: Default>(&mut self, key: &'static str, found: Result<T, AskedError>) -> T {
+        found.unwrap_or_else(|error| {
+            self.faults.push(Invalid::Made { key: key.into(), cause: error.to_string() });
+            T::default()
+        })
+    }
+}
+
 impl Preset {
     /// How the points of a measured curve are made for this preset.
     #[must_use]
@@ -75,8 +115,33 @@ impl Preset {
             Control::Stiffness(k) => Some(k),
             Control::Displacement | Control::Force => None,
         };
-        let asked = Asked { segment: self.data.segment, ..Asked::default() };
+        let DataSpec { skip, segment, apart: free, turned, .. } = self.data;
+        let asked = Asked { skip, segment, free, turned, ..Asked::default() };
         Reading { columns: self.data.columns.clone(), units: self.units.clone(), spring, asked }
+    }
+
+    /// What was assumed as its measured curve was read, and what of the file is left out for the preset's word, in sentences; none
+    /// without a curve.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in words.
+    pub fn notes_of_reading(&self) -> Result<Vec<String>, String> {
+        let Some(source) = &self.data.source else { return Ok(Vec::new()) };
+        let measured = source.measured(&self.data.columns)?;
+        let mut notes = measured.notes.clone();
+        if self.data.is_alone {
+            let spring = match self.path.control {
+                Control::Stiffness(k) => Some(k),
+                Control::Displacement | Control::Force => None,
+            };
+            let of_file = [
+                overridden(measured.stiffness, spring, &self.units, SPRING),
+                overridden(measured.radius, self.gap.radius_of_curvature(), &self.units, TIP),
+            ];
+            let left_out = of_file.into_iter().flatten();
+            notes.extend(left_out.map(|what| format!("{what} is left out: data.settings = \"preset\"")));
+        }
+        Ok(notes)
     }
 
     /// The branches of its measured curve; `None` without one.

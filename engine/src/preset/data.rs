@@ -4,7 +4,8 @@
 //! `path.control` says nothing; where both say one they must agree, as must the radii of the tip, unless the preset alone
 //! counts.
 
-use crate::measured::{Segment, Source};
+use crate::measured::points::Turned;
+use crate::measured::{FreePart, Segment, Source};
 use std::sync::Arc;
 
 /// The key of the file.
@@ -19,6 +20,12 @@ pub const TILT: &str = "data.tilt";
 pub const COLUMNS: &str = "data.columns";
 /// The key of the branch that is used alone.
 pub const SEGMENT: &str = "data.segment";
+/// The key of which rows are apart.
+pub const FREE_PART: &str = "data.free_part";
+/// The key of which way the columns run.
+pub const SIGNS: &str = "data.signs";
+/// The key of how many rows at the beginning are left out.
+pub const SKIP: &str = "data.skip";
 /// The key of the keys that a fit may change.
 pub const FREE: &str = "data.free";
 /// The key of the values that are given with an error.
@@ -47,6 +54,14 @@ pub struct DataSpec {
     pub tilt: Option<f64>,
     /// The branch that is used alone.
     pub segment: Option<Segment>,
+    /// Which rows are apart, as a person says it; empty leaves them to be found.
+    pub free_part: String,
+    /// The same in base units.
+    pub apart: FreePart,
+    /// Whether the signs of x and P are turned; `None` leaves it to the points.
+    pub turned: Option<Turned>,
+    /// How many rows at the beginning are left out.
+    pub skip: usize,
     /// The keys that a fit may change, dotted or by their letters, with commas between.
     pub free: String,
     /// The values that are given with an error: `path.control.stiffness=10%`, with commas between.

@@ -6,7 +6,7 @@ use crate::fit::fitted::quantity;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Given, Residual};
-use crate::fit::{Reason, Verdict};
+use crate::fit::{Reason, Rows, Verdict};
 use crate::measured::{Abscissa, Origin, Segment};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
@@ -41,16 +41,10 @@ pub struct FitReport {
     pub rows_that_count_as_one: f64,
     /// The degrees of freedom of the errors.
     pub degrees_of_freedom: f64,
-    /// The points that are fitted.
-    pub points: usize,
-    /// Of them those in contact.
-    pub points_in_contact: usize,
+    /// The rows of the file by branch and part.
+    pub rows: Rows,
     /// Points more than four times their scale away.
     pub outliers: usize,
-    /// Samples within jumps, which are left out.
-    pub dropped: usize,
-    /// Rows left out by range, segment or shape.
-    pub left_out: usize,
     /// Whether the points determine the values.
     pub determined: bool,
     /// What they do not determine, in words.
@@ -186,11 +180,8 @@ impl FitReport {
             noise_of_neighbours: fit.scatter.contact,
             rows_that_count_as_one: fit.scatter.correlation.rows(),
             degrees_of_freedom: fit.degrees,
-            points: fit.points.iter().sum(),
-            points_in_contact: fit.points[0],
+            rows: fit.rows,
             outliers: fit.outliers,
-            dropped: fit.dropped[0],
-            left_out: fit.dropped[1],
             determined: fit.direction.is_none(),
             direction: fit.direction.clone(),
             condition: Some(fit.condition).filter(|condition| condition.is_finite()),
@@ -307,16 +298,9 @@ impl FitReport {
 
     fn close(&self, text: &mut String) {
         let units = &self.shown;
-        let _ = writeln!(
-            text,
-            "chi squared per point {}; {} points, {} of them in contact, {} outliers; dropped: {} within jumps, {} left out",
-            short(self.chi_squared, 4),
-            self.points,
-            self.points_in_contact,
-            self.outliers,
-            self.dropped,
-            self.left_out
-        );
+        text.push_str(&self.rows_text());
+        let (chi, fitted) = (short(self.chi_squared, 4), self.rows.fitted());
+        let _ = writeln!(text, "chi squared per point {chi}; {fitted} points, {} outliers", self.outliers);
         let sigma = |quantity, axis: usize| {
             let told = super::number::with_unit(units, quantity, self.sigma[axis], true, |x| short(x, 3));
             let from = match self.sigma_from[axis] {
@@ -371,6 +355,21 @@ impl FitReport {
         let _ = writeln!(text, "end: {end}");
     }
 
+    /// The rows by branch and part, as lines of text.
+    fn rows_text(&self) -> String {
+        let mut rows = vec![["rows", "contact", "free", "jump", "dropped"].map(str::to_owned).to_vec()];
+        let list = self.rows.branches().into_iter();
+        let counts = list.map(|(name, of)| (name, [of.contact, of.free, of.jump, of.dropped]));
+        for (name, counts) in counts.filter(|(_, counts)| counts.iter().any(|count| *count > 0)) {
+            rows.push(std::iter::once(name.to_owned()).chain(counts.map(|n| n.to_string())).collect());
+        }
+        if self.rows.pause > 0 {
+            let pause = self.rows.pause.to_string();
+            rows.push(["pause", "", "", "", &pause].map(str::to_owned).to_vec());
+        }
+        aligned(&rows, 1)
+    }
+
     /// The header and the row of a table with one row for each file.
     #[must_use]
     pub fn row(&self) -> [Vec<String>; 2] {
@@ -384,7 +383,7 @@ impl FitReport {
         }
         for (name, value) in [
             ("chi_squared", exact(self.chi_squared)),
-            ("points", self.points.to_string()),
+            ("points", self.rows.fitted().to_string()),
             ("outliers", self.outliers.to_string()),
             ("snaps", self.snaps.to_string()),
             ("reasons", self.reasons.iter().map(|reason| &*reason.sentence).collect::<Vec<_>>().join("; ")),

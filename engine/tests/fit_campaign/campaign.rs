@@ -16,13 +16,13 @@ const DEVIATIONS: f64 = 3.0;
 const DOUBTED: f64 = 0.02;
 
 /// The numbers asked for, `usual` where nobody does.
-fn asked(usual: Range<u64>) -> Range<u64> {
+pub fn asked(usual: Range<u64>) -> Range<u64> {
     let Ok(asked) = std::env::var("PULLOFF_CAMPAIGN") else { return usual };
     let (from, to) = asked.split_once("..").unwrap();
     from.parse().unwrap()..to.parse().unwrap()
 }
 
-fn wanted(kind: &Kind) -> bool {
+pub fn wanted(kind: &Kind) -> bool {
     std::env::var("PULLOFF_KIND").map_or(true, |name| name == kind.name)
 }
 
@@ -127,7 +127,7 @@ fn campaign(kinds: &[&Kind], numbers: &Range<u64>, has_coverage: bool) -> Vec<St
     failures
 }
 
-fn all() -> Vec<&'static Kind> {
+pub fn all() -> Vec<&'static Kind> {
     MEASURED.iter().chain(&DOUBTFUL).collect()
 }
 

@@ -408,6 +408,22 @@ fn soft(random: &mut Random, apart: f64) -> (Ball, f64, Record) {
     (ball, k, record)
 }
 
+/// A retraction on springs stiff and soft, of few rows and many, with much noise and little, from any load.
+pub fn any_retraction(random: &mut Random) -> Made {
+    let mut ball = Ball::draw(random);
+    ball.most *= random.even(0.7, 1.3);
+    let rows = random.scale(30.0, 600.0);
+    // Three rows apart at least: two more are within what is rounded.
+    let apart = random.scale(0.02, 0.3).max(5.0 / rows);
+    let rows = rows as usize;
+    let device = Device { stiffness: random.scale(0.02, 2.0) * ball.contact(), rows, apart };
+    let sigma = random.scale(0.001, 0.05) * ball.critical();
+    let record = Record::of(&device.cycle(&ball.body()), Seen::Position);
+    let mut record = record.only(Way::Out).noisy(sigma, random);
+    record.names_ways = false;
+    ball.behind(device.stiffness, &record, random)
+}
+
 fn soft_retraction(random: &mut Random, apart: f64) -> Made {
     let (ball, k, mut record) = soft(random, apart);
     record.names_ways = false;

@@ -24,6 +24,7 @@
 mod bodies;
 mod campaign;
 mod device;
+mod directions;
 mod kinds;
 mod record;
 mod rows;

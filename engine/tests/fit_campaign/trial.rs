@@ -99,10 +99,7 @@ pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
         }
     });
     let sentences = fit.reasons.iter().map(|reason| reason.sentence.clone());
-    let points = format!(
-        "{:?} rows in contact and apart, {:?} dropped, {:?} {:?}",
-        fit.points, fit.dropped, fit.noise, fit.scatter
-    );
+    let points = format!("{:?} {:?} {:?}", fit.rows, fit.noise, fit.scatter);
     Outcome {
         number,
         said: sentences.chain(fit.notes.iter().cloned()).chain([points]).collect(),

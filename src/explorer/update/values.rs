@@ -112,6 +112,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             }
             model.untried = None;
             tell_effect(model, &row.key, &preset);
+            tell_points(model, &preset);
             if let Some(said) = said {
                 model.tell(Level::Info, said);
             }
@@ -242,6 +243,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
     match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
         Ok(()) => {
             model.untried = None;
+            tell_points(model, &preset);
             change(model, preset)
         }
         Err(invalid) => {
@@ -279,24 +281,30 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
 /// What came of assignments that read a file: a measured curve is told of, with what was found in it.
 pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
     model.untried = None;
-    let (before, after) = (&model.preset.data, &preset.data);
-    if (&before.source, &before.columns) != (&after.source, &after.columns) {
-        tell_points(model, &preset);
-    }
+    tell_points(model, &preset);
     change(model, preset)
 }
 
+/// Tells how many points `preset` has by branch and part, where they are others than before or taken otherwise.
 fn tell_points(model: &mut Model, preset: &Preset) {
+    let taken = |preset: &Preset| (preset.data.columns.clone(), preset.reading().asked);
+    if model.preset.data.source == preset.data.source && taken(&model.preset) == taken(preset) {
+        return;
+    }
     let (Some(source), Some(branches)) = (&preset.data.source, preset.branches()) else { return };
     let path = source.path();
     let name = path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()));
     match branches {
         Ok(branches) => {
-            let rows: usize = branches.list.iter().map(|b| b.attached.len() + b.free.len()).sum();
-            let read = format!("{name}: {rows} points");
+            let parts = branches.list.iter().map(|branch| {
+                let (contact, apart) = (branch.attached.len(), branch.free.len());
+                let jump =
+                    if branch.jump > 0 { format!(", {} in the jump", branch.jump) } else { String::new() };
+                format!("{}: {contact} in contact, {apart} apart{jump}", branch.segment.name())
+            });
+            let read = format!("{name}: {}", parts.collect::<Vec<_>>().join("; "));
             // What was assumed of the columns, and how many rows were left out.
-            let of_file =
-                source.measured(&preset.data.columns).map(|read| read.notes.clone()).unwrap_or_default();
+            let of_file = preset.notes_of_reading().unwrap_or_default();
             let said: Vec<String> =
                 std::iter::once(read).chain(of_file).chain(branches.notes.iter().cloned()).collect();
             model.tell(Level::Info, said.join("; "));

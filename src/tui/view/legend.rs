@@ -71,8 +71,10 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Swallowtail => (5, "swallowtail"),
         Sign::Snaps(_) => (6, "snaps"),
         Sign::OfCrest(_) => (4, "crest"),
-        Sign::Measured { loading: true } => (4, "measured approach"),
-        Sign::Measured { loading: false } => (4, "measured retraction"),
+        Sign::Measured { loading: true, apart: false } => (4, "measured approach"),
+        Sign::Measured { loading: false, apart: false } => (4, "measured retraction"),
+        Sign::Measured { loading: true, apart: true } => (4, "measured approach, apart"),
+        Sign::Measured { loading: false, apart: true } => (4, "measured retraction, apart"),
     })
 }
 

@@ -1,6 +1,7 @@
 //! The preset by dotted key: its values and its rows.
 
 use super::{BasisSpec, Preset, start_key, turn_key};
+use crate::measured::asked::signs_text;
 use crate::preset::data;
 use crate::preset::family;
 use crate::preset::former;
@@ -64,6 +65,11 @@ impl Preset {
             data::UNCERTAIN => Some(&*data.uncertain).filter(|given| !given.is_empty())?.into(),
             data::SETTINGS => data.is_alone.then_some(data::SETTINGS_OF[1])?.into(),
             data::SEGMENT => data.segment?.name().into(),
+            data::FREE_PART => Some(&*data.free_part).filter(|text| !text.is_empty())?.into(),
+            data::SIGNS => Value::Text(signs_text(data.turned?)),
+            data::SKIP => {
+                Some(data.skip).filter(|skip| *skip > 0).and_then(|skip| i64::try_from(skip).ok())?.into()
+            }
             data::OFFSET => data.offset?.into(),
             data::BASELINE => data.baseline?.into(),
             data::TILT => data.tilt?.into(),

@@ -41,6 +41,9 @@ fn another(key: &str) -> Value {
         "data.free" => "E*,gamma".into(),
         "data.uncertain" => "gap.radius_of_curvature=1%".into(),
         "data.segment" => "approach".into(),
+        "data.free_part" => "x=-1..2".into(),
+        "data.signs" => "x=-,force=+".into(),
+        "data.skip" => 2.into(),
         "data.settings" => "preset".into(),
         _ => Value::Number(0.75),
     }
@@ -94,6 +97,9 @@ const FIELDS: &[&str] = &[
     "data.free",
     "data.uncertain",
     "data.segment",
+    "data.free_part",
+    "data.signs",
+    "data.skip",
     "data.settings",
     "data.offset",
     "data.baseline",
@@ -120,6 +126,10 @@ fn the_table_is_total() {
         free: _,
         uncertain: _,
         is_alone: _,
+        free_part: _,
+        apart: _,
+        turned: _,
+        skip: _,
     } = data;
     let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
     match basis {

@@ -285,6 +285,28 @@ pub static PARAMETERS: &[Parameter] = &[
     row(data::SEGMENT, "segment", "the branch of it that is used alone", Kind::Choice(&data::SEGMENTS))
         .or(Fallback::Described("none: both are used")),
     row(
+        data::FREE_PART,
+        "apart",
+        "which rows are apart: x=LO..HI as the file has x, in SI or with units, or none",
+        Kind::Text { max_chars: 100 },
+    )
+    .or(Fallback::Text("")),
+    row(
+        data::SIGNS,
+        "signs",
+        "which way its columns run: x=-,force=+ turns the sign of x alone; x is to grow as the bodies approach, and the force to be \
+         positive where they are pressed together",
+        Kind::Text { max_chars: 40 },
+    )
+    .or(Fallback::Text("")),
+    row(
+        data::SKIP,
+        "skip",
+        "so many of its first rows are left out",
+        Kind::Integer { min: 0, max: 1_000_000 },
+    )
+    .or(Fallback::Integer(0)),
+    row(
         data::SETTINGS,
         "settings",
         "whether the stiffness and the tip radius that the file states count, which must agree with the preset",

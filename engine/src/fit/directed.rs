@@ -1,0 +1,95 @@
+//! Fits in the direction in which the columns run. Where the points leave two in doubt both are fitted, and the better is taken.
+
+use super::options::{FitError, Options};
+use super::run::{Fit, fit_branches};
+use crate::measured::asked::signs_text;
+use crate::measured::points::Turned;
+use crate::measured::{Asked, Points};
+use crate::preset::Preset;
+use crate::progress::{Part, Progress};
+use crate::units::number::short;
+
+/// A direction is the better one if its χ² is smaller by so much.
+const CLEAR: f64 = 20.0;
+
+/// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
+    let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
+    let points = source.points(&reading).map_err(FitError::Data)?;
+    let said = reading.asked;
+    let asked = Asked {
+        segment: said.segment,
+        skip: said.skip,
+        free: said.free,
+        turned: said.turned,
+        ..options.asked
+    };
+    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
+    found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
+    Ok(found)
+}
+
+/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`. Where
+/// `progress` says stop, the best so far is what there is.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit(
+    preset: &Preset,
+    points: &Points,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Fit, FitError> {
+    if options.free.is_empty() {
+        return Err(FitError::NothingFree);
+    }
+    let branches = points.branches(&options.asked)?;
+    let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
+    let first = fit_branches(preset, &branches, options, &Part::new(progress, [0.0, 0.3]));
+    // One is judged by the noise of the other.
+    let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
+        let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
+        [of(0), of(1), of(2)]
+    });
+    let along = |turned: Turned, sigma, progress: &Part| {
+        let asked = Asked { turned: Some(turned), sigma, ..options.asked };
+        let branches = points.branches(&asked)?;
+        fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
+    };
+    let second = along(other, sigma, &Part::new(progress, [0.3, 0.6]));
+    let (first, second) = match (first, second) {
+        (Ok(first), Ok(second)) => (first, second),
+        (Ok(first), Err(_)) => return Ok(first),
+        (Err(error), Err(_)) => return Err(error),
+        (Err(_), Ok(_)) => return along(other, options.asked.sigma, &Part::new(progress, [0.6, 1.0])),
+    };
+    let [here, there] = [&first, &second].map(chi_squared);
+    let [taken, left] = if here <= there { [branches.turned, other] } else { [other, branches.turned] };
+    if (here - there).abs() <= CLEAR {
+        return Err(FitError::Direction { one: signs_text(taken), other: signs_text(left) });
+    }
+    let mut found = if here < there {
+        first
+    } else {
+        along(other, options.asked.sigma, &Part::new(progress, [0.6, 1.0]))?
+    };
+    found.notes.push(format!(
+        "the points leave in doubt which way their columns run: with {} chi squared is {}, with {} it is {}. --signs, or data.signs, \
+         says it",
+        signs_text(taken),
+        short(here.min(there), 4),
+        signs_text(left),
+        short(here.max(there), 4)
+    ));
+    Ok(found)
+}
+
+/// Σr² of the rows that are fitted.
+fn chi_squared(fit: &Fit) -> f64 {
+    let [contact, all] = [fit.rows.contact(), fit.rows.fitted()];
+    let of = |part: usize, rows: usize| fit.chi_squared_of[part].unwrap_or(0.0) * rows as f64;
+    of(0, contact) + of(1, all - contact)
+}

@@ -1,0 +1,182 @@
+//! What a person says of the rows: which are used, which are apart, and which way the columns run.
+
+use super::points::Turned;
+use super::role::Segment;
+use crate::text::quote;
+use thiserror::Error;
+
+/// Limits of values, as the file has them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// The smallest.
+    pub lo: f64,
+    /// The largest.
+    pub hi: f64,
+}
+
+/// Which rows are apart.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FreePart {
+    /// Those that are found.
+    #[default]
+    Found,
+    /// None: all rows are in contact.
+    None,
+    /// Those with x here, in base units and with the sign of the file.
+    Within(Span),
+}
+
+/// What is asked of a file's points.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Asked {
+    /// So many rows at the beginning of the file are left out.
+    pub skip: usize,
+    /// The branch that is used alone.
+    pub segment: Option<Segment>,
+    /// The range of x, in base units and with the signs of the file.
+    pub x: Option<Span>,
+    /// The range of P, likewise.
+    pub force: Option<Span>,
+    /// Which rows are apart.
+    pub free: FreePart,
+    /// σ of x, P and s, where they are known.
+    pub sigma: [Option<f64>; 3],
+    /// Whether the signs of x and P are turned, where a person says it.
+    pub turned: Option<Turned>,
+}
+
+/// Why what a person says of rows is not understood.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum AskedError {
+    /// Not of the form that is expected.
+    #[error("\"{text}\": expected {expected}")]
+    Form {
+        /// What was said, safe to show.
+        text: String,
+        /// What can be said.
+        expected: &'static str,
+    },
+    /// A range without anything in it.
+    #[error("\"{0}\": the range is empty: it goes from the smaller value to the larger one")]
+    Empty(String),
+    /// An end of a range that is no number of this problem, in words.
+    #[error("{0}")]
+    Number(String),
+}
+
+/// Reads the end of a range.
+pub type Number<'a> = &'a dyn Fn(&str) -> Result<f64, String>;
+
+impl Span {
+    /// Whether it holds a value.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> bool {
+        self.lo <= value && value <= self.hi
+    }
+
+    /// The range that a text such as `LO..HI` says; either end may be left out.
+    ///
+    /// # Errors
+    /// [`AskedError`]; `expected` says what `text` should have been.
+    pub fn parse(
+        text: &str,
+        range: &str,
+        expected: &'static str,
+        number: Number<'_>,
+    ) -> Result<Self, AskedError> {
+        let (lo, hi) = range.split_once("..").ok_or_else(|| form(text, expected))?;
+        let end = |text: &str, open: f64| match text.trim() {
+            "" => Ok(open),
+            text => number(text).map_err(AskedError::Number),
+        };
+        let span = Self { lo: end(lo, f64::NEG_INFINITY)?, hi: end(hi, f64::INFINITY)? };
+        if span.lo < span.hi { Ok(span) } else { Err(AskedError::Empty(quote(text))) }
+    }
+}
+
+impl FreePart {
+    /// The rows that `x=LO..HI` or `none` says; nothing leaves them to be found.
+    ///
+    /// # Errors
+    /// [`AskedError`].
+    pub fn parse(text: &str, number: Number<'_>) -> Result<Self, AskedError> {
+        const EXPECTED: &str = "x=LO..HI, or none where all rows are in contact";
+        match text.trim() {
+            "" => Ok(Self::Found),
+            "none" => Ok(Self::None),
+            said => match said.split_once('=') {
+                Some((axis, range)) if axis.trim() == "x" => {
+                    Span::parse(text, range, EXPECTED, number).map(Self::Within)
+                }
+                _ => Err(form(text, EXPECTED)),
+            },
+        }
+    }
+}
+
+/// Whether x and P are turned, as `x=-,force=+` says.
+///
+/// # Errors
+/// [`AskedError::Form`] where not both are said once.
+pub fn signs(text: &str) -> Result<Turned, AskedError> {
+    const EXPECTED: &str = "the signs of both columns, as x=-,force=+: minus turns one, so that x grows as the bodies approach and \
+         the force is positive where they are pressed together";
+    let wrong = || form(text, EXPECTED);
+    let mut turned = [None; 2];
+    for part in text.split(',') {
+        let (axis, sign) = part.split_once('=').ok_or_else(wrong)?;
+        let slot = match axis.trim() {
+            "x" => &mut turned[0],
+            "force" | "f" | "P" => &mut turned[1],
+            _ => return Err(wrong()),
+        };
+        let sign = match sign.trim() {
+            "+" => false,
+            "-" | "\u{2212}" => true,
+            _ => return Err(wrong()),
+        };
+        if slot.replace(sign).is_some() {
+            return Err(wrong());
+        }
+    }
+    match turned {
+        [Some(x), Some(force)] => Ok([x, force]),
+        _ => Err(wrong()),
+    }
+}
+
+/// The text that [`signs`] reads.
+#[must_use]
+pub fn signs_text(turned: Turned) -> String {
+    let [x, force] = turned.map(|turned| if turned { '-' } else { '+' });
+    format!("x={x},force={force}")
+}
+
+fn form(text: &str, expected: &'static str) -> AskedError {
+    AskedError::Form { text: quote(text), expected }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_said_is_read_or_refused_with_what_can_be_said() {
+        let number = |text: &str| text.parse::<f64>().map_err(|error| format!("{text}: {error}"));
+        let free = |text: &str| FreePart::parse(text, &number);
+        assert_eq!(free(" none "), Ok(FreePart::None));
+        assert_eq!(free(""), Ok(FreePart::Found));
+        assert_eq!(free("x = -3 .. 1e-1"), Ok(FreePart::Within(Span { lo: -3.0, hi: 0.1 })));
+        assert_eq!(free("x=..2"), Ok(FreePart::Within(Span { lo: f64::NEG_INFINITY, hi: 2.0 })));
+        for text in ["x", "force=1..2", "x=1", "1..2", "x=2..1", "x=1..1", "x=a..2", "x=nan..2"] {
+            assert!(free(text).is_err(), "{text}: {:?}", free(text));
+        }
+        for turned in [[false, false], [true, false], [false, true], [true, true]] {
+            assert_eq!(signs(&signs_text(turned)), Ok(turned));
+        }
+        assert_eq!(signs("f=+, x=-"), Ok([true, false]));
+        for text in ["", "x=-", "x=-,x=+", "x=1,force=-", "y=-,force=+", "x=-,force=+,x=-"] {
+            assert!(signs(text).unwrap_err().to_string().contains("x=-,force=+"), "{text}");
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! A branch cut into its parts: the rows in contact, those within the jump, those apart.
+
+use super::apart::jump;
+use super::asked::{FreePart, Span};
+use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
+use super::points::Point;
+use super::role::Segment;
+use super::signs::free_end;
+
+/// One branch, from the contact to the free end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// Which.
+    pub segment: Segment,
+    /// The points in contact.
+    pub attached: Vec<Point>,
+    /// The points apart.
+    pub free: Vec<Point>,
+    /// How many rows are within the jump: they are of neither.
+    pub jump: usize,
+}
+
+impl Branch {
+    /// Drops the rows around the jump that the noise of x has put on its other side.
+    pub(super) fn clears_jump(&mut self, noise: &Noise) {
+        /// Rows within so many σ of x from the jump may be on either side.
+        const NEAR: f64 = 5.0;
+        let [Some(last), Some(first)] = [self.attached.last(), self.free.first()] else { return };
+        let ends = [first.x - NEAR * noise.sigma[0], last.x + NEAR * noise.sigma[0]];
+        let line = Line::of(&self.free);
+        let limit = BEYOND * noise.sigma[1];
+        let pulled = |point: &Point| point.force < line.at(point.x) - limit;
+        let near = |point: &Point| (ends[0]..=ends[1]).contains(&point.x);
+        // Without a jump there is nothing that was mixed.
+        let attached: Vec<&Point> = self.attached.iter().filter(|point| near(point)).collect();
+        if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
+            return;
+        }
+        let before = self.attached.len() + self.free.len();
+        self.attached.retain(|point| !near(point) || pulled(point));
+        self.free.retain(|point| !near(point) || !pulled(point));
+        self.jump += before - self.attached.len() - self.free.len();
+    }
+}
+
+/// A branch cut into its parts; `asked` has the signs of the points.
+pub(super) fn branch(segment: Segment, in_order: &[Point], of_radius: bool, asked: FreePart) -> Branch {
+    let mut points = in_order.to_vec();
+    // Whatever the order of the file.
+    points.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
+    if of_radius {
+        let (mut free, attached): (Vec<Point>, _) = points.into_iter().partition(|point| point.x <= 0.0);
+        if asked == FreePart::None {
+            free.clear();
+        }
+        return Branch { segment, attached, free, jump: 0 };
+    }
+    match asked {
+        FreePart::None => return Branch { segment, attached: points, free: Vec::new(), jump: 0 },
+        FreePart::Within(span) => return apart_within(segment, points, span),
+        FreePart::Found => {}
+    }
+    let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
+    if let Some(jump) = jump(&x, &force) {
+        let rest = points.split_off(jump.at);
+        let within = within_jump(&rest, &rest, &force);
+        return Branch { segment, attached: points, free: rest[within..].to_vec(), jump: within };
+    }
+    if points.len() < 2 * END_ROWS || !free_end(&x, &force)[0] || !stands_still(&force) {
+        return Branch { segment, attached: points, free: Vec::new(), jump: 0 };
+    }
+    let count = (points.len() / END_SHARE).max(END_ROWS);
+    let end = &force[force.len() - count..];
+    let whole = range(force.iter().copied());
+    let limit = BEYOND * noise_of(&force).max(FLOOR * whole);
+    // Without single rows that are off: a median keeps the place of a step.
+    let force = filtered(&force);
+    // Without a jump the free part ends where three rows in a row are off.
+    let base = median(end.to_vec()).unwrap_or(0.0);
+    let mut off = 0;
+    let mut at = force.len();
+    while at > 0 && off < 3 {
+        at -= 1;
+        off = if (force[at] - base).abs() > limit { off + 1 } else { 0 };
+    }
+    let free = points.split_off((at + off).min(points.len()));
+    Branch { segment, attached: points, free, jump: 0 }
+}
+
+/// How many rows at the beginning of `rest`, which is behind a jump, have not come to the force of the rows `free`.
+fn within_jump(rest: &[Point], free: &[Point], force: &[f64]) -> usize {
+    let line = Line::of(free);
+    let limit = BEYOND * noise_of(force).max(FLOOR * range(force.iter().copied()));
+    rest.iter().position(|point| point.force >= line.at(point.x) - limit).unwrap_or(0)
+}
+
+/// A branch whose rows with x in `span` are apart, as a person says: rows beyond them are left out.
+fn apart_within(segment: Segment, mut points: Vec<Point>, span: Span) -> Branch {
+    let holds = |point: &Point| span.holds(point.x);
+    let Some(first) = points.iter().position(holds) else {
+        return Branch { segment, attached: points, free: Vec::new(), jump: 0 };
+    };
+    points.retain(|point| point.x >= span.lo);
+    let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
+    let free = points.split_off(first);
+    let mut within = 0;
+    if let Some(jump) = jump(&x, &force).filter(|jump| jump.at < first) {
+        // Rows behind the jump are not in contact, whether they have come to the force of the others or not.
+        let rest = points.split_off(jump.at);
+        within = within_jump(&rest, &free, &force);
+    }
+    Branch { segment, attached: points, free, jump: within }
+}
+
+/// The running median of five, of fewer at the ends.
+fn filtered(values: &[f64]) -> Vec<f64> {
+    let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
+    (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
+}
+
+/// Whether the force stands still at the end without a jump before it, as it does where bodies come apart that do not adhere: over the
+/// last eighth of the rows it neither goes on nor is it the least of all, as where a record ends at its smallest force.
+fn stands_still(force: &[f64]) -> bool {
+    const SHARE: usize = 8;
+    const FEWEST: usize = 10;
+    let count = (force.len() / SHARE).max(FEWEST);
+    if force.len() < 2 * count {
+        return false;
+    }
+    let (before, end) = force.split_at(force.len() - count);
+    let thirds: Vec<f64> =
+        end.chunks((count / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
+    let noise = noise_of(force);
+    let floor = FLOOR * range(force.iter().copied());
+    // The median of m rows is known to 1.25 σ/√m; of three the range is below 4.4 of these 95 of 100 times.
+    let error = 1.25 * noise / (count as f64 / 3.0).sqrt();
+    let goes_on = range(thirds.iter().copied()) > 5.0 * error + floor;
+    let level = median(end.to_vec()).unwrap_or(0.0);
+    let next = median(before[before.len() - count..].to_vec()).unwrap_or(0.0);
+    // The same again before it: a smallest force is rounder than that.
+    !goes_on
+        && ((next - level).abs() <= 2.0 * error + floor
+            || filtered(before).iter().any(|p| *p < level - BEYOND * noise - floor))
+}
+
+/// The line through a free part, by the medians of its halves.
+struct Line {
+    base: f64,
+    slope: f64,
+}
+
+impl Line {
+    fn of(points: &[Point]) -> Self {
+        let half = points.len() / 2;
+        let of = |part: &[Point], get: fn(&Point) -> f64| median(part.iter().map(get).collect());
+        let (near, far) = points.split_at(half);
+        let ends = [near, far].map(|part| Some([of(part, |p| p.x)?, of(part, |p| p.force)?]));
+        let whole = of(points, |p| p.force).unwrap_or(0.0);
+        match ends {
+            [Some([x0, p0]), Some([x1, p1])] if points.len() >= 4 * END_ROWS && x0 > x1 => {
+                let slope = (p1 - p0) / (x1 - x0);
+                Self { base: p0 - slope * x0, slope }
+            }
+            _ => Self { base: whole, slope: 0.0 },
+        }
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        self.base + self.slope * x
+    }
+}
+
+/// Takes rows for rows in contact whose force stands still, but not where it does on the branch that has most rows apart: a record that
+/// ends near its smallest force looks like that.
+pub(super) fn same_free_force(list: &mut [(Branch, Vec<Point>)], noise: &Noise, notes: &mut Vec<String>) {
+    /// Levels are one within so many of their errors, and this share of the range of the branch.
+    const SAME: f64 = 6.0;
+    const SHARE: f64 = 0.1;
+    let level = |branch: &Branch| median(branch.free.iter().map(|point| point.force).collect());
+    let most = list.iter().map(|(branch, _)| branch).max_by_key(|branch| branch.free.len());
+    let Some((most, at)) = most.and_then(|most| Some((most.free.len(), level(most)?))) else { return };
+    for (branch, _) in list {
+        let Some(found) = level(branch) else { continue };
+        let error = noise.sigma[1] * (1.0 / most as f64 + 1.0 / branch.free.len() as f64).sqrt();
+        let off = (found - at).abs();
+        let whole = range(branch.attached.iter().map(|point| point.force));
+        if off > SAME * error && off > SHARE * whole && 2 * branch.free.len() < most {
+            notes.push(format!(
+                "the last {} rows of the {} are taken for rows in contact: their force is not that of the rows apart",
+                branch.free.len(),
+                branch.segment.name()
+            ));
+            let rest = std::mem::take(&mut branch.free);
+            branch.attached.extend(rest);
+        }
+    }
+}
+
+/// Says where one branch has rows apart and another has none.
+pub(super) fn one_sided(list: &[Branch], notes: &mut Vec<String>) {
+    let without: Vec<&str> =
+        list.iter().filter(|branch| branch.free.is_empty()).map(|branch| branch.segment.name()).collect();
+    if let (Some(name), true) = (without.first(), without.len() < list.len()) {
+        notes.push(format!("the {name} has no rows apart: it ends in contact"));
+    }
+}

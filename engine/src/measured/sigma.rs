@@ -1,0 +1,77 @@
+//! How well the columns are known: σ of x, P and s.
+//!
+//! ```text
+//! σ_P = median |P_i − P_{i+1}| / 0.954                 of the free part, for normal noise
+//! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact
+//! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
+//! ```
+
+use super::free::Branch;
+use super::noise::{FLOOR, Noise, Origin, median, scatter_over};
+use super::points::Point;
+use crate::elementary::hypot;
+
+/// Steps between rows apart from which their noise is told.
+const FEWEST_APART: usize = 5;
+
+/// σ of x, P and s, the rows in the order of the file.
+pub(super) fn noise(
+    list: &[(Branch, Vec<Point>)],
+    given: [Option<f64>; 3],
+    (steps, converter): ([f64; 3], Option<f64>),
+    ranges: [f64; 3],
+    of_radius: bool,
+) -> Noise {
+    let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
+    let mut in_contact = Vec::new();
+    for (branch, in_order) in list {
+        // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
+        let touching =
+            in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
+        let with = |point: &Point| if of_radius { [point.force, point.x] } else { [point.x, point.radius] };
+        let (x, s): (Vec<f64>, Vec<f64>) = touching.map(with).map(|[x, s]| (x, s)).unzip();
+        radii.extend(scatter_over(&x, &s));
+        let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
+        in_contact.extend(scatter_over(&x, &force));
+        let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
+        rows.sort_unstable();
+        let free: Vec<&Point> =
+            in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
+        forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
+        ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
+    }
+    let radius = radii.into_iter().reduce(f64::min);
+    let neighbours = in_contact.into_iter().reduce(f64::min);
+    // Of few rows apart nothing is known: those in contact say more.
+    let is_known = forces.len() >= FEWEST_APART || neighbours.is_none();
+    let apart = median(forces).filter(|_| is_known).map(|step| step / 0.954);
+    // Of radii alone the scatter has that of the force in it: both cannot be told where neither is known.
+    let known = apart.is_some() || given[1].is_some();
+    let of_ways = || median(ways).map(|way| way / 1.652);
+    let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
+    let of = |found: Option<f64>, origin| found.map(|found| (found, origin));
+    let found = [
+        of(ways, if of_radius { Origin::Neighbours } else { Origin::Apart }),
+        of(apart, Origin::Apart).or(of(neighbours, Origin::Neighbours)),
+        of(radius, Origin::Neighbours),
+    ];
+    let step = converter.unwrap_or(0.0);
+    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3], step };
+    for axis in 0..3 {
+        let floor = FLOOR * ranges[axis];
+        if axis == 2 && floor == 0.0 {
+            // There is no such column.
+            continue;
+        }
+        let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
+        let (mut of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
+        // Noise below a step of the converter is not seen in differences: the force is rounded then.
+        if axis == 1 && of_data < step {
+            of_data = hypot(of_data, step / 12.0_f64.sqrt());
+        }
+        let least = floor.max(digits);
+        let found = (of_data.max(least), if of_data.max(digits) < floor { Origin::Assumed } else { origin });
+        (noise.sigma[axis], noise.from[axis]) = given[axis].map_or(found, |given| (given, Origin::Given));
+    }
+    noise
+}

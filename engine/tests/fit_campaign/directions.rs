@@ -1,0 +1,73 @@
+//! Which way the columns of made curves run: found from their rows, whatever is flipped.
+
+use super::campaign::{all, asked, wanted};
+use super::kinds::{Kind, any_retraction};
+use super::trial::{made, preset};
+use pulloff_engine::measured::{Asked, Points};
+use std::ops::Range;
+
+/// A retraction alone, of any kind.
+static ANY: Kind = Kind { name: "retraction of any kind", is_model: true, make: any_retraction };
+
+/// The kinds whose rows show which way their columns run, and whether x of them is turned.
+fn directed() -> impl Iterator<Item = (&'static Kind, bool)> {
+    const WITHOUT: [&str; 9] = [
+        "P(s)",
+        "Gent-Schultz P(s), 29 rows",
+        "Gent-Schultz P(s), 38 rows",
+        "tare of P(s)",
+        "ends at the last contact",
+        "retraction alone, ends at the last contact",
+        "Hertz",
+        "cone",
+        "punch",
+    ];
+    let has = |kind: &&Kind| wanted(kind) && !WITHOUT.contains(&kind.name);
+    all().into_iter().chain([&ANY]).filter(has).map(|kind| (kind, kind.name.starts_with("x turned")))
+}
+
+/// The share of sets, in each of the four directions of both columns, whose direction is found, and whose other is not thought as likely.
+fn directions(numbers: &Range<u64>) -> Vec<String> {
+    let mut failures = Vec::new();
+    for (kind, is_turned) in directed() {
+        let (mut wrong, mut doubtful, mut sets) = (0, 0, 0);
+        for number in numbers.clone() {
+            let preset = preset(&made(kind, number));
+            let points = preset.data.source.as_ref().unwrap().points(&preset.reading()).unwrap();
+            for flipped in [[false, false], [true, false], [false, true], [true, true]] {
+                let flip = |of: &[f64], is: bool| of.iter().map(|x| if is { -x } else { *x }).collect();
+                let points = Points {
+                    x: flip(&points.x, flipped[0]),
+                    force: flip(&points.force, flipped[1]),
+                    ..points.clone()
+                };
+                let truth = [flipped[0] != is_turned, flipped[1]];
+                sets += 1;
+                match points.branches(&Asked::default()) {
+                    Ok(found) if found.or.is_some() => doubtful += 1,
+                    Ok(found) if found.turned == truth => {}
+                    other => {
+                        wrong += 1;
+                        if wrong < 4 {
+                            println!(
+                                "  {number} {flipped:?}: {:?}",
+                                other.map(|found| (found.turned, found.notes))
+                            );
+                        }
+                    }
+                }
+            }
+        }
+        println!("{}: {wrong} of {sets} wrong, {doubtful} doubtful", kind.name);
+        if wrong > 0 {
+            failures.push(format!("{}: {wrong} of {sets} directions are wrong", kind.name));
+        }
+    }
+    failures
+}
+
+#[test]
+fn columns_that_run_the_other_way_are_turned_or_in_doubt() {
+    let failures = directions(&asked(0..10));
+    assert!(failures.is_empty(), "{failures:#?}");
+}
