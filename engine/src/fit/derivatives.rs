@@ -123,6 +123,29 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// How the residuals at `u` change with what `mover` moves, times `share` of each point by its number; points on jumps and at the ends
+    /// of arcs stay.
+    pub(super) fn changed(
+        &self,
+        u: &[f64],
+        mover: Mover,
+        share: impl Fn(usize) -> f64,
+    ) -> Option<DVector<f64>> {
+        let (_, Look { paths, feet }) = self.look(u)?;
+        let (per, weights) = (self.per_point(), self.weights());
+        let mut column = DVector::zeros(per * self.data.len());
+        for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
+            if let Some(foot @ Nearest { foot: Foot::Radius(_), .. }) = foot {
+                let by = paths.of(datum.segment).moves(mover, foot.at);
+                let share = share(i);
+                (0..per).for_each(|k| column[per * i + k] = share * moved(foot, by, weights, k));
+            }
+        }
+        column.iter().all(|x| x.is_finite()).then_some(column)
+    }
+}
+
 impl LeastSquares for Problem {
     type Look = Look;
 

@@ -4,15 +4,19 @@
 //! |---|---|
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
-//! | `scores` | would a gap of another exponent fit better |
+//! | `scores` | would a gap of another exponent fit better, or an adhesion with a range |
+//! | `rate` | does the work of adhesion grow with the speed of the edge |
+//! | `touch` | do the bodies pull before they touch |
 //! | `spring` | what would another spring give |
 //!
 //! Here: are the values such as anything has.
 
 mod apart;
 mod contact;
+mod rate;
 mod scores;
 mod spring;
+mod touch;
 
 pub(super) use spring::of_spring;
 
@@ -71,6 +75,9 @@ pub(super) fn reasons(
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
+    reasons.extend(touch::of_touch(problem, solved, scatter, inner));
+    reasons.extend(scores::of_range(problem, solved, scatter, inner));
+    reasons.extend(rate::of_rate(problem, solved, scatter, inner));
     reasons.extend(unlikely(problem, solved, preset));
     reasons.extend(of_range(preset));
     reasons

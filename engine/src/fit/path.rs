@@ -42,6 +42,8 @@ pub enum Mover {
     Adhesion,
     /// k.
     Stiffness,
+    /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
+    Range,
 }
 
 /// A piece of a path.
@@ -329,9 +331,27 @@ impl Path {
             Mover::Modulus => [0.5 * root, force + e * s * root],
             Mover::Adhesion => [-0.5 * root, -e * s * root],
             Mover::Stiffness => return [-self.compliance * force, 0.0, 0.0],
+            Mover::Range => self.of_range(s, root),
         };
         let x = if self.abscissa == Abscissa::Radius { 0.0 } else { delta + self.compliance * force };
         [x, force, 0.0]
+    }
+
+    /// How δ and P move with 1/σ₀², where `root` is T = √(2πγs/E*). The zone of the tension ends at c = s/cos ψ, with ψ → q/σ₀:
+    ///
+    /// ```text
+    /// q = √(πE*γ/2s)     ∂δ = T (E* g'(s) q/6 − 5q²/24)     ∂P = 2E* s ∂δ − 4s²q³/3
+    /// ```
+    ///
+    /// These are the first terms of D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), for any gap.
+    fn of_range(&self, s: f64, root: f64) -> [f64; 2] {
+        let [e, gamma] = self.material;
+        // ∂P/∂s = 2E*(s g' − 3T/2)
+        let Some((_, [_, slope, _])) = self.at(s) else { return [0.0; 2] };
+        let transformed = (slope / (2.0 * e) + 1.5 * root) / s;
+        let q = (0.25 * TAU * e * gamma / s).sqrt();
+        let delta = root * q * (e * transformed / 6.0 - 5.0 * q / 24.0);
+        [delta, 2.0 * e * s * delta - 4.0 / 3.0 * s * s * q.powi(3)]
     }
 
     /// δ at the contact radius `s`.

@@ -155,7 +155,10 @@ pub(super) fn fit_branches(
     let mut problem = posed(preset, branches, options, &mut notes)?;
     // Without rows apart neighbours say how well the force is known, never the residuals themselves.
     let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
-    let least = of_neighbours.then_some(FLOOR * branches.ranges[1]);
+    // Nor are both told apart of radii, but by the slope of the curve.
+    let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
+    let least = of_neighbours
+        .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
     let found = |problem: &mut Problem| -> Result<_, FitError> {
         let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
             .ok_or(FitError::NoStart)?;
@@ -268,20 +271,27 @@ fn of_part(problem: &Problem, solved: &Solved, free: bool) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, not below it.
+/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, not below its second, and so is that of x where its first is
+/// finite.
 fn last(
     problem: &mut Problem,
     u: &[f64],
     robust: bool,
-    least: Option<f64>,
+    least: Option<[f64; 2]>,
     progress: &dyn Progress,
 ) -> Result<Solved, FitError> {
     /// Fits by which σ has settled.
     const TIMES: usize = 2;
     let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
-    for _ in 0..if least.is_some() { TIMES } else { 0 } {
-        let Some(scale) = problem.scatter(&solved).contact else { break };
-        problem.sigma[1] = (problem.sigma[1] * scale).max(least.unwrap_or(0.0));
+    let Some([least_x, least_force]) = least else { return Ok(solved) };
+    for _ in 0..TIMES {
+        let off = if least_x.is_finite() { problem.off(&solved) } else { None };
+        let of_force = || problem.scatter(&solved).contact.map(|scale| [1.0, scale]);
+        let Some([x, force]) = off.or_else(of_force) else { break };
+        if off.is_some() {
+            problem.sigma[0] = (problem.sigma[0] * x).max(least_x);
+        }
+        problem.sigma[1] = (problem.sigma[1] * force).max(least_force);
         let u = &solved.minimum.parameters;
         solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     }

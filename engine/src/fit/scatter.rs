@@ -14,6 +14,7 @@
 use super::problem::{Datum, Problem};
 use super::solve::Solved;
 use crate::elementary::{exp, ln};
+use crate::measured::Abscissa;
 use crate::measured::branches::median;
 
 /// Rows farther off than so many times the scale of all are outliers, and left out.
@@ -96,7 +97,8 @@ pub struct Scatter {
 }
 
 impl Problem {
-    /// The residuals of one branch, in contact along the path or apart in the order of the file, without outliers.
+    /// The residuals of one branch, in contact along the path or apart in the order of the file, without outliers. Radii that go one way
+    /// in the file are in its order: the noise of a radius would shuffle rows whose forces differ.
     pub(super) fn rows(&self, solved: &Solved, branch: usize, free: bool, part: usize) -> Vec<Row> {
         let per = self.per_point();
         let residuals = &solved.minimum.at.residuals;
@@ -104,8 +106,14 @@ impl Problem {
         let of = self.data.iter().enumerate().filter(|(_, datum)| is_wanted(datum));
         let mut rows: Vec<Row> =
             of.map(|(index, _)| Row { index, residual: residuals[per * index + part] }).collect();
+        let by_file = |row: &Row| self.data[row.index].point.row;
         if free {
-            rows.sort_by_key(|row| self.data[row.index].point.row);
+            rows.sort_by_key(by_file);
+        } else if self.abscissa == Abscissa::Radius {
+            let mut in_file = rows.clone();
+            in_file.sort_by_key(by_file);
+            let radii: Vec<f64> = in_file.iter().map(|row| self.data[row.index].point.x).collect();
+            rows = if goes_on(&radii) { in_file } else { rows };
         }
         let sizes = rows.iter().map(|row| row.residual.abs()).collect();
         let limit = OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0);
@@ -155,6 +163,71 @@ impl Problem {
     }
 }
 
+impl Problem {
+    /// By how much σ of x and of P are off where neither was known, by how the noise of the rows in contact varies with the slope of the
+    /// curve: that of x matters where it is steep, that of P where it is level. `None` of too few rows.
+    ///
+    /// ```text
+    /// var d_i = a n_x² + b n_P²,     n the normal of the curve in σ,     (√a, √b) by the largest likelihood
+    /// ```
+    pub(super) fn off(&self, solved: &Solved) -> Option<[f64; 2]> {
+        const TIMES: usize = 50;
+        const SAME: f64 = 1e-4;
+        let u = &solved.minimum.parameters;
+        let feet = self.feet(&self.paths(u)?, &self.instrument_at(u))?;
+        let normal = |row: &Row| feet[row.index].map(|foot| [0, 1].map(|k| foot.normals[0][k].powi(2)));
+        let mut rows: Vec<([f64; 2], f64)> = Vec::new();
+        for branch in 0..self.branches() {
+            for three in self.rows(solved, branch, false, 0).windows(3) {
+                let (Some(a), Some(b), Some(c)) = (normal(&three[0]), normal(&three[1]), normal(&three[2]))
+                else {
+                    continue;
+                };
+                let d = three[0].residual - 2.0 * three[1].residual + three[2].residual;
+                rows.push(([0, 1].map(|k| (a[k] + 4.0 * b[k] + c[k]) / 6.0), d * d / 6.0));
+            }
+        }
+        if rows.len() < FEWEST_APART {
+            return None;
+        }
+        let middle = median(rows.iter().map(|(_, square)| square.sqrt()).collect())? / 0.6745;
+        let mut found = [middle * middle; 2];
+        for _ in 0..TIMES {
+            // Normal equations of the squares, weighted by what they vary by.
+            let [mut xx, mut xp, mut pp, mut x, mut p] = [0.0; 5];
+            for ([of_x, of_p], square) in &rows {
+                let variance = found[0] * of_x + found[1] * of_p;
+                let square = square.min(CLIPPED * CLIPPED * variance) / LEFT;
+                let weight = 1.0 / (variance * variance);
+                xx += weight * of_x * of_x;
+                xp += weight * of_x * of_p;
+                pp += weight * of_p * of_p;
+                x += weight * of_x * square;
+                p += weight * of_p * square;
+            }
+            let whole = xx * pp - xp * xp;
+            let both = [(x * pp - p * xp) / whole, (p * xx - x * xp) / whole];
+            // None is below 0: the other has it all.
+            let next = if both[0] <= 0.0 {
+                [0.0, p / pp]
+            } else if both[1] <= 0.0 {
+                [x / xx, 0.0]
+            } else {
+                both
+            };
+            if next.iter().any(|next| !next.is_finite()) {
+                return None;
+            }
+            let is_same = (0..2).all(|k| (next[k] - found[k]).abs() <= SAME * found[k]);
+            found = next;
+            if is_same {
+                break;
+            }
+        }
+        Some(found.map(f64::sqrt))
+    }
+}
+
 /// The variance around 0 of normal values, some of which may be off.
 #[must_use]
 pub fn variance(values: &[f64]) -> Option<f64> {
@@ -171,6 +244,15 @@ pub fn variance(values: &[f64]) -> Option<f64> {
         }
     }
     Some(found)
+}
+
+/// Whether values go on from row to row, but for some noise: by the squares of their steps over those around their mean, 2 of values
+/// without an order; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
+fn goes_on(values: &[f64]) -> bool {
+    const MOST: f64 = 0.5;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let around: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() < MOST * around
 }
 
 /// Values without their mean and their slope over the order.

@@ -1,6 +1,8 @@
 //! Known values from made curves: closed forms of JKR's sphere and of the cone, and our own unloading of a wavy sphere.
 
 use super::least_squares::Ending;
+use super::path::{Mover, Path, Reach};
+use super::way::Way;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::Asked;
@@ -365,4 +367,41 @@ fn profile_and_bootstrap_agree_with_the_errors_and_the_best_so_far_is_kept() {
     assert_eq!(found.parameters, again.parameters);
     let stopped = fit(&start, &points, &options, &until(39));
     assert_eq!(stopped.unwrap().ending, Ending::Cancelled);
+}
+
+#[test]
+fn a_range_of_the_adhesion_moves_the_curve_as_maugis_says() {
+    // With E* = 9π/8, γ = R = 1 the pull-off force of JKR is at s = 1, and λ³ = 9 σ₀³/(2π E*²).
+    let e = 9.0 * PI / 8.0;
+    let preset = read(
+        "sphere",
+        &format!(
+            "format = 1\nunits = \"reduced\"\n[material]\neffective_modulus = {e:e}\nwork_of_adhesion = 1\n[gap]\nshape = \"sphere\"\n\
+             radius_of_curvature = 1\n[path]\ncontrol = \"displacement\"\nstart_contact_radius = 2\n"
+        ),
+    )
+    .unwrap();
+    let reach = Reach { most: [1.0, 1.0, 2.0], turn: [1.0, 1.0], radius: Some(2.0), length: 1.0 };
+    let path = Path::new(&preset, Abscissa::Approach, &reach, Way::Down).unwrap();
+    let (at, _) = path.at(1.0).unwrap();
+    assert!((at[1] / (-1.5 * PI) - 1.0).abs() < 1e-12, "{at:?}");
+    let [delta, force, _] = path.moves(Mover::Range, at);
+    // P/(πγR) = −1.5 − 0.1638/λ² + …, by the equations of Maugis (1992) at λ = 20 to 100.
+    let lambda = (9.0 / (TAU * e * e)).cbrt();
+    assert!((force * lambda * lambda / PI + 0.1638).abs() < 5e-5, "{force}");
+    // The whole equations at a small range, with the same contact radius.
+    let tension = 1e4;
+    let edge = |psi: f64| {
+        let (sin, cos) = psi.sin_cos();
+        let c = 1.0 / cos;
+        let far = c * c / PI * (psi + sin * cos - 2.0 * psi * cos * cos);
+        far + 4.0 * tension * c / (PI * e) * (psi * sin - 2.0 * (0.5 * psi).sin().powi(2)) - 1.0 / tension
+    };
+    let (mut lo, mut hi) = (1e-6, 1e-2);
+    for _ in 0..100 {
+        let middle = 0.5 * (lo + hi);
+        if edge(middle) > 0.0 { hi = middle } else { lo = middle }
+    }
+    let whole = 1.0 - 2.0 * tension / e * lo.tan();
+    assert!(((whole - at[0]) * tension * tension / delta - 1.0).abs() < 1e-2, "{whole} {at:?} {delta}");
 }

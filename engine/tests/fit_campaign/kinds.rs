@@ -45,7 +45,7 @@ pub const MEASURED: [Kind; 11] = [
 ];
 
 /// What no sphere with adhesion at its edge alone is, or no instrument should do: right, or said.
-pub const DOUBTFUL: [Kind; 33] = [
+pub const DOUBTFUL: [Kind; 34] = [
     Kind { name: "Gent-Schultz P(s), 29 rows", is_model: false, make: |random| peeled(random, 29) },
     Kind { name: "Gent-Schultz P(s), 38 rows", is_model: false, make: |random| peeled(random, 38) },
     Kind { name: "force noise 0.1 P_c", is_model: true, make: loud },
@@ -53,6 +53,7 @@ pub const DOUBTFUL: [Kind; 33] = [
     Kind { name: "retraction alone, ends at the last contact", is_model: true, make: cut_retraction },
     Kind { name: "clipped", is_model: false, make: clipped },
     Kind { name: "12 bit, coarse", is_model: false, make: coarse },
+    Kind { name: "P(s), 3 % outliers", is_model: true, make: radii_with_outliers },
     Kind { name: "tare of P(s)", is_model: false, make: tare },
     Kind { name: "gap r^4", is_model: false, make: quartic },
     Kind { name: "Tabor 0.5", is_model: false, make: |random| ranged(random, 0.5) },
@@ -283,6 +284,12 @@ fn radii(ball: &Ball, rows: usize, random: &mut Random) -> Record {
 fn of_radius(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let record = radii(&ball, 80, random);
+    ball.made(&record, "\"displacement\"")
+}
+
+fn radii_with_outliers(random: &mut Random) -> Made {
+    let ball = Ball::draw(random);
+    let record = radii(&ball, 80, random).with_outliers(0.03, 0.3 * ball.critical(), random);
     ball.made(&record, "\"displacement\"")
 }
 

@@ -48,7 +48,6 @@ fn said(name: &str) {
 }
 
 #[test]
-#[ignore = "of 29 rows the speed of the edge is not seen"]
 fn adhesion_that_grows_with_the_speed_of_the_edge_is_said() {
     said("Gent-Schultz P(s), 29 rows");
     said("Gent-Schultz P(s), 38 rows");
@@ -89,7 +88,6 @@ fn a_gap_that_is_no_sphere_is_said() {
 }
 
 #[test]
-#[ignore = "a range of the adhesion is not seen in the residuals"]
 fn adhesion_of_a_range_is_said() {
     right_or_said("Tabor 0.5");
     right_or_said("Tabor 1");

@@ -173,7 +173,10 @@ fn bin(
     Some(Bin {
         segment: datum(rows.first()?).segment,
         count: rows.len(),
-        x: [datum(rows.last()?).point.x, datum(rows.first()?).point.x],
+        x: rows
+            .iter()
+            .map(|row| datum(row).point.x)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]),
         mean: rows.iter().map(|row| row.residual).sum::<f64>() / count,
         variance: (whole - taken).max(LEAST_LEFT * whole),
     })

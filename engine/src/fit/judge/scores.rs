@@ -1,4 +1,4 @@
-//! Whether another law would fit better: a gap that is no paraboloid.
+//! Whether another law would fit better: a gap that is no paraboloid, an adhesion that has a range.
 //!
 //! ```text
 //! r(n) = r + z n,     n = −z⊥ᵀr/|z⊥|²,     t = n |z⊥|/s,     |z⊥|² = zᵀz − (Jᵀz)ᵀ (JᵀJ)⁻¹ Jᵀz
@@ -11,6 +11,7 @@
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
+use super::super::path::Mover;
 use super::super::problem::{Problem, Target};
 use super::super::scatter::Scatter;
 use super::super::solve::Solved;
@@ -20,29 +21,37 @@ use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
 use crate::measured::Segment;
-use crate::units::number::short;
+use crate::problem::Groups;
+use crate::units::Quantity;
+use crate::units::number::{said, short};
 use nalgebra::{DMatrix, DVector};
 
-/// The share of right fits that the test flags.
+/// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
 /// Residuals count as so many s at most.
 const MOST: f64 = 3.0;
+pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
 
-/// n and t of the residuals that change by `z`.
-fn score(
+/// n and t of the residuals that change by `z`. Where `alone` says which rows are off alone, these say nothing, and the noise of neighbours is
+/// taken for that of all others: what the rows differ by beside z is then no noise.
+pub(super) fn score(
     problem: &Problem,
     solved: &Solved,
     scatter: &Scatter,
     inner: &DMatrix<f64>,
     z: &DVector<f64>,
+    alone: Option<&[bool]>,
 ) -> Option<[f64; 2]> {
     let s = scatter.contact?.max(ROUNDING);
     let at = &solved.minimum.at;
     let along = inner * at.jacobian.tr_mul(z);
     let across = z - &at.jacobian * &along;
     let left = z.dot(&across);
-    let most = MOST * f64::max(s, solved.scale);
-    let clipped = at.residuals.map(|r| r.clamp(-most, most));
+    let most = if alone.is_some() { MOST_OF_NEIGHBOURS * s } else { MOST * f64::max(s, solved.scale) };
+    let mut clipped = at.residuals.map(|r| r.clamp(-most, most));
+    for (i, _) in alone.unwrap_or_default().iter().enumerate().filter(|(_, alone)| **alone) {
+        clipped[i] = 0.0;
+    }
     // A robust fit leaves other residuals orthogonal to J than these, and one with priors none.
     let mut slope = at.jacobian.tr_mul(&clipped);
     for prior in &problem.priors {
@@ -54,7 +63,8 @@ fn score(
     let used = z.iter().filter(|z| **z != 0.0).count() as f64;
     let own: f64 = across.iter().zip(&clipped).map(|(z, r)| (z * (r + z * n)).powi(2)).sum();
     let own = own * used / (used - along.len() as f64 - 1.0).max(1.0);
-    let variance = f64::max(s * s * left, own) * scatter.correlation.rows();
+    let variance = if alone.is_some() { s * s * left } else { f64::max(s * s * left, own) };
+    let variance = variance * scatter.correlation.rows();
     let t = n * left / variance.sqrt();
     (left > 1e-9 * z.norm_squared() && t.is_finite()).then_some([n, t])
 }
@@ -82,7 +92,7 @@ pub(super) fn of_shape(
         LeastSquares::residuals(&other, u)
     };
     let z = (with(STEP)? - with(-STEP)?) / (2.0 * STEP);
-    let [n, t] = score(problem, solved, scatter, inner?, &z)?;
+    let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
             "a gap that grows as r^n describes the points better than r^2: n near {} ({} standard errors from 2). The gap is no \
@@ -91,5 +101,32 @@ pub(super) fn of_shape(
             short(t.abs(), 2)
         );
         Reason::new("gap", 2.0 + n, sentence)
+    })
+}
+
+/// An adhesion that has a range: the edge is no longer sharp, by the first order in it.
+pub(super) fn of_range(
+    problem: &Problem,
+    solved: &Solved,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+) -> Option<Reason> {
+    /// The separation that the tension reaches to, over the z₀ of Tabor's number, by the usual match.
+    const OF_EQUILIBRIUM: f64 = 0.97;
+    let u = &solved.minimum.parameters;
+    let z = problem.changed(u, Mover::Range, |_| 1.0)?;
+    let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    let preset = problem.preset_at(u, Segment::Retraction)?;
+    let reach = preset.material.work_of_adhesion * n.max(0.0).sqrt();
+    let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM)).tabor?;
+    (n > 0.0 && 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
+        let sentence = format!(
+            "adhesion with a range describes the points better than one at the edge alone: it acts up to a separation near {}, Tabor's mu \
+             near {} ({} standard errors). The JKR limit of this method does not hold",
+            said(&preset.units, Quantity::Length, reach),
+            short(tabor, 2),
+            short(t, 2)
+        );
+        Reason::new("range", tabor, sentence)
     })
 }
