@@ -28,6 +28,7 @@ use super::solve::Solved;
 use super::verdict::Reason;
 use crate::elementary::hypot;
 use crate::measured::converter::Clipped;
+use crate::measured::{Abscissa, Branches, SPARSE};
 use crate::preset::Preset;
 use crate::problem::Groups;
 use crate::problem::groups::LARGE_TABOR;
@@ -81,6 +82,21 @@ pub(super) fn reasons(
     reasons.extend(unlikely(problem, solved, preset));
     reasons.extend(of_range(preset));
     reasons
+}
+
+/// Branches of so few rows that those apart would not be seen, where nothing says that there are none or which force they have.
+pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> {
+    let is_said =
+        branches.baseline.is_some() || preset.data.baseline.is_some() || !preset.data.free_part.is_empty();
+    if is_said || branches.abscissa == Abscissa::Radius {
+        return None;
+    }
+    let most = branches.list.iter().map(|branch| branch.attached.len()).max()?;
+    let sentence = format!(
+        "of branches of {most} rows at most nothing tells whether some are apart: give data.baseline, the force where they are, or \
+         --free-part"
+    );
+    (most < SPARSE).then(|| Reason::new("sparse", most as f64, sentence))
 }
 
 /// Rows at the end of the range of a converter.

@@ -4,7 +4,7 @@ use super::chance::t_of;
 use super::determined::determined;
 use super::fitted::Fitted;
 use super::intervals::{block, bootstrap, profile};
-use super::judge::{doubts, of_spring, reasons};
+use super::judge::{doubts, of_sparse, of_spring, reasons};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
@@ -191,7 +191,8 @@ pub(super) fn fit_branches(
     notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
     let ending = if progress.stop() { Ending::Cancelled } else { solved.minimum.ending };
-    let reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
+    let mut reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
+    reasons.extend(of_sparse(branches, preset));
     let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);

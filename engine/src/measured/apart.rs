@@ -24,6 +24,11 @@ const OFF: f64 = 5.0;
 const ALONE: f64 = 2.0;
 /// Of rises that are larger than those beside them so many are looked at, the largest first.
 const TRIED: usize = 8;
+/// Of fewer rows than this neighbours do not tell noise from what the force goes on: a jump is then a rise by so many times the range of the
+/// rows behind it, and by this share of the whole range.
+pub(crate) const SPARSE: usize = 20;
+const OF_FEW: f64 = 4.0;
+const OF_RANGE: f64 = 0.05;
 /// Rows behind the jump by which a slope is told from their scatter.
 const MANY: usize = 20;
 
@@ -42,6 +47,26 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
     if n < 2 * FEWEST {
         return None;
     }
+    of_many(x, force).or_else(|| if n < SPARSE { of_few(force) } else { None })
+}
+
+/// The jump of so few rows that one alone is as high as their noise seems to be.
+fn of_few(force: &[f64]) -> Option<Jump> {
+    let n = force.len();
+    let whole = range(force.iter().copied());
+    let found = (FEWEST..=n - BEHIND).filter_map(|at| {
+        let height = force[at] - force[at - 1];
+        let behind = range(force[at..].iter().copied()).max(FLOOR * whole);
+        let was_rising = force[at - 1] - force[at - 2] > GOES_ON * height;
+        let is_jump = height > OF_RANGE * whole && height > OF_FEW * behind && !was_rising;
+        is_jump.then_some(Jump { at, deviations: height / behind })
+    });
+    found.max_by(|a, b| (force[a.at] - force[a.at - 1]).total_cmp(&(force[b.at] - force[b.at - 1])))
+}
+
+/// The jump of enough rows.
+fn of_many(x: &[f64], force: &[f64]) -> Option<Jump> {
+    let n = force.len();
     let sigma = scatter_over(x, force).unwrap_or(0.0).max(FLOOR * range(force.iter().copied()));
     if sigma <= 0.0 {
         return None;

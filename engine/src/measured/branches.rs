@@ -11,7 +11,7 @@
 use super::asked::{Asked, FreePart, Span};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::free::Branch;
-use super::free::{branch, one_sided, same_free_force};
+use super::free::{as_elsewhere, branch, one_sided, same_free_force};
 pub(crate) use super::noise::median;
 use super::noise::{END_ROWS, range};
 pub use super::noise::{FLOOR, Noise, Origin};
@@ -127,6 +127,9 @@ impl Points {
             return Err(BranchError::NoSegment(asked.segment.map_or("branch", Segment::name)));
         }
         list.sort_by_key(|(branch, _)| branch.segment == Segment::Retraction);
+        if asked.free == FreePart::Found {
+            as_elsewhere(&mut list);
+        }
         let used: Vec<&Point> =
             list.iter().flat_map(|(branch, _)| branch.attached.iter().chain(&branch.free)).collect();
         if used.len() < END_ROWS {

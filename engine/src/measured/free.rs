@@ -1,6 +1,6 @@
 //! A branch cut into its parts: the rows in contact, those within the jump, those apart.
 
-use super::apart::jump;
+use super::apart::{SPARSE, jump};
 use super::asked::{FreePart, Span};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
 use super::points::Point;
@@ -192,6 +192,30 @@ pub(super) fn same_free_force(list: &mut [(Branch, Vec<Point>)], noise: &Noise, 
             ));
             let rest = std::mem::take(&mut branch.free);
             branch.attached.extend(rest);
+        }
+    }
+}
+
+/// Takes the last rows of a short branch for rows apart where another branch has some and these have their force: the force of few rows may
+/// go over from contact to none without a jump that is seen.
+pub(super) fn as_elsewhere(list: &mut [(Branch, Vec<Point>)]) {
+    /// Forces are one within so many times the range of those apart, and this share of that of the branch; and rows of one, at least.
+    const SAME: f64 = 3.0;
+    const SHARE: f64 = 0.02;
+    const FEWEST: usize = 2;
+    let forces: Vec<f64> = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
+    let Some(level) = median(forces.clone()) else { return };
+    let spread = SAME * range(forces.into_iter());
+    for (branch, _) in list {
+        if !branch.free.is_empty() || branch.attached.len() >= SPARSE {
+            continue;
+        }
+        let whole = range(branch.attached.iter().map(|point| point.force));
+        let limit = spread.max(SHARE * whole);
+        let same =
+            branch.attached.iter().rev().take_while(|point| (point.force - level).abs() <= limit).count();
+        if same >= FEWEST {
+            branch.free = branch.attached.split_off(branch.attached.len() - same);
         }
     }
 }

@@ -48,6 +48,7 @@ pub mod stated;
 mod turns;
 mod words;
 
+pub(crate) use apart::SPARSE;
 pub use asked::{Asked, FreePart, Span};
 pub use branches::{Branch, BranchError, Branches, Noise, Origin};
 pub use error::ReadError;

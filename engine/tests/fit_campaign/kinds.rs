@@ -100,6 +100,8 @@ impl Ball {
         let adhesion = random.scale(0.02, 0.2);
         // A multiple of the contact radius without load.
         let most = random.even(1.2, 2.2) * (4.5 * PI * adhesion * radius * radius / modulus).cbrt();
+        // A wider contact is none of a paraboloid, which is said.
+        let most = most.min(0.4 * radius);
         let guess = [random.scale(1.0 / 3.0, 3.0), random.scale(1.0 / 3.0, 3.0)];
         Self { radius, modulus, adhesion, most, guess }
     }
