@@ -107,7 +107,8 @@ fn apart_within(segment: Segment, mut points: Vec<Point>, span: Span) -> Branch 
     if let Some(jump) = jump(&x, &force).filter(|jump| jump.at < first) {
         // Rows behind the jump are not in contact, whether they have come to the force of the others or not.
         let rest = points.split_off(jump.at);
-        within = within_jump(&rest, &free, &force);
+        let behind = [&rest[..], &free[..]].concat();
+        within = within_jump(&behind, &behind, &force).min(rest.len());
     }
     Branch { segment, attached: points, free, jump: within }
 }

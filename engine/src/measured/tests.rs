@@ -368,3 +368,87 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
         assert!(branch.free.iter().all(|point| (point.force - baseline).abs() < 1e-3));
     }
 }
+
+/// The branches of rows, with what is asked of them.
+fn taken(rows: &[(f64, f64, bool)], asked: &Asked) -> Result<Branches, BranchError> {
+    let measured = parse(csv(rows).as_bytes(), &Spec::default()).unwrap();
+    measured.points(&UnitSystem::Reduced, Some(1.0)).unwrap().branches(asked)
+}
+
+/// The rows in contact, within the jump and apart of each branch.
+fn parts(found: &Branches) -> Vec<[usize; 3]> {
+    found.list.iter().map(|branch| [branch.attached.len(), branch.jump, branch.free.len()]).collect()
+}
+
+#[test]
+fn a_person_says_which_rows_are_apart_and_which_count() {
+    let rows = jkr(1e-4);
+    let usual = Asked::default();
+    let found = taken(&rows, &usual).unwrap();
+    assert_eq!((found.rows, found.pauses), ([301, 301], 0));
+    let [approach, retraction] = parts(&found)[..] else { panic!("{found:?}") };
+    assert_eq!(approach[0] + approach[2], 301);
+    // Of all rows below -0.08 the same is apart on both branches; those of the approach from there to its jump are neither.
+    let free = FreePart::Within(Span { lo: f64::NEG_INFINITY, hi: -0.08 });
+    let named = taken(&rows, &Asked { free, ..usual }).unwrap();
+    assert_eq!(parts(&named), [[approach[0], 0, 41], [retraction[0], 0, 41]]);
+    assert_eq!(named.rows, [301, 301]);
+    // A part within it leaves out what is beyond.
+    let free = FreePart::Within(Span { lo: -0.0901, hi: -0.0799 });
+    let within = taken(&rows, &Asked { free, ..usual }).unwrap();
+    assert_eq!(parts(&within), [[approach[0], 0, 21], [retraction[0], 0, 21]]);
+    // As the file has x, whichever way it runs; the part says the way of x then.
+    let turned: Vec<_> = rows.iter().map(|(x, p, back)| (-x, *p, *back)).collect();
+    let free = FreePart::Within(Span { lo: 0.08, hi: f64::INFINITY });
+    let other = taken(&turned, &Asked { free, ..usual }).unwrap();
+    assert_eq!((parts(&other), other.turned), (parts(&named), [true, false]));
+    let said = taken(&turned, &Asked { turned: Some([true, false]), ..usual }).unwrap();
+    assert_eq!((parts(&said), said.notes.len()), (parts(&found), 0));
+    let contact: Vec<_> =
+        rows.iter().filter(|(x, _, back)| *x > 0.0 || (*back && *x > -0.07)).copied().collect();
+    let none = taken(&contact, &Asked { free: FreePart::None, ..usual }).unwrap();
+    assert!(parts(&none).iter().all(|[_, jump, free]| jump + free == 0) && none.baseline.is_none());
+    let skipped = taken(&rows, &Asked { skip: 100, ..usual }).unwrap();
+    assert_eq!(parts(&skipped), [[approach[0], 0, approach[2] - 100], retraction]);
+    assert_eq!(skipped.rows, [301, 301]);
+    let nowhere = FreePart::Within(Span { lo: 5.0, hi: 6.0 });
+    assert_eq!(taken(&rows, &Asked { free: nowhere, ..usual }), Err(BranchError::NothingFree));
+    assert_eq!(taken(&rows, &Asked { skip: 600, ..usual }), Err(BranchError::Few(2)));
+}
+
+#[test]
+fn contact_radii_are_apart_where_they_are_zero_alone() {
+    let rows = (0..40).fold("contact radius, force\n".to_owned(), |mut text, i| {
+        let s = if i < 30 { 0.5 - 0.01 * f64::from(i) } else { 0.0 };
+        writeln!(text, "{s:?},{:?}", 4.0 / 3.0 * s.powi(3) - (0.2 * s.powi(3)).sqrt()).unwrap();
+        text
+    });
+    let measured = parse(rows.as_bytes(), &Spec::default()).unwrap();
+    let points = measured.points(&UnitSystem::Reduced, None).unwrap();
+    let usual = Asked::default();
+    assert_eq!(parts(&points.branches(&usual).unwrap()), [[30, 0, 10]]);
+    let none = points.branches(&Asked { free: FreePart::None, ..usual }).unwrap();
+    assert_eq!((parts(&none), none.rows), (vec![[30, 0, 0]], [0, 40]));
+    let within = FreePart::Within(Span { lo: 0.0, hi: 0.1 });
+    assert_eq!(points.branches(&Asked { free: within, ..usual }), Err(BranchError::FreeRadius));
+    assert_eq!(
+        points.branches(&Asked { turned: Some([true, false]), ..usual }),
+        Err(BranchError::TurnedRadius)
+    );
+}
+
+#[test]
+fn a_free_part_on_one_branch_alone_is_said_and_none_is_made_up() {
+    let rows = jkr(1e-4);
+    // A retraction that ends at its last contact, where the force stands still.
+    let cut: Vec<_> = rows.iter().filter(|(x, _, back)| !back || *x >= -0.0735).copied().collect();
+    let found = taken(&cut, &Asked::default()).unwrap();
+    let [approach, retraction] = parts(&found)[..] else { panic!("{found:?}") };
+    assert!(approach[2] == 200 && retraction[2] == 0, "{approach:?} {retraction:?}");
+    let said = found.notes.join("; ");
+    assert!(said.contains("the retraction has no rows apart: it ends in contact"), "{said}");
+    // Both without: no baseline is made up.
+    let attached: Vec<_> = cut.iter().filter(|(x, _, back)| *back || *x >= 0.0).copied().collect();
+    let found = taken(&attached, &Asked::default()).unwrap();
+    assert!(found.baseline.is_none() && parts(&found).iter().all(|part| part[2] == 0), "{:?}", parts(&found));
+}

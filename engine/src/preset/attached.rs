@@ -273,6 +273,17 @@ mod tests {
             "{error}"
         );
         assert!(error.contains("data.settings = \"preset\""), "{error}");
-        with("25 um", "settings='preset'\n").unwrap();
+        let alone = with("25 um", "settings='preset'\n").unwrap();
+        let notes = alone.notes_of_reading().unwrap().join("; ");
+        assert!(
+            notes.contains(
+                "a tip radius of 27.5 um, which the file states where gap.radius_of_curvature is 25 um, is left out: data.settings = \
+                 \"preset\""
+            ),
+            "{notes}"
+        );
+        // What agrees needs no word.
+        let same = with("27.5 um", "settings='preset'\n").unwrap();
+        assert!(!same.notes_of_reading().unwrap().join("; ").contains("left out"));
     }
 }
