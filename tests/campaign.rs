@@ -30,13 +30,17 @@ use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::Unloading;
+use pulloff_engine::quasistatic::cycle::{
+    Areas, CycleState, Event as CycleEvent, EventKind as CycleEventKind, Turn,
+};
+use pulloff_engine::quasistatic::{EventKind, PathStop, Unloading};
 use quadrature::{Bump, Disc, Path, State, Term};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// States and events, as a share of the ranges.
 const STATES: f64 = 1e-8;
@@ -547,6 +551,78 @@ fn judge(problem: &Problem) -> Outcome {
     }
 }
 
+/// The questions that a loop may ask before it counts as too long.
+const QUESTIONS: u64 = 5_000;
+
+/// The way down of the loop that turns at the start of a problem, as an unloading; why there is none, in words.
+fn way_down(problem: &Problem, case: &Case) -> Result<Unloading, String> {
+    let asked = AtomicU64::new(0);
+    let tired = || asked.fetch_add(1, Ordering::Relaxed) > QUESTIONS;
+    let turn = Turn::Radius(case.start);
+    let cycle = case.cycle(case.control, Some(turn), Areas::Yes, &tired).map_err(|error| {
+        let words = error.to_string();
+        words.chars().filter(|c| !c.is_ascii_digit()).collect::<String>()
+    })?;
+    let turned = cycle.events.iter().position(|event| event.kind == CycleEventKind::Turn);
+    let turned = turned.ok_or("no turn")?;
+    let start = cycle.events[turned].after.clone().ok_or("nothing at the turn")?;
+    if start.contacts.len() != 1 || start.contacts[0][0] > 0.0 {
+        return Err("turns with rings".to_owned());
+    }
+    if start.contact_radius * case.units().length > LARGEST_CONTACT * problem.end * problem.length {
+        return Err("turns where the quadrature does not look".to_owned());
+    }
+    let plain = |state: &CycleState| pulloff_engine::quasistatic::State {
+        contact_radius: state.contact_radius,
+        approach: state.approach,
+        force: state.force,
+        energy: state.energy,
+    };
+    let event = |event: &CycleEvent| pulloff_engine::quasistatic::Event {
+        kind: if event.after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+        control_value: event.control_value,
+        before: plain(event.before.as_ref().unwrap()),
+        after: event.after.as_ref().map(plain),
+        dissipated: event.dissipated,
+        dissipated_by_area: event.dissipated_by_area,
+    };
+    let start = plain(&start);
+    Ok(Unloading {
+        control: case.control,
+        start,
+        asked: None,
+        events: cycle.events[turned + 1..].iter().map(event).collect(),
+        pieces: Vec::new(),
+        stop: PathStop::PullOff,
+        min_force: start,
+        min_approach: start,
+    })
+}
+
+/// Compares the way down of a loop with the unloading of its disc.
+fn judge_loop(problem: &Problem) -> Outcome {
+    let case = match Case::new(&problem.preset) {
+        Ok(case) => case,
+        Err(error) => return Outcome::Refused(error.to_string()),
+    };
+    let ours = match way_down(problem, &case) {
+        Ok(ours) => ours,
+        Err(reason) => return Outcome::Refused(format!("{}: {reason}", problem.kind)),
+    };
+    let from = ours.start.contact_radius * case.units().length / problem.length;
+    let known = LARGEST_CONTACT * problem.end;
+    let disc = Disc::new(&problem.terms, problem.gamma, (1.05 * from).min(known));
+    let found = [1, 12].map(|finer| {
+        let path = disc.unload(problem.control, &disc.rising(problem.control, finer), from, 1e-5 * from);
+        compare(problem, &case, &ours, &disc, from, &path.ok_or("no path")?)
+    });
+    match found {
+        [Ok(worst), _] | [_, Ok(worst)] => Outcome::Right { worst, events: ours.events.len(), corners: 0 },
+        [_, Err(error)] if error.starts_with("a tie") => Outcome::Refused("a tie".to_owned()),
+        [_, Err(error)] => Outcome::Wrong(error),
+    }
+}
+
 /// A refusal, which is right unless the truth has a start and a path.
 fn refused(problem: &Problem, error: &CaseError) -> Outcome {
     let words = error.to_string();
@@ -734,7 +810,7 @@ fn tell(
 }
 
 /// Runs the problems of these numbers and prints what became of them.
-fn campaign(numbers: Range<u64>) {
+fn campaign(numbers: Range<u64>, judge: fn(&Problem) -> Outcome, share: f64) {
     let count = numbers.end - numbers.start;
     let outcomes: Vec<(u64, Option<Problem>, Outcome)> = numbers
         .into_par_iter()
@@ -779,18 +855,37 @@ fn campaign(numbers: Range<u64>) {
     assert!(failures.is_empty(), "{failures}");
     let right: usize = worst.values().map(|of| of.0).sum();
     let events: usize = worst.values().map(|of| of.1).sum();
-    assert!(right as u64 * 10 >= count * 9 && events >= right, "only {right} of {count}, {events} events");
+    assert!(
+        right as f64 >= share * count as f64 && events >= right,
+        "only {right} of {count}, {events} events"
+    );
 }
 
 #[test]
 fn sixty_problems_of_every_shape_are_those_of_the_quadrature() {
-    campaign(0..60);
+    campaign(0..60, judge, 0.9);
+}
+
+#[test]
+fn the_ways_down_of_forty_loops_are_those_of_the_quadrature() {
+    campaign(0..40, judge_loop, 0.7);
+}
+
+/// The numbers asked for, all where none are.
+fn asked() -> Range<u64> {
+    let asked = std::env::var("PULLOFF_CAMPAIGN").unwrap_or_else(|_| "0..2000".to_owned());
+    let (from, to) = asked.split_once("..").unwrap();
+    from.parse().unwrap()..to.parse().unwrap()
 }
 
 #[test]
 #[ignore = "takes a quarter of an hour"]
 fn two_thousand_problems_of_every_shape_are_those_of_the_quadrature() {
-    let asked = std::env::var("PULLOFF_CAMPAIGN").unwrap_or_else(|_| "0..2000".to_owned());
-    let (from, to) = asked.split_once("..").unwrap();
-    campaign(from.parse().unwrap()..to.parse().unwrap());
+    campaign(asked(), judge, 0.9);
+}
+
+#[test]
+#[ignore = "takes a quarter of an hour"]
+fn the_ways_down_of_two_thousand_loops_are_those_of_the_quadrature() {
+    campaign(asked(), judge_loop, 0.5);
 }

@@ -308,3 +308,73 @@ fn without_adhesion_the_way_back_is_the_way_there() {
     let Ended { status, .. } = home.run(&["plot", "fig-9-weak", "--view", "contact-map", set[0], set[1]]);
     assert_eq!(status, 0);
 }
+
+/// The jumps of the way down as (s before, s after): the last has none.
+fn ways_down(document: &Value) -> Vec<(f64, Option<f64>)> {
+    let events = document["events"].as_array().unwrap().iter();
+    let down = events.filter(|event| event["direction"] == "unloading");
+    let radius = |state: &Value| state["contact_radius"].as_f64();
+    down.map(|event| (radius(&event["before"]).unwrap(), radius(&event["after"]))).collect()
+}
+
+/// One disc is followed on its exact panels: no jump is missed for lying close to another or on a corner, wherever the loop turns.
+#[test]
+fn no_jump_of_one_disc_is_missed() {
+    let home = Home::new();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/loops");
+    let of = |name: &str, turn: [&str; 2]| {
+        let document = home.json(&["cycle", &format!("{folder}/{name}.toml"), turn[0], turn[1]]);
+        assert_eq!(document["warnings"], Value::Array(vec![]), "{name}");
+        document
+    };
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
+    // A corner: its limit point in closed form is there, and makes a sixth of the losses.
+    let corner = of("concave-corner", ["--to-radius", "0.3"]);
+    let down = ways_down(&corner);
+    assert!(
+        down.len() == 2 && near(down[0].0, 0.156_698_8) && near(down[0].1.unwrap(), 0.143_420),
+        "{down:?}"
+    );
+    let events = corner["events"].as_array().unwrap();
+    let lost: Vec<f64> = events.iter().map(|event| number(&event["dissipated"])).collect();
+    let snap = lost[lost.len() - 2] / lost.iter().sum::<f64>();
+    assert!((0.15..0.18).contains(&snap), "{snap}");
+    // Two limit points that nearly are one: both snaps, whatever the turn.
+    for turn in ["0.01", "0.02", "0.03"] {
+        let down = ways_down(&of("near-cusp", ["--to-control", turn]));
+        assert_eq!(down.iter().filter(|(_, after)| after.is_some()).count(), 2, "{turn}: {down:?}");
+    }
+    // Knots close to the axis: the end is no unstable piece.
+    let down = ways_down(&of("lost-pull-off", ["--to-radius", "0.3"]));
+    assert!(down.len() == 2 && near(down[0].0, 0.022_322), "{down:?}");
+    assert!(near(down[1].0, 0.021_344) && down[1].1.is_none(), "{down:?}");
+    // Waves that are too short to matter do not matter: the loop of the smooth sphere.
+    let short = of("short-wave", ["--to-radius", "0.4"]);
+    assert_eq!(kinds(&short), ["first-touch", "turn", "pull-off"]);
+    assert!((number(&short["events"][0]["after"]["contact_radius"]) - 0.293).abs() < 1e-3);
+    let smooth = home.json(&[
+        "cycle",
+        &format!("{folder}/short-wave.toml"),
+        "--set",
+        "gap.amplitude=0",
+        "--to-radius",
+        "0.4",
+    ]);
+    let [a, b] = [&short, &smooth].map(|document| ways_down(document)[0].0);
+    assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+    // A wavy sphere whose loop turns just outside a limit point.
+    let set = [
+        "gap.amplitude=4.2667028e-4",
+        "gap.wavelength=0.0842836816",
+        "material.work_of_adhesion=1.913167e-3",
+    ];
+    let set: Vec<&str> = set.iter().flat_map(|value| ["--set", value]).collect();
+    let wavy = home.json(&[&["cycle", "wavy-sphere", "--to-radius", "0.30842864"], &set[..]].concat());
+    let down = ways_down(&wavy);
+    assert!((down[0].0 - 0.13781).abs() < 1e-5 && (down[0].1.unwrap() - 0.12857).abs() < 1e-5, "{down:?}");
+    // A power law as it comes is a loop, and so is a profile to its end, without a warning.
+    assert_eq!(kinds(&home.json(&["cycle", "power-law"])), ["first-touch", "turn", "pull-off"]);
+    let profile = home.json(&["cycle", "profile", "--to-radius", "99"]);
+    assert_eq!(profile["warnings"], Value::Array(vec![]));
+    assert_eq!(ways_down(&profile).len(), 3);
+}

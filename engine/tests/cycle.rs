@@ -364,8 +364,13 @@ fn without_adhesion_solving_afresh_finds_the_same() {
 
 /// Contact, pressed everywhere, gaps open everywhere else: without adhesion that is one solution alone.
 fn is_the_one_solution(ground: &Ground, found: &Cycle, name: &str) {
-    let balance =
-        Balance { ground, work_of_adhesion: 0.0, control: Control::Displacement, progress: &Unwatched };
+    let balance = Balance {
+        ground,
+        work_of_adhesion: 0.0,
+        control: Control::Displacement,
+        progress: &Unwatched,
+        lane: None,
+    };
     let back: Vec<_> = found.states.iter().filter(|state| state.direction == Direction::Unloading).collect();
     for k in 0..20 {
         let state = back[k * (back.len() - 1) / 19];
@@ -476,6 +481,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
         work_of_adhesion: 1e-4,
         control: Control::Displacement,
         progress: &Unwatched,
+        lane: None,
     };
     let solved = |state: &Value| {
         let (delta, force, contacts) = numbers(state);

@@ -180,8 +180,13 @@ fn stability_is_that_of_the_eigenvalues() {
         for reached in made.iter().filter(|reached| edges::has_rings(&reached.point)) {
             let contacts = edges::contacts(&curve.equilibrium.scales, &reached.point);
             for control in [Control::Displacement, Control::Stiffness(0.2), Control::Force] {
-                let balance =
-                    Balance { ground: &ground, work_of_adhesion: gamma, control, progress: &Unwatched };
+                let balance = Balance {
+                    ground: &ground,
+                    work_of_adhesion: gamma,
+                    control,
+                    progress: &Unwatched,
+                    lane: None,
+                };
                 let points = pulloff_engine::annuli::points(&ground, &contacts);
                 let value = control.value(reached.state.approach, reached.state.force);
                 let held = balance.held(&contacts, &points, value).unwrap();

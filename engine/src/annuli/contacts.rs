@@ -58,6 +58,11 @@ impl Contacts {
         self.disc > 0.0
     }
 
+    /// Whether there is a disc and nothing else.
+    pub fn is_disc(&self) -> bool {
+        self.has_disc() && self.rings.is_empty()
+    }
+
     /// Whether there is nothing.
     pub fn is_empty(&self) -> bool {
         !self.has_disc() && self.rings.is_empty()

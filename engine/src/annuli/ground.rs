@@ -3,7 +3,7 @@
 //! Under the disc sums are taken in v, a = a₁ tanh v, with a₁ the inner edge of the first ring: 1/√(r² − a²) for r ≥ a₁ is then
 //! analytic for |Im v| < π/2 however near to the disc the ring begins.
 
-use crate::disc::{Panels, Table, TableError};
+use crate::disc::{Panel, Panels, Table, TableError};
 use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
 use crate::progress::Progress;
@@ -18,8 +18,14 @@ const MOST_NODES: usize = 512;
 /// Digits of sums over the disc, as ln(1/error).
 const DIGITS: f64 = 34.6;
 
-/// Samples of a gap in which stand-ins for its lengths are looked for.
+/// Samples of a gap in which stand-ins for its lengths, and its crests, are looked for: so many evenly, and so many on all panels of
+/// the table, which are as fine as the gap is, at most and on each.
 const SAMPLES: u32 = 4000;
+const MOST_ON_PANELS: usize = 200_000;
+const ON_PANEL: [usize; 2] = [2, 16];
+
+/// Halvings of a radius.
+const HALVINGS: usize = 60;
 
 /// The share of a gap that ends up to which its lengths are looked for.
 const INSIDE: f64 = 0.9;
@@ -55,6 +61,8 @@ pub struct Ground {
     pub(super) least: Vec<f64>,
     /// Those of the breaks where h' itself jumps.
     pub corners: Vec<f64>,
+    /// Whether the transform only grows.
+    pub(super) grows: bool,
     /// Whether the breaks are knots of a spline.
     pub(super) spline: bool,
     /// The radii where h' or a higher derivative jumps, ascending.
@@ -139,10 +147,16 @@ impl Ground {
             _ => None,
         };
         let least = least(&panels);
+        let grows = matches!(gap.form(), Form::Power { .. });
         let spline = matches!(gap.form(), Form::Cubic(_));
-        let (corners, [standin, crest]) = lengths(&*gap, reach, &breaks);
+        let (corners, [standin, crest]) = lengths(&*gap, &panels, &breaks);
         let wave = gap.feature_length().unwrap_or(standin);
-        Ok(Self { gap, table, panels, wave, crest, entire, least, corners, spline, breaks })
+        Ok(Self { gap, table, panels, wave, crest, entire, least, corners, grows, spline, breaks })
+    }
+
+    /// Radii at which the gap is looked at as a whole, ascending: close together where it is fine.
+    pub fn samples(&self) -> Vec<f64> {
+        samples(&self.panels)
     }
 
     /// The largest radius that is tabulated.
@@ -190,6 +204,15 @@ impl Ground {
     /// The radius beyond which g > δ: from the last edge on the gap can become negative for the first time only where g < δ, for
     /// by Abel's inversion what a gap ≥ 0 up to a radius and g > δ beyond it give is positive.
     pub fn can_touch_up_to(&self, delta: f64) -> f64 {
+        if self.grows {
+            // One panel may be the whole gap, whose transform takes each value once.
+            let [mut lo, mut hi] = [0.0, self.reach()];
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (lo + hi);
+                if self.transform(middle) < delta { lo = middle } else { hi = middle }
+            }
+            return if delta > 0.0 { hi } else { 0.0 };
+        }
         let after = self.least.partition_point(|least| *least < delta);
         after.checked_sub(1).map_or(0.0, |panel| self.panels.list()[panel].span.hi)
     }
@@ -200,6 +223,17 @@ impl Ground {
         let wavenumber = self.entire.filter(|k| k * edge < 400.0)?;
         Some(Under::any(s, edge, wavenumber))
     }
+}
+
+/// Radii on all panels of a table, ascending: as close as the gap is fine.
+fn samples(panels: &Panels) -> Vec<f64> {
+    let list = panels.list();
+    let each = (MOST_ON_PANELS / list.len().max(1)).clamp(ON_PANEL[0], ON_PANEL[1]);
+    let on = |panel: &Panel| {
+        let (lo, hi) = (panel.span.lo, panel.span.hi);
+        (0..each).map(move |k| lo + (hi - lo) * (k as f64 + 0.5) / each as f64)
+    };
+    list.iter().flat_map(|panel| on(panel)).collect()
 }
 
 /// The smallest g from the inner end of each panel on: ascending.
@@ -230,9 +264,11 @@ fn least(panels: &Panels) -> Vec<f64> {
 ///
 /// λ is at most twice the least distance of corners and a fourth of the reach. Close to where a gap ends, as a sphere at its
 /// equator, h'' may grow without bound, which says nothing about the gap further in.
-fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
+fn lengths(gap: &dyn Gap, panels: &Panels, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
+    let reach = panels.reach();
     let sampled = gap.largest_radius().map_or(reach, |end| reach.min(INSIDE * end));
-    let radii = (0..SAMPLES).map(|k| sampled * (f64::from(k) + 0.5) / f64::from(SAMPLES));
+    let even = (0..SAMPLES).map(|k| sampled * (f64::from(k) + 0.5) / f64::from(SAMPLES));
+    let radii = even.clone().chain(samples(panels).into_iter().filter(|r| *r < sampled));
     let jets: Vec<(f64, [f64; 2])> = radii
         .map(|r| {
             let jet = gap.jet(r);
@@ -241,7 +277,8 @@ fn lengths(gap: &dyn Gap, reach: f64, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
         .filter(|(_, [first, second])| first.is_finite() && second.is_finite())
         .collect();
     let [mut moment, mut square] = [0.0; 2];
-    for (r, [first, _]) in &jets {
+    // The slope of the whole, of which fine parts must not be more than their share.
+    for (r, [first, _]) in jets.iter().take(even.len()) {
         moment += r * first;
         square += r * r;
     }

@@ -22,6 +22,10 @@ use std::f64::consts::PI;
 
 /// The condition beyond which errors mean nothing.
 pub const LARGEST_CONDITION: f64 = 1e3;
+/// The same where values that are given with an error say most of what is known in the weakest direction: that of rounding.
+const LARGEST_WITH_GIVEN: f64 = 1e6;
+/// Most of what is known.
+const HALF: f64 = 0.5;
 /// Exponents this near to a half are one.
 const HALVES: f64 = 0.02;
 
@@ -66,15 +70,19 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
             column /= *length;
         }
     }
+    let of_known = white.rows(rows, known.nrows()).into_owned();
     let svd = white.svd(false, true);
     let (Some(v), true) = (svd.v_t.as_ref(), p > 0) else {
         return none;
     };
     let (most, least) = (svd.singular_values.max(), svd.singular_values.min());
     let condition = if least > 0.0 { most / least } else { f64::INFINITY };
-    let refused = condition.is_nan() || condition > LARGEST_CONDITION || lengths.contains(&0.0);
+    let weakest = svd.singular_values.imin();
+    // A direction in which the points say little is still known where a value is given with an error.
+    let given = (of_known * v.row(weakest).transpose()).norm_squared() > HALF * least * least;
+    let most = if given { LARGEST_WITH_GIVEN } else { LARGEST_CONDITION };
+    let refused = condition.is_nan() || condition > most || lengths.contains(&0.0);
     if refused {
-        let weakest = svd.singular_values.imin();
         let direction: Vec<f64> =
             (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
         let words = words(problem, at, u, &direction);

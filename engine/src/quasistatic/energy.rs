@@ -19,7 +19,7 @@
 //! checks the event and the quadrature, not the table.
 
 use super::equilibrium::State;
-use crate::disc::{Place, Solution, sources::GAUSS};
+use crate::disc::{Local, Place, Solution, sources::GAUSS};
 use crate::problem::Control;
 
 /// The potential of bodies and device at `state`, but for a constant of the control.
@@ -45,6 +45,47 @@ pub fn loss(control: Control, before: &State, after: Option<&State>) -> Option<f
         Control::Stiffness(k) => 0.5 * (before.force - after.force) * (before.force + after.force) / k,
     };
     Some(before.energy - after.energy + device)
+}
+
+/// ∫ (dΠ/dc) dc along the curve from one place to another: `∫ P dδ` under displacement, `−∫ δ dP` under a dead load,
+/// `∫ P (dδ + dP/k)` behind a spring. `None` where the basis has no equilibrium on the way.
+pub fn work(solution: &dyn Solution, control: Control, from: Place, to: Place) -> Option<f64> {
+    let is_inward = (to.panel, to.x) <= (from.panel, from.x);
+    let (inner, outer, sign) = if is_inward { (to, from, -1.0) } else { (from, to, 1.0) };
+    let by_panel = |weight: f64, at: &Local| match control {
+        Control::Displacement => weight * at.force * at.slopes[0],
+        Control::Force => -weight * at.approach * at.slopes[1],
+        Control::Stiffness(k) => weight * at.force * (at.slopes[0] + at.slopes[1] / k),
+    };
+    let mut sum = 0.0;
+    for panel in inner.panel..=outer.panel {
+        if panel < outer.panel && !solution.is_joined(panel) {
+            return None;
+        }
+        let from = if panel == inner.panel { inner.x } else { -1.0 };
+        let to = if panel == outer.panel { outer.x } else { 1.0 };
+        sum = on_panel(solution, panel, [from, to], sum, &by_panel);
+    }
+    Some(sign * sum)
+}
+
+/// Adds to `sum` the integral over a part of a panel by its own variable: `f` is the integrand at a state, times a weight.
+fn on_panel(
+    solution: &dyn Solution,
+    panel: usize,
+    [from, to]: [f64; 2],
+    mut sum: f64,
+    f: &dyn Fn(f64, &Local) -> f64,
+) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let [_, width] = solution.span(panel).line();
+    for four in GAUSS.as_chunks::<4>().0 {
+        let found = solution.at_four(panel, four.map(|[x, _]| middle + half * x));
+        for (at, [_, weight]) in found.iter().zip(four) {
+            sum += f(weight * half * width, at);
+        }
+    }
+    sum
 }
 
 /// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
@@ -82,15 +123,8 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
         }
         let from = if panel == end.panel { end.x } else { -1.0 };
         let to = if panel == before.panel { before.x } else { 1.0 };
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let span = solution.span(panel);
-        let [_, width] = span.line();
-        for four in GAUSS.as_chunks::<4>().0 {
-            let found = solution.at_four(panel, four.map(|[x, _]| middle + half * x));
-            for (at, [_, weight]) in found.iter().zip(four) {
-                sum += weight * half * width * (at.force - line.force) * at.slopes[0];
-            }
-        }
+        let above = |weight: f64, at: &Local| weight * (at.force - line.force) * at.slopes[0];
+        sum = on_panel(solution, panel, [from, to], sum, &above);
     }
     if let Some(to) = after.map(|place| solution.at(place)) {
         return Some(sign * sum + 0.5 * (line.force - to.force) * (line.approach - to.approach));

@@ -9,11 +9,13 @@
 //!
 //! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so that they are real where κ > 0.
 
-use crate::annuli::{AnnuliError, Around, Contacts, Ground, Resolution, State, Wanted, points};
+use super::lane::Lane;
+use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground, Resolution, State, Wanted, points};
+use crate::disc::outside;
 use crate::problem::Control;
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Newton's steps at most, from edges that are near.
 const ITERATIONS: usize = 30;
@@ -26,6 +28,9 @@ const STALLED: f64 = 1e-9;
 const LONGEST: f64 = 0.1;
 const LEFT: f64 = 0.4;
 
+/// A gap below zero by less than this share of |δ| + √(2πγs) is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Contacts under a device.
 #[derive(Clone)]
 pub struct Balance<'a> {
@@ -37,6 +42,8 @@ pub struct Balance<'a> {
     pub control: Control,
     /// Asked while the edges run.
     pub progress: &'a dyn Progress,
+    /// The equilibria of one disc alone, where they are known: edges run on them at once.
+    pub lane: Option<&'a Lane>,
 }
 
 /// Edges at a control value, in equilibrium or not.
@@ -183,8 +190,20 @@ impl Balance<'_> {
     }
 
     /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near.
-    pub fn least_gap(&self, held: &Held) -> Option<crate::annuli::Crest> {
+    pub fn least_gap(&self, held: &Held) -> Option<Crest> {
         let to = self.ground.can_touch_up_to(held.approach);
+        let contacts = &held.state.contacts;
+        if contacts.rings.is_empty() && contacts.has_disc() {
+            // Searched with the table, which is as fine as the gap wherever that is.
+            let end = to.min(self.ground.reach());
+            let opening = (TAU * self.work_of_adhesion * contacts.disc).sqrt();
+            let overlap = -ROUNDING * (held.approach.abs() + opening);
+            let (panels, progress) = (&self.ground.panels, self.progress);
+            let least = (end > contacts.disc)
+                .then(|| outside::least_gap(panels, contacts.disc, held.approach, end, overlap, progress));
+            let [radius, gap] = least?.at?;
+            return Some(Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
+        }
         let around = Around::new(self.ground, &held.state, held.approach);
         around.crests(to).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
     }

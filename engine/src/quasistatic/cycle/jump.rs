@@ -13,6 +13,7 @@ use super::error::CycleError;
 use super::event::{Passed, PassedKind};
 use crate::annuli::{Contacts, points};
 use crate::elementary::cbrt;
+use crate::quasistatic::jump::Run;
 use nalgebra::DVector;
 
 /// Steps of one run at most.
@@ -104,6 +105,14 @@ impl Balance<'_> {
             if contacts.is_empty() {
                 return Ok(None);
             }
+            if let Some(lane) = self.lane_of(&contacts) {
+                let run = if sense > 0.0 { Run::Outward } else { Run::Inward };
+                let Some(held) = self.disc_run(lane, &contacts, value, run)? else { return Ok(None) };
+                let touched = if sense > 0.0 { self.touched(&held, value, passed)? } else { None };
+                let Some(touched) = touched else { return Ok(Some(held)) };
+                (contacts, last) = (touched, f64::INFINITY);
+                continue;
+            }
             let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
             let lowest = Self::least_eigenvalue(&held);
             if lowest > 0.0 {
@@ -178,7 +187,7 @@ impl Balance<'_> {
     }
 
     /// The contacts with a seed where the gap is negative.
-    fn touched(
+    pub(super) fn touched(
         &self,
         held: &Held,
         value: f64,

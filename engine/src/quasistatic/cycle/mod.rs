@@ -20,6 +20,7 @@
 //! | [`error`] | why there is none, and what is to be known about one |
 //! | [`setting`] | what a loop is asked for, and what it answers |
 //! | `describe` | both in the user's units, in words |
+//! | `lane` | a loop while the contact is one disc: exactly |
 //! | [`path`] | the loop |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
@@ -32,6 +33,7 @@ pub mod error;
 pub mod event;
 mod follow;
 pub mod jump;
+mod lane;
 pub mod path;
 pub mod point;
 pub mod setting;
@@ -41,6 +43,7 @@ pub use balance::{Balance, Held, NotFound};
 pub use error::{CycleError, Warning};
 pub use event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 pub use jump::{EVEN, Mobility};
+pub use lane::Lane;
 pub use path::{cycle, cycle_on};
 pub use point::{Point, Step};
 pub use setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};

@@ -3,6 +3,7 @@
 use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
 use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
+use super::lane::Lane;
 use super::setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
 use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
@@ -25,6 +26,8 @@ const DIGITS: f64 = 9.0;
 #[derive(Debug)]
 pub(super) enum End {
     Limit(DVector<f64>),
+    /// The outer end of this stretch of one disc.
+    Fold(usize),
     Touch(Crest),
     Turn,
 }
@@ -121,7 +124,9 @@ pub fn cycle_on(
 ) -> Result<Cycle, CycleError> {
     // Without adhesion all controls rise together, and the approach is the one that is stepped.
     let stepped = if gamma > 0.0 { setting.control } else { Control::Displacement };
-    let balance = Balance { ground, work_of_adhesion: gamma, control: stepped, progress };
+    let lane = (gamma > 0.0).then(|| Lane::new(ground, gamma, stepped));
+    let balance =
+        Balance { ground, work_of_adhesion: gamma, control: stepped, progress, lane: lane.as_ref() };
     let path = Path {
         balance: &balance,
         setting,
@@ -139,23 +144,19 @@ pub fn cycle_on(
 
 /// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
 pub fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
-    const PER_WAVE: f64 = 40.0;
     /// Radii at which the gap is looked at between two questions.
     const TOGETHER: usize = 64;
     let reach = ground.reach();
-    let steps = (reach * PER_WAVE / ground.wave).ceil().clamp(400.0, 100_000.0);
     let value = |r: f64| ground.gap.jet(r).value;
-    // A hundred thousand at most.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let count = steps as usize;
-    let grid = (0..=count).map(|k| reach * k as f64 / steps);
-    let radii: Vec<f64> = grid.chain(ground.breaks.iter().copied()).collect();
+    let mut radii: Vec<f64> = ground.samples();
+    radii.extend(ground.breaks.iter().copied().chain([0.0, reach]));
+    radii.sort_by(f64::total_cmp);
     let mut least: Option<(f64, f64)> = None;
-    for radii in radii.chunks(TOGETHER) {
+    for some in radii.chunks(TOGETHER) {
         if progress.stop() {
             return None;
         }
-        let found = radii.iter().map(|r| (*r, value(*r))).filter(|(_, h)| h.is_finite());
+        let found = some.iter().map(|r| (*r, value(*r))).filter(|(_, h)| h.is_finite());
         least = least.into_iter().chain(found).min_by(|a, b| a.1.total_cmp(&b.1));
     }
     let (best, _) = least?;
@@ -163,11 +164,8 @@ pub fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
         return Some(Crest { radius: 0.0, gap: value(0.0) });
     }
     // h' changes its sign at a smooth minimum; at a corner the bisection ends on it.
-    let step = reach / steps;
-    let (mut lo, mut hi) = ((best - step).max(0.0), best + step);
-    if hi > reach {
-        return None;
-    }
+    let at = radii.partition_point(|r| *r < best);
+    let (mut lo, mut hi) = (radii[at.saturating_sub(1)], *radii.get(at + 1)?);
     for _ in 0..100 {
         let middle = 0.5 * (lo + hi);
         if ground.gap.jet(middle).first > 0.0 { hi = middle } else { lo = middle }
@@ -255,7 +253,7 @@ impl Path<'_, '_> {
         let mut held = self.first_touch(crest, first)?;
         self.record(&held);
         while self.measure(&held) < turn.value() {
-            let (end, next) = self.stretch(&held)?;
+            let (end, next) = self.way_up(&held)?;
             held = match end {
                 End::Turn => {
                     held = next;
@@ -264,6 +262,9 @@ impl Path<'_, '_> {
                 End::Limit(null) => {
                     let start = balance.kicked(&next.state.contacts, &null, 1.0);
                     self.jump(EventKind::Advance, &next, start, None)?
+                }
+                End::Fold(stretch) => {
+                    balance.lane.map(|lane| self.advance(lane, &next, stretch)).transpose()?
                 }
                 End::Touch(crest) => {
                     let start = balance
@@ -297,6 +298,11 @@ impl Path<'_, '_> {
         self.piece += 1;
         self.record(&held);
         loop {
+            if let Some(lane) = balance.lane.filter(|_| held.state.contacts.is_disc())
+                && self.descend(lane, &held)?
+            {
+                break;
+            }
             let (end, next) = self.stretch(&held)?;
             let End::Limit(null) = end else {
                 return Err(CycleError::Lost { control_value: next.control_value });
@@ -324,7 +330,7 @@ impl Path<'_, '_> {
         let balance = last.filter(|_| self.setting.areas == Areas::Yes).map(|last| {
             let total = losses(all).unwrap_or(before_pull_off);
             let error = last.potential(control) - self.area + before_pull_off;
-            error.abs() / total.abs()
+            error.abs() / f64::max(total.abs(), work_of_loading.abs())
         });
         let warnings = self.warnings(balance);
         let total = losses(all);
@@ -377,9 +383,32 @@ impl Path<'_, '_> {
         if after.is_none() && self.setting.control == Control::Force {
             return None;
         }
+        if let Some(area) = self.balance.lane.zip(before).and_then(|(lane, before)| lane.area(before, after))
+        {
+            return Some(area);
+        }
         let touches = passed.iter().filter(|passed| passed.kind == PassedKind::Touch);
         let crests: Vec<f64> = touches.map(|passed| passed.radius).collect();
         self.balance.area_between(before, after, value, &crests)
+    }
+
+    /// The loss of a first touch by area, where it is asked for.
+    fn by_area_of_touch(&self, after: &CycleState, value: f64, passed: &[Passed]) -> Option<f64> {
+        if self.setting.areas == Areas::No {
+            return None;
+        }
+        // What it took to come from apart to there is what it takes to come back, with another sign.
+        let on_lane = self.balance.lane.and_then(|lane| lane.area(after, None));
+        on_lane.map(|area| -area).or_else(|| self.by_area(None, Some(after), value, passed))
+    }
+
+    /// Follows stable states while the control goes up, to what ends them.
+    fn way_up(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
+        let lane = self.balance.lane.filter(|_| held.state.contacts.is_disc());
+        match lane.map(|lane| self.rise(lane, held)).transpose()?.flatten() {
+            Some(found) => Ok(found),
+            None => self.stretch(held),
+        }
     }
 
     /// The first touch and what it jumps to.
@@ -404,7 +433,7 @@ impl Path<'_, '_> {
             radius: Some(crest.radius),
             before: None,
             dissipated: Some(loss),
-            dissipated_by_area: self.by_area(None, Some(&after), value, &passed),
+            dissipated_by_area: self.by_area_of_touch(&after, value, &passed),
             after: Some(after),
             passed,
         });
@@ -419,30 +448,41 @@ impl Path<'_, '_> {
         start: Contacts,
         radius: Option<f64>,
     ) -> Result<Option<Held>, CycleError> {
-        let control = self.setting.control;
         let mut passed: Vec<Passed> =
             radius.iter().map(|radius| Passed { kind: PassedKind::Touch, radius: *radius }).collect();
         let value = before.control_value;
         let sense = self.direction.sense();
         let landed = self.balance.run(start, value, sense, self.setting.mobility, &mut passed);
         let landed = landed.map_err(|error| beyond(error, before.approach, before.force))?;
+        self.jumped(kind, before, landed.as_ref(), radius, passed);
+        Ok(landed)
+    }
+
+    /// The event of a jump that has landed, or of the bodies come apart, with the state after it.
+    pub(super) fn jumped(
+        &mut self,
+        kind: EventKind,
+        before: &Held,
+        landed: Option<&Held>,
+        radius: Option<f64>,
+        passed: Vec<Passed>,
+    ) {
         let old = self.state(before);
         self.piece += 1;
-        let after = landed.as_ref().map(|held| self.state(held));
+        let after = landed.map(|held| self.state(held));
         self.events.push(Event {
             kind: if after.is_some() { kind } else { EventKind::PullOff },
             direction: self.direction,
-            control_value: value,
+            control_value: before.control_value,
             radius,
-            dissipated: old.loss(control, after.as_ref()),
-            dissipated_by_area: self.by_area(Some(&old), after.as_ref(), value, &passed),
+            dissipated: old.loss(self.setting.control, after.as_ref()),
+            dissipated_by_area: self.by_area(Some(&old), after.as_ref(), before.control_value, &passed),
             before: Some(old),
             after,
             passed,
         });
-        if let Some(held) = &landed {
+        if let Some(held) = landed {
             self.record(held);
         }
-        Ok(landed)
     }
 }

@@ -118,7 +118,8 @@ impl<'a> Edges<'a> {
         let contacts = contacts(&self.scales, point);
         let [delta, force] = device(&self.scales, point);
         let work_of_adhesion = self.work_of_adhesion;
-        let balance = Balance { ground: self.ground, work_of_adhesion, control, progress: &Unwatched };
+        let balance =
+            Balance { ground: self.ground, work_of_adhesion, control, progress: &Unwatched, lane: None };
         balance.held(&contacts, &points(self.ground, &contacts), control.value(delta, force)).ok()
     }
 }

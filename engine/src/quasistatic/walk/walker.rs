@@ -87,6 +87,7 @@ impl Walk<'_> {
             work_of_adhesion: self.equilibrium().problem.work_of_adhesion,
             control,
             progress: &Unwatched,
+            lane: None,
         }
     }
 }
