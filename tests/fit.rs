@@ -126,7 +126,7 @@ fn rows_are_mended_by_hand_and_counted() {
         home.run(&["plot", "lens", "--free-part=x=..9um", "--view=residuals", "-o", "o.svg", "--data"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     let data = home.text("o.csv");
-    assert_eq!(data.matches("measured approach,").count(), 191);
+    assert_eq!(data.matches("\nmeasured approach,").count(), 191);
     assert_eq!(data.matches("\"measured approach, apart\",").count(), 102);
 }
 
