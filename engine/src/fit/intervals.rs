@@ -14,6 +14,9 @@ const RISE: f64 = 3.841_458_820_694_124;
 const WARM: Settings =
     Settings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
 
+/// Below so many degrees of freedom an interval is much wider than 1.96 errors.
+pub const FEW_DEGREES: f64 = 40.0;
+
 /// What a bootstrap found of one parameter, in base units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bootstrapped {

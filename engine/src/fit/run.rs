@@ -3,7 +3,7 @@
 use super::chance::t_of;
 use super::determined::determined;
 use super::fitted::Fitted;
-use super::intervals::{block, bootstrap, profile};
+use super::intervals::{FEW_DEGREES, block, bootstrap, profile};
 use super::judge::{doubts, of_sparse, of_spring, reasons};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
@@ -184,7 +184,8 @@ pub(super) fn fit_branches(
     let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
     let bootstrapped = match &what.errors {
         Some(errors) => {
-            intervals(&problem, &solved, options, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
+            let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
+            intervals(&problem, &solved, &wanted, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
         }
         None => None,
     };
@@ -297,6 +298,14 @@ fn last(
         solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     }
     Ok(solved)
+}
+
+/// The bootstrap that is made unasked: where there are few degrees of freedom, a straight line says too little of the intervals.
+fn of_few(degrees: f64) -> Option<(usize, u64)> {
+    /// So many fits, and which random numbers they draw.
+    const FITS: usize = 200;
+    const SEED: u64 = 1;
+    (degrees < FEW_DEGREES).then_some((FITS, SEED))
 }
 
 /// Puts the intervals that are asked for into `fitted`; how many fits of the bootstrap there were, and the rows of its blocks.

@@ -3,6 +3,7 @@
 use super::number::{exact, short, significant};
 use super::table::aligned;
 use crate::fit::fitted::quantity;
+use crate::fit::intervals::FEW_DEGREES;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Given, Residual};
@@ -119,9 +120,6 @@ pub struct StartReport {
     /// The snaps of its path.
     pub snaps: usize,
 }
-
-/// Below so many degrees of freedom an interval is much wider than 1.96 errors.
-const FEW: f64 = 40.0;
 
 impl FitReport {
     /// The document of `fit` to the points of `file`, with E beside E* for Poisson's ratio ν.
@@ -249,7 +247,7 @@ impl FitReport {
             };
             let key = &parameter.key;
             if let Some(found) =
-                parameter.interval.filter(|_| parameter.error_holds && self.degrees_of_freedom < FEW)
+                parameter.interval.filter(|_| parameter.error_holds && self.degrees_of_freedom < FEW_DEGREES)
             {
                 let degrees = short(self.degrees_of_freedom, 3);
                 let _ = writeln!(
