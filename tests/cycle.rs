@@ -378,3 +378,31 @@ fn no_jump_of_one_disc_is_missed() {
     assert_eq!(profile["warnings"], Value::Array(vec![]));
     assert_eq!(ways_down(&profile).len(), 3);
 }
+
+/// A bump far narrower than the contact touches where it stands, before the disc comes there or before anything else does.
+#[test]
+fn a_narrow_bump_is_touched() {
+    let home = Home::new();
+    // A ring that vanishes costs the losses by area some digits, of which a warning tells.
+    let loop_of = |arguments: &[&str]| -> Value {
+        let ended = home.run(&[arguments, &["--format=json"]].concat());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        serde_json::from_str(&ended.out).unwrap()
+    };
+    let preset = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/loops/narrow-bump.toml");
+    let document = loop_of(&["cycle", preset, "--to-approach", "0.035"]);
+    let touch = document["events"].as_array().unwrap().iter().find(|event| event["kind"] == "touch").unwrap();
+    assert!((number(&touch["control_value"]) - 0.0181).abs() < 1e-4, "{touch}");
+    let contacts = touch["after"]["contacts"].as_array().unwrap();
+    let ring: Vec<f64> = contacts[1].as_array().unwrap().iter().map(number).collect();
+    assert!(contacts.len() == 2 && ring[0] < 0.3 && ring[1] > 0.3 && ring[1] - ring[0] < 1e-3, "{touch}");
+    let higher = ["--set", "gap.parameters.a=0.06", "--to-approach", "0.002"];
+    let document = loop_of(&[&["cycle", preset], &higher[..]].concat());
+    let first = &document["events"][0];
+    assert_eq!(first["kind"], "first-touch");
+    assert!(
+        (number(&first["radius"]) - 0.3).abs() < 1e-6
+            && (number(&first["control_value"]) + 0.015).abs() < 1e-5,
+        "{first}"
+    );
+}

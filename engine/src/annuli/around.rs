@@ -165,14 +165,34 @@ impl<'a> Around<'a> {
         found
     }
 
+    /// Radii of an interval with both its ends, close together where the gap is fine.
+    fn radii(&self, [from, to]: [f64; 2]) -> Vec<f64> {
+        let waves = self.ground.lengths_between([from, to]);
+        let steps = (waves * PER_WAVE).ceil().clamp(2.0, MOST_RADII);
+        // Evenly in the lengths of the gap.
+        let unit = waves / steps;
+        let mut radii = vec![from];
+        let mut r = from;
+        loop {
+            let step = unit * self.ground.length_at(r);
+            // Towards what is fine the length at the end of the step counts.
+            r += step.min(unit * self.ground.length_at(r + step));
+            if r >= to - 0.5 * unit * self.ground.wave || radii.len() as f64 > 2.0 * MOST_RADII {
+                break;
+            }
+            radii.push(r);
+        }
+        if radii.len() == 1 {
+            radii.push(0.5 * (from + to));
+        }
+        radii.push(to);
+        radii
+    }
+
     /// Adds the minima of an interval to those found.
     fn minima(&self, [from, to]: [f64; 2], found: &mut Vec<Crest>) {
-        let steps = ((to - from) * PER_WAVE / self.ground.wave).ceil().clamp(2.0, MOST_RADII);
-        let step = (to - from) / steps;
-        // Some thousand at most.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let count = steps as usize;
-        let at = |k: usize| if k == count { to } else { from + step * k as f64 };
+        let radii = self.radii([from, to]);
+        let (count, at) = (radii.len() - 1, |k: usize| radii[k]);
         let gaps: Vec<f64> = (0..=count).map(|k| self.gap(at(k))).collect();
         if from == 0.0 && gaps[0] <= gaps[1] {
             let dimple = self.ground.is_dimpled();

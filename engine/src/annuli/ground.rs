@@ -61,6 +61,8 @@ pub struct Ground {
     pub(super) least: Vec<f64>,
     /// Those of the breaks where h' itself jumps.
     pub corners: Vec<f64>,
+    /// A length at each border of the panels, from the axis outward, in which the gap changes there; nothing where λ is everywhere.
+    pub(super) local: Vec<f64>,
     /// Whether the transform only grows.
     pub(super) grows: bool,
     /// Whether the breaks are knots of a spline.
@@ -151,7 +153,48 @@ impl Ground {
         let spline = matches!(gap.form(), Form::Cubic(_));
         let (corners, [standin, crest]) = lengths(&*gap, &panels, &breaks);
         let wave = gap.feature_length().unwrap_or(standin);
-        Ok(Self { gap, table, panels, wave, crest, entire, least, corners, grows, spline, breaks })
+        let local = if gap.feature_length().is_some() { Vec::new() } else { local(&panels) };
+        Ok(Self { gap, table, panels, wave, crest, entire, least, corners, local, grows, spline, breaks })
+    }
+
+    /// The length in which the gap changes at a radius: λ, or more where the panels of the table are wide.
+    pub fn length_at(&self, r: f64) -> f64 {
+        let list = self.panels.list();
+        let at = list.partition_point(|panel| panel.span.hi < r);
+        let (Some(inner), Some(outer), Some(panel)) =
+            (self.local.get(at), self.local.get(at + 1), list.get(at))
+        else {
+            return self.wave;
+        };
+        let here = (inner + (r - panel.span.lo).abs()).min(outer + (panel.span.hi - r).abs());
+        here.max(self.wave)
+    }
+
+    /// The shortest of these lengths between two radii.
+    pub fn shortest_between(&self, [a, b]: [f64; 2]) -> f64 {
+        let list = self.panels.list();
+        let (from, to) = (
+            list.partition_point(|panel| panel.span.hi <= a),
+            list.partition_point(|panel| panel.span.hi < b),
+        );
+        let between = self.local.get(from + 1..=to).unwrap_or_default().iter().copied();
+        let ends = [a, b].map(|r| self.length_at(r));
+        ends.into_iter().chain(between).fold(f64::INFINITY, f64::min).max(self.wave)
+    }
+
+    /// How many of these lengths lie between two radii.
+    pub fn lengths_between(&self, [a, b]: [f64; 2]) -> f64 {
+        if self.local.is_empty() {
+            return (b - a) / self.wave;
+        }
+        let list = self.panels.list();
+        let from = list.partition_point(|panel| panel.span.hi <= a);
+        let on = list[from..].iter().take_while(|panel| panel.span.lo < b);
+        on.map(|panel| {
+            let (lo, hi) = (panel.span.lo.max(a), panel.span.hi.min(b));
+            (hi - lo) / self.length_at(lo).min(self.length_at(hi))
+        })
+        .sum()
     }
 
     /// Radii at which the gap is looked at as a whole, ascending: close together where it is fine.
@@ -223,6 +266,25 @@ impl Ground {
         let wavenumber = self.entire.filter(|k| k * edge < 400.0)?;
         Some(Under::any(s, edge, wavenumber))
     }
+}
+
+/// Twice the width of the panels at their borders, which grows no faster than the distance from the narrow ones: an edge sees what is
+/// fine before it is there.
+fn local(panels: &Panels) -> Vec<f64> {
+    let widths: Vec<f64> = panels.list().iter().map(|panel| panel.span.hi - panel.span.lo).collect();
+    let n = widths.len();
+    let beside = |k: usize| -> f64 {
+        let around = [k.checked_sub(1), Some(k).filter(|k| *k < n)];
+        2.0 * around.into_iter().flatten().map(|k| widths[k]).fold(f64::INFINITY, f64::min)
+    };
+    let mut lengths: Vec<f64> = (0..=n).map(beside).collect();
+    for k in 1..=n {
+        lengths[k] = lengths[k].min(lengths[k - 1] + widths[k - 1]);
+    }
+    for k in (0..n).rev() {
+        lengths[k] = lengths[k].min(lengths[k + 1] + widths[k]);
+    }
+    lengths
 }
 
 /// Radii on all panels of a table, ascending: as close as the gap is fine.

@@ -154,7 +154,7 @@ pub fn points(ground: &Ground, contacts: &Contacts) -> Resolution {
     let most = MOST_POINTS as f64;
     let wants = |j: usize| {
         let [a, b] = contacts.rings[j];
-        let phase = PI * (b - a) / ground.wave;
+        let phase = PI * (b - a) / ground.shortest_between([a, b]);
         let waves = phase + 8.0 * cbrt(phase) + 8.0;
         FEWEST_POINTS.max(waves).max(TOLERANCE / ln(ellipse(contacts, j))).min(most)
     };

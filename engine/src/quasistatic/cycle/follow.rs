@@ -50,7 +50,7 @@ impl Path<'_, '_> {
                 if let Some(end) = end {
                     return Ok((end, next.held));
                 }
-                (point, length) = (next, FIRST);
+                (point, length) = (next.rescaled(self.balance), FIRST);
                 continue;
             }
             let step = Step::new(self.balance, &point);
@@ -77,7 +77,7 @@ impl Path<'_, '_> {
             if let Some(end) = end {
                 return Ok((end, next.held));
             }
-            point = next;
+            point = next.rescaled(self.balance);
             length = (1.5 * length).min(LONGEST);
         }
     }
@@ -112,7 +112,7 @@ impl Path<'_, '_> {
             } else {
                 corners.iter().rev().find(|r| **r < edge.radius - margin)?
             };
-            let way = (corner - edge.radius).abs() / wave;
+            let way = (corner - edge.radius).abs() / point.scales.edges[i];
             (way <= 1.2 * (speed.abs() * length).max(2e-3)).then_some((i, way, way / speed.abs()))
         });
         ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way))
@@ -148,6 +148,7 @@ impl Path<'_, '_> {
         if end.is_some() || target < way {
             return Ok((end, corner));
         }
+        let corner = corner.rescaled(self.balance);
         let step = Step::of_edge(self.balance, &corner, edge);
         let (mut beyond, mut length) = (None, BEYOND_CORNER);
         for _ in 0..20 {
@@ -325,7 +326,7 @@ impl Path<'_, '_> {
                 Control::Force => -point.held.approach,
                 Control::Displacement | Control::Stiffness(_) => point.held.force,
             };
-            sum += 0.5 * length * weight * stretch * slope * rate[n] * self.balance.unit();
+            sum += 0.5 * length * weight * stretch * slope * rate[n] * step.unit();
         }
         sum
     }

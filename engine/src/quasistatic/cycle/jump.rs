@@ -94,7 +94,6 @@ impl Balance<'_> {
         mobility: Mobility<'_>,
         passed: &mut Vec<Passed>,
     ) -> Result<Option<Held>, CycleError> {
-        let wave = self.ground.wave;
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
@@ -118,7 +117,7 @@ impl Balance<'_> {
             if lowest > 0.0 {
                 let newton = held.jacobian.clone().lu().solve(&-&held.excess);
                 if let Some(step) = newton.filter(|step| step.iter().all(|x| x.is_finite())) {
-                    let size = step.amax() / wave;
+                    let size = step.component_div(&self.scales(&contacts).edges).amax();
                     if size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
                         if sense < 0.0 {
                             return Ok(Some(held));
@@ -157,7 +156,7 @@ impl Balance<'_> {
         mobility: Mobility<'_>,
     ) -> Result<DVector<f64>, CycleError> {
         let contacts = &held.state.contacts;
-        let wave = self.ground.wave;
+        let scales = self.scales(contacts).edges;
         let slow: Vec<f64> = contacts.edges().iter().map(|edge| mobility(edge.radius).recip()).collect();
         let size = held.jacobian.amax();
         let fastest = slow.iter().copied().fold(f64::INFINITY, f64::min);
@@ -177,7 +176,8 @@ impl Balance<'_> {
             if let Some(step) = matrix.lu().solve(&push) {
                 let right = step.iter().all(|x| x * sense >= 0.0 && x.is_finite());
                 let next = moved(contacts, &step);
-                if right && step.amax() <= LONGEST * wave && keeps_widths(contacts, &next, LEFT) {
+                let longest = step.component_div(&scales).amax();
+                if right && longest <= LONGEST && keeps_widths(contacts, &next, LEFT) {
                     return Ok(step);
                 }
             }

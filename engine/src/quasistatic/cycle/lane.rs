@@ -10,7 +10,7 @@ use super::error::CycleError;
 use super::event::{CycleState, EventKind, Passed, PassedKind};
 use super::path::{End, Path, beyond};
 use super::setting::{Areas, Turn};
-use crate::annuli::{Contacts, Crest, Ground, points};
+use crate::annuli::{Around, Contacts, Crest, Ground, points};
 use crate::disc::solution::ExactSolution;
 use crate::disc::{Local, Place, Solution};
 use crate::problem::Control;
@@ -23,6 +23,9 @@ use std::sync::Arc;
 
 /// Control values nearer to each other than this share of themselves are one.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// A gap that is nothing, in waves.
+const TOUCHES: f64 = 1e-11;
 
 /// Halvings and secants by which a touch is located.
 const LOCATED: usize = 80;
@@ -183,14 +186,38 @@ impl Path<'_, '_> {
         Ok(last)
     }
 
-    /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps.
+    /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps. Each crest is brought to its own
+    /// touch; whether another overlaps there is looked at as a whole.
     fn touch_between(
+        &self,
+        lane: &Lane,
+        [from, mut to]: [Place; 2],
+        mut crest: Crest,
+    ) -> Result<(Place, Crest), CycleError> {
+        /// Crests that may overlap one after the other.
+        const CRESTS: usize = 8;
+        for _ in 0..CRESTS {
+            (to, crest) = self.touch_of(lane, [from, to], crest)?;
+            let held = self.disc(&lane.solution.at(to))?;
+            let rounding = -TOUCHES * self.balance.ground.wave;
+            match self.balance.least_gap(&held).filter(|other| other.gap < rounding) {
+                Some(other) => crest = other,
+                None => break,
+            }
+        }
+        Ok((to, crest))
+    }
+
+    /// Where the gap at one crest vanishes between two places.
+    fn touch_of(
         &self,
         lane: &Lane,
         [from, to]: [Place; 2],
         crest: Crest,
     ) -> Result<(Place, Crest), CycleError> {
-        let solution = &lane.solution;
+        /// The part of the gap's own length around the last place of the crest in which it is looked for.
+        const NEAR: f64 = 1.0 / 14.0;
+        let (solution, ground) = (&lane.solution, self.balance.ground);
         let [mut lo, mut hi] = [from, to].map(|place| solution.at(place).contact_radius);
         let on = |s: f64| solution.place(s).unwrap_or(to);
         let (mut below, mut above, mut best) = (f64::NAN, crest.gap, crest);
@@ -205,17 +232,18 @@ impl Path<'_, '_> {
                 break;
             }
             let held = self.disc(&solution.at(on(s)))?;
-            match self.balance.least_gap(&held) {
-                Some(found) if found.gap < 0.0 => {
-                    (hi, above, best) = (s, found.gap, found);
-                    below = if side == 1 { 0.5 * below } else { below };
-                    side = 1;
-                }
-                found => {
-                    (lo, below) = (s, found.map_or(f64::NAN, |found| found.gap));
-                    above = if side == -1 { 0.5 * above } else { above };
-                    side = -1;
-                }
+            let around = Around::new(ground, &held.state, held.approach);
+            let near = NEAR * ground.length_at(best.radius);
+            let found =
+                around.minimum([(best.radius - near).max(s), (best.radius + near).min(ground.reach())]);
+            if found.gap < 0.0 {
+                (hi, above, best) = (s, found.gap, found);
+                below = if side == 1 { 0.5 * below } else { below };
+                side = 1;
+            } else {
+                (lo, below) = (s, found.gap);
+                above = if side == -1 { 0.5 * above } else { above };
+                side = -1;
             }
         }
         Ok((on(hi), best))

@@ -22,8 +22,19 @@ const LEFT: f64 = 0.4;
 pub struct Point {
     /// The edges, in equilibrium.
     pub held: Held,
-    /// The unit tangent by (α/λ, c/c₀).
+    /// The unit tangent by (α/ℓ, c/c₀).
     pub tangent: DVector<f64>,
+    /// ℓ of every edge, and c₀.
+    pub scales: Scales,
+}
+
+/// Units of the arc length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scales {
+    /// ℓ of every edge, a length.
+    pub edges: DVector<f64>,
+    /// c₀, of the control.
+    pub control: f64,
 }
 
 impl Point {
@@ -47,42 +58,66 @@ pub struct Step<'a, 'b> {
 }
 
 impl Balance<'_> {
-    /// The unit of the control in the arc length.
-    pub fn unit(&self) -> f64 {
-        match self.control {
-            Control::Displacement | Control::Stiffness(_) => 0.2 * self.ground.wave,
-            Control::Force => 0.1 * self.ground.wave,
-        }
+    /// The units of the arc length at `contacts`: of every edge the length in which the gap changes there, and of the control a
+    /// share of the largest.
+    pub fn scales(&self, contacts: &Contacts) -> Scales {
+        const OF_APPROACH: f64 = 0.2;
+        const OF_FORCE: f64 = 0.1;
+        let edges: Vec<f64> =
+            contacts.edges().iter().map(|edge| self.ground.length_at(edge.radius)).collect();
+        let longest = edges.iter().copied().fold(self.ground.wave, f64::max);
+        let share = if self.control == Control::Force { OF_FORCE } else { OF_APPROACH };
+        Scales { edges: DVector::from_vec(edges), control: share * longest }
     }
 
     /// The point of edges in equilibrium, its tangent such that the control goes up (`sense` 1) or down (−1).
     pub fn point(&self, held: Held, sense: f64) -> Option<Point> {
+        let scales = self.scales(&held.state.contacts);
         let n = held.excess.len();
         let mut along = DVector::zeros(n + 1);
         along[n] = sense;
-        let tangent = self.direction(&held, &along)?;
-        Some(Point { held, tangent })
+        let tangent = Self::direction(&held, &along, &scales)?;
+        Some(Point { held, tangent, scales })
     }
 
     /// The unit tangent at `held` on the side of `along`.
-    fn direction(&self, held: &Held, along: &DVector<f64>) -> Option<DVector<f64>> {
+    fn direction(held: &Held, along: &DVector<f64>, scales: &Scales) -> Option<DVector<f64>> {
         let n = held.excess.len();
         let mut right = DVector::zeros(n + 1);
         right[n] = 1.0;
-        let found = self.bordered(held, along).lu().solve(&right)?;
+        let found = Self::bordered(held, along, scales).lu().solve(&right)?;
         let norm = found.norm();
         (norm.is_finite() && norm > 0.0).then(|| found / norm)
     }
 
     /// J and ∂κ/∂c in the units of the arc length over the row `along`.
-    fn bordered(&self, held: &Held, along: &DVector<f64>) -> DMatrix<f64> {
+    fn bordered(held: &Held, along: &DVector<f64>, scales: &Scales) -> DMatrix<f64> {
         let n = held.excess.len();
-        let (wave, unit) = (self.ground.wave, self.unit());
         DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
-            (true, true) => held.jacobian[(i, j)] * wave,
-            (true, false) => held.by_control[i] * unit,
+            (true, true) => held.jacobian[(i, j)] * scales.edges[j],
+            (true, false) => held.by_control[i] * scales.control,
             (false, _) => along[j],
         })
+    }
+}
+
+impl Point {
+    /// The same in the units of where it is, ready for a step of its own.
+    #[must_use]
+    pub fn rescaled(self, balance: &Balance<'_>) -> Self {
+        let scales = balance.scales(self.contacts());
+        let n = scales.edges.len();
+        let mut tangent = DVector::from_fn(n + 1, |i, _| {
+            let ratio = if i < n {
+                self.scales.edges[i] / scales.edges[i]
+            } else {
+                self.scales.control / scales.control
+            };
+            self.tangent[i] * ratio
+        });
+        let norm = tangent.norm();
+        tangent /= norm;
+        Self { tangent, scales, ..self }
     }
 }
 
@@ -99,6 +134,11 @@ impl<'a, 'b> Step<'a, 'b> {
         let mut row = DVector::zeros(from.tangent.len());
         row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
         Self { balance, from, points: points(balance.ground, from.contacts()), row }
+    }
+
+    /// The unit of the control in its length.
+    pub fn unit(&self) -> f64 {
+        self.from.scales.control
     }
 
     /// What lies at the distance `length` by the tangent.
@@ -127,20 +167,20 @@ impl<'a, 'b> Step<'a, 'b> {
     pub fn within(&self, length: f64, guess: &DVector<f64>, converged: f64) -> Option<(Point, DVector<f64>)> {
         let (balance, from) = (self.balance, self.from);
         let n = from.held.excess.len();
-        let (wave, unit) = (balance.ground.wave, balance.unit());
+        let scales = &from.scales;
         let mut offset = guess.clone();
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let contacts = moved(from.contacts(), &(offset.rows(0, n) * wave));
+            let contacts = moved(from.contacts(), &offset.rows(0, n).component_mul(&scales.edges));
             if !keeps_widths(from.contacts(), &contacts, 0.5 * LEFT) {
                 return None;
             }
-            let value = from.held.control_value + unit * offset[n];
+            let value = from.held.control_value + scales.control * offset[n];
             let held = balance.held(&contacts, &self.points, value).ok()?;
             let mut right = DVector::zeros(n + 1);
             right.rows_mut(0, n).copy_from(&-&held.excess);
             right[n] = length - self.row.dot(&offset);
-            let lu = balance.bordered(&held, &self.row).lu();
+            let lu = Balance::bordered(&held, &self.row, scales).lu();
             let step = lu.solve(&right)?;
             let size = step.amax();
             if !size.is_finite() {
@@ -150,7 +190,8 @@ impl<'a, 'b> Step<'a, 'b> {
                 let mut unit = DVector::zeros(n + 1);
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;
-                return Some((Point { held, tangent: &rate / rate.norm() }, rate));
+                let tangent = &rate / rate.norm();
+                return Some((Point { held, tangent, scales: scales.clone() }, rate));
             }
             if size > 2.0 * last.max(1e-3) {
                 return None;
@@ -170,20 +211,22 @@ impl<'a, 'b> Step<'a, 'b> {
     fn allowed(&self, point: &Point) -> bool {
         let (before, after) = (self.from.contacts(), point.contacts());
         let edges = before.edges().into_iter().zip(after.edges());
-        let longest = edges.fold(0.0, |most: f64, (a, b)| most.max((a.radius - b.radius).abs()));
+        let longest = edges
+            .zip(&self.from.scales.edges)
+            .fold(0.0, |most: f64, ((a, b), scale)| most.max((a.radius - b.radius).abs() / scale));
         self.from.tangent.dot(&point.tangent) > TURN
-            && longest <= LONGEST * self.balance.ground.wave
+            && longest <= LONGEST
             && keeps_widths(before, after, LEFT)
     }
 
     /// The offset of a point from the start, in the units of the arc length.
     pub fn offset(&self, point: &Point) -> DVector<f64> {
         let n = point.held.excess.len();
-        let (wave, unit) = (self.balance.ground.wave, self.balance.unit());
+        let scales = &self.from.scales;
         let edges: Vec<_> = self.from.contacts().edges().into_iter().zip(point.contacts().edges()).collect();
         DVector::from_fn(n + 1, |i, _| match edges.get(i) {
-            Some((a, b)) => a.sign * (b.radius - a.radius) / wave,
-            None => (point.held.control_value - self.from.held.control_value) / unit,
+            Some((a, b)) => a.sign * (b.radius - a.radius) / scales.edges[i],
+            None => (point.held.control_value - self.from.held.control_value) / scales.control,
         })
     }
 

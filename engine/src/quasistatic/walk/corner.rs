@@ -48,13 +48,15 @@ impl Walk<'_> {
         if ground.stops().is_empty() {
             return Ok(None);
         }
-        let scale = self.equilibrium().scales.contact_radius / ground.wave;
         let contacts = edges::contacts(&self.equilibrium().scales, here);
-        let speed = |i: usize| here.tangent()[2 + i] * scale;
+        let balance = self.balance(ground, Control::Displacement);
+        let scales = balance.scales(&contacts);
+        let radius = self.equilibrium().scales.contact_radius;
+        let speed = |i: usize| here.tangent()[2 + i] * radius / scales.edges[i];
         let signs = contacts.edges();
         let meets = signs.iter().enumerate().filter_map(|(edge, at)| {
             let outward = speed(edge) > 0.0;
-            let away = |stop: &f64| (stop - at.radius) / ground.wave;
+            let away = |stop: &f64| (stop - at.radius) / scales.edges[edge];
             if ground.stops().iter().any(|stop| away(stop).abs() <= ON) {
                 return Some(Meets { edge, way: BEYOND });
             }
@@ -65,14 +67,13 @@ impl Walk<'_> {
         let time = |meets: &Meets| meets.way / speed(meets.edge).abs();
         let Some(first) = meets.min_by(|a, b| time(a).total_cmp(&time(b))) else { return Ok(None) };
         let lost = || WalkFailure::Edges("a corner of the gap could not be passed".to_owned());
-        let balance = self.balance(ground, Control::Displacement);
         let held = edges.held(here, Control::Displacement).ok_or_else(lost)?;
         let n = signs.len();
         let tangent = DVector::from_fn(n + 1, |i, _| match signs.get(i) {
             Some(edge) => edge.sign * speed(i),
-            None => here.tangent()[0] * self.equilibrium().scales.approach / balance.unit(),
+            None => here.tangent()[0] * self.equilibrium().scales.approach / scales.control,
         });
-        let from = point::Point { held, tangent: tangent.normalize() };
+        let from = point::Point { held, tangent: tangent.normalize(), scales };
         let step = point::Step::of_edge(&balance, &from, first.edge);
         let mut way = first.way;
         for _ in 0..HALVINGS {
