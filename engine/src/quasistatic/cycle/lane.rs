@@ -35,6 +35,8 @@ const LOCATED: usize = 80;
 pub struct Lane {
     solution: ExactSolution,
     monotone: Monotone,
+    /// Where δ or P has an extreme.
+    extremes: Vec<Place>,
 }
 
 impl Lane {
@@ -42,7 +44,10 @@ impl Lane {
     pub fn new(ground: &Ground, gamma: f64, control: Control) -> Self {
         let solution = ExactSolution::new(Arc::clone(&ground.panels), gamma);
         let monotone = Monotone::of(&solution, control);
-        Self { solution, monotone }
+        let extremes = [Control::Displacement, Control::Force]
+            .map(|of| if of == control { monotone.clone() } else { Monotone::of(&solution, of) })
+            .map(|monotone| monotone.limits.iter().map(|limit| limit.place).collect::<Vec<_>>());
+        Self { solution, monotone, extremes: extremes.concat() }
     }
 
     /// The weighted control of the control value `c`.
@@ -138,7 +143,7 @@ impl Path<'_, '_> {
 
     /// Follows the disc `held` while the control goes up, to what ends its stable stretch; `None` where it is not on one.
     pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, CycleError> {
-        let Lane { solution, monotone } = lane;
+        let Lane { solution, monotone, .. } = lane;
         let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(None) };
         let stretch = &monotone.stretches[from.stretch];
         let turn = lane.turns(self.setting.turn, [from.place, stretch.outer]);
@@ -167,12 +172,18 @@ impl Path<'_, '_> {
     fn passed(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<Held, CycleError> {
         let solution = &lane.solution;
         let [begin, end] = [from, to].map(|place| solution.at(place).contact_radius);
-        let mut between = places(solution, begin.max(end), begin.min(end), Detail::Drawn);
-        if begin < end {
+        let radius = |place: Place| solution.at(place).contact_radius;
+        let [inner, outer] = [begin.min(end), begin.max(end)];
+        // The smallest force of a loop is that of a state of it.
+        let all =
+            places(solution, outer, inner, Detail::Drawn).into_iter().chain(lane.extremes.iter().copied());
+        let mut between: Vec<(f64, Place)> = all.map(|place| (radius(place), place)).collect();
+        between.retain(|(s, _)| inner < *s && *s < outer);
+        between.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if begin > end {
             between.reverse();
         }
-        let inner = between.len().saturating_sub(1);
-        for place in between.into_iter().take(inner).skip(1) {
+        for (_, place) in between {
             let held = self.disc(&solution.at(place))?;
             self.counted(&held)?;
             self.record(&held);
@@ -276,7 +287,7 @@ impl Path<'_, '_> {
 
     /// The way down of the disc `held`, until the bodies are apart; false where it is on no stable stretch.
     pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<bool, CycleError> {
-        let Lane { solution, monotone } = lane;
+        let Lane { solution, monotone, .. } = lane;
         let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(false) };
         let descent = descend(solution, monotone, from, 0.0);
         for (piece, jump) in descent.pieces.iter().zip(&descent.jumps) {
