@@ -2,7 +2,8 @@
 
 use super::error::ReadError;
 use super::header::{Header, is_way};
-use super::role::{Place, Role, Said, Segment, Spec, SpecError, named, unit_of};
+use super::names::named;
+use super::role::{Place, Role, Said, Segment, Spec, SpecError, unit_of};
 use crate::cells::Head;
 use crate::text::{quote, sanitize};
 use crate::units::Unit;

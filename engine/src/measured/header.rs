@@ -1,7 +1,8 @@
 //! What the words above a table say of its columns: their names, their units, the branch of its rows.
 
 use super::lines::Table;
-use super::role::{Role, Segment, named, squashed, unit_named};
+use super::names::{named, squashed};
+use super::role::{Role, Segment, unit_named};
 use super::words::{Words, count_known, is_units, keyed, unit_cells};
 use crate::cells::{Head, Separator, heads};
 use std::collections::HashMap;

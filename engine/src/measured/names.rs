@@ -3,6 +3,18 @@
 use super::role::{Role, Segment, dimensions};
 use crate::units::Unit;
 
+impl Role {
+    /// What a header's name says, if no unit stands in it.
+    pub fn of_bare(name: &str) -> Option<Self> {
+        named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
+    }
+
+    /// What a header's name says.
+    pub fn of(name: &str) -> Option<Self> {
+        named(name).filter(|named| named.side.is_none()).map(|named| named.role)
+    }
+}
+
 /// A column's name taken apart.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Named {

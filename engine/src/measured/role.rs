@@ -1,6 +1,5 @@
 //! What a column is, by its name or because a person says so.
 
-pub(super) use super::names::{named, squashed};
 use crate::text::{closest, quote};
 use crate::units::{Dimension, Quantity, Unit};
 use thiserror::Error;
@@ -142,16 +141,6 @@ impl Role {
             Self::Segment => None,
             _ => Quantity::Length.si(),
         }
-    }
-
-    /// What a header's name says, if no unit stands in it.
-    pub fn of_bare(name: &str) -> Option<Self> {
-        named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
-    }
-
-    /// What a header's name says.
-    pub fn of(name: &str) -> Option<Self> {
-        named(name).filter(|named| named.side.is_none()).map(|named| named.role)
     }
 }
 

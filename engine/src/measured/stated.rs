@@ -3,7 +3,7 @@
 //! Settings are lines such as `Force Constant, nN/nm: 0.2`, `k (N/m)<tab>0.018`, `# springConstant: 0.04` or, of afmformats,
 //! a block of JSON in the remarks (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
 
-use super::role::squashed;
+use super::names::squashed;
 use super::words::{Words, last_digit};
 use crate::cells::{LARGEST_NUMBER, Separator, heads};
 use crate::text::quote;

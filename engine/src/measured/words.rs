@@ -1,6 +1,7 @@
 //! Words and cells: what a line says beside its numbers, and what a cell is.
 
-use super::role::{Segment, named, unit_named};
+use super::names::named;
+use super::role::{Segment, unit_named};
 use crate::cells::{Head, Separator, heads};
 use crate::units::Unit;
 
