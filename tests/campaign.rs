@@ -29,9 +29,10 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::{
-    Areas, CycleState, Event as CycleEvent, EventKind as CycleEventKind, Turn,
+    Areas, CycleState, Event as CycleEvent, EventKind as CycleEventKind,
 };
 use pulloff_engine::quasistatic::{EventKind, PathStop, Unloading};
 use quadrature::{Bump, Disc, Path, State, Term};

@@ -13,9 +13,10 @@ use pulloff_engine::disc::Table;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::problem::Control;
+use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::cycle::{
-    Areas, Balance, Cycle, CycleError, CycleState, Direction, EVEN, EventKind, Setting, Turn, Warning, cycle,
+    Areas, Balance, Cycle, CycleError, CycleState, Direction, EVEN, EventKind, Setting, Warning, cycle,
     cycle_on,
 };
 use serde_json::Value;

@@ -6,8 +6,9 @@
 use nalgebra::{DMatrix, DVector};
 use pulloff_engine::annuli::Ground;
 use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
-use pulloff_engine::quasistatic::cycle::{Areas, CycleState, Direction, EVEN, Setting, Turn, cycle_on};
+use pulloff_engine::quasistatic::cycle::{Areas, CycleState, Direction, EVEN, Setting, cycle_on};
 use pulloff_engine::ritz::kernel::disc_interaction;
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -6,8 +6,9 @@ use crate::case::Case;
 use crate::measured::{Abscissa, Points, Segment};
 use crate::preset::Preset;
 use crate::problem::Control;
+use crate::problem::Turn;
 use crate::progress::Unwatched;
-use crate::quasistatic::cycle::{Areas, CycleState, Direction, Turn};
+use crate::quasistatic::cycle::{Areas, CycleState, Direction};
 
 const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
 

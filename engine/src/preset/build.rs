@@ -11,8 +11,8 @@ use super::schema::{RADIUS_OVER_CURVATURE, START_KEYS, START_OVER_CURVATURE, TUR
 use super::shape;
 use super::values::Values;
 use crate::gap::Gap;
+use crate::problem::Turn;
 use crate::problem::{Begin, Start};
-use crate::quasistatic::cycle::Turn;
 use crate::units::Quantity;
 
 /// The preset these values make.

@@ -6,13 +6,16 @@
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
 //! | [`start`] | how the start of a path is given |
+//! | [`turn`] | where a loop turns round |
 
 pub mod control;
 pub mod groups;
 pub mod reduced;
 pub mod start;
+pub mod turn;
 
 pub use control::Control;
 pub use groups::Groups;
 pub use reduced::{Problem, Reduced, Units};
 pub use start::{Begin, Start};
+pub use turn::Turn;

@@ -7,9 +7,10 @@ use super::unload::LOSS_AGREEMENT;
 use crate::case::{Case, CaseError};
 use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
+use crate::problem::Turn;
 use crate::problem::{Control, Reduced, Units};
 use crate::progress::{Part, Progress};
-use crate::quasistatic::cycle::{Areas, Cycle, CycleState, Event, Passed, Totals, Turn, TurnReached};
+use crate::quasistatic::cycle::{Areas, Cycle, CycleState, Event, Passed, Totals, TurnReached};
 use serde::Serialize;
 
 /// A loop: from apart to the first touch, up to a turn, and down until the bodies are apart.

@@ -16,9 +16,10 @@ use crate::disc::Table;
 use crate::elementary::ln;
 use crate::gap::Shape;
 use crate::gap::shapes::{Harmonic, Harmonics};
+use crate::problem::Turn;
 use crate::problem::{Control, Problem};
 use crate::progress::Unwatched;
-use crate::quasistatic::cycle::{Areas, Cycle, EVEN, Event, EventKind, Setting, Turn, cycle};
+use crate::quasistatic::cycle::{Areas, Cycle, EVEN, Event, EventKind, Setting, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -1,7 +1,6 @@
 //! Errors and warnings of a loop in the user's units and in words.
 
 use super::error::{CycleError, Warning};
-use super::setting::Turn;
 use crate::annuli::{AnnuliError, ContactsError};
 use crate::problem::{Control, Units};
 use crate::units::number::said;
@@ -14,19 +13,6 @@ fn quantity(control: Control) -> Quantity {
 
 fn of_control(control: Control, units: &Units) -> f64 {
     if control == Control::Force { units.force } else { units.length }
-}
-
-impl Turn {
-    /// The same turn where lengths are `length` times and forces `force` times as large.
-    #[must_use]
-    pub fn in_units(self, length: f64, force: f64, control: Control) -> Self {
-        match self {
-            Self::Approach(x) => Self::Approach(x * length),
-            Self::Force(x) => Self::Force(x * force),
-            Self::Radius(x) => Self::Radius(x * length),
-            Self::Control(x) => Self::Control(x * if control == Control::Force { force } else { length }),
-        }
-    }
 }
 
 impl CycleError {

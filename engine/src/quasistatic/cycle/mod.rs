@@ -20,7 +20,8 @@
 //! | [`error`] | why there is none, and what is to be known about one |
 //! | [`setting`] | what a loop is asked for, and what it answers |
 //! | `describe` | both in the user's units, in words |
-//! | `lane` | a loop while the contact is one disc: exactly |
+//! | [`lane`] | the equilibria of one disc, exactly |
+//! | `one_disc` | a loop on them |
 //! | [`path`] | the loop |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
@@ -33,7 +34,8 @@ pub mod error;
 pub mod event;
 mod follow;
 pub mod jump;
-mod lane;
+pub mod lane;
+mod one_disc;
 pub mod path;
 pub mod point;
 pub mod setting;
@@ -46,4 +48,4 @@ pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
 pub use path::{cycle, cycle_on};
 pub use point::{Point, Step};
-pub use setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
+pub use setting::{Areas, Cycle, Setting, Totals, TurnReached};

@@ -4,11 +4,12 @@ use super::balance::{Balance, Held};
 use super::error::{CycleError, Warning};
 use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
 use super::lane::Lane;
-use super::setting::{Areas, Cycle, Setting, Totals, Turn, TurnReached};
+use super::setting::{Areas, Cycle, Setting, Totals, TurnReached, measure};
 use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::Control;
+use crate::problem::Turn;
 use crate::progress::Progress;
 use nalgebra::DVector;
 use std::sync::Arc;
@@ -202,7 +203,7 @@ impl Path<'_, '_> {
         if self.balance.control == self.setting.control && matches!(self.setting.turn, Turn::Control(_)) {
             return held.control_value;
         }
-        self.setting.turn.measure(held, self.setting.control)
+        measure(self.setting.turn, held, self.setting.control)
     }
 
     pub(super) fn record(&mut self, held: &Held) {
@@ -383,7 +384,10 @@ impl Path<'_, '_> {
         if after.is_none() && self.setting.control == Control::Force {
             return None;
         }
-        if let Some(area) = self.balance.lane.zip(before).and_then(|(lane, before)| lane.area(before, after))
+        if let Some(area) =
+            self.balance.lane.zip(before).and_then(|(lane, before)| {
+                lane.area(&before.contacts, after.map(|after| &after.contacts[..]))
+            })
         {
             return Some(area);
         }
@@ -398,7 +402,7 @@ impl Path<'_, '_> {
             return None;
         }
         // What it took to come from apart to there is what it takes to come back, with another sign.
-        let on_lane = self.balance.lane.and_then(|lane| lane.area(after, None));
+        let on_lane = self.balance.lane.and_then(|lane| lane.area(&after.contacts, None));
         on_lane.map(|area| -area).or_else(|| self.by_area(None, Some(after), value, passed))
     }
 

@@ -4,36 +4,15 @@ use super::balance::Held;
 use super::error::Warning;
 use super::event::{CycleState, Event};
 use super::jump::Mobility;
-use crate::problem::Control;
+use crate::problem::{Control, Turn};
 
-/// Where the control turns round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Turn {
-    /// At the first stable state with at least this approach, a length.
-    Approach(f64),
-    /// With at least this force.
-    Force(f64),
-    /// With an outermost edge of at least this radius, a length.
-    Radius(f64),
-    /// At this control value: an approach, a force, or the way of the device.
-    Control(f64),
-}
-
-impl Turn {
-    /// Its number.
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
-        }
-    }
-
-    pub(super) fn measure(self, held: &Held, control: Control) -> f64 {
-        match self {
-            Self::Approach(_) => held.approach,
-            Self::Force(_) => held.force,
-            Self::Radius(_) => held.state.contacts.outermost(),
-            Self::Control(_) => control.value(held.approach, held.force),
-        }
+/// What the turn is measured by, of edges at a control value.
+pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
+    match turn {
+        Turn::Approach(_) => held.approach,
+        Turn::Force(_) => held.force,
+        Turn::Radius(_) => held.state.contacts.outermost(),
+        Turn::Control(_) => control.value(held.approach, held.force),
     }
 }
 

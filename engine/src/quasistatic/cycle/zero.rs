@@ -9,9 +9,10 @@ use super::error::CycleError;
 use super::event::{CycleState, Direction, Event, EventKind};
 use super::path::Path;
 use super::point::Step;
-use super::setting::{Cycle, Totals, Turn, TurnReached};
+use super::setting::{Cycle, Totals, TurnReached};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
+use crate::problem::Turn;
 
 /// A gap below so many waves may be about to close.
 const CLOSING: f64 = 0.02;

@@ -1,0 +1,36 @@
+//! Where a loop of loading and unloading turns round.
+
+use super::Control;
+
+/// Where the control turns round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Turn {
+    /// At the first stable state with at least this approach, a length.
+    Approach(f64),
+    /// With at least this force.
+    Force(f64),
+    /// With an outermost edge of at least this radius, a length.
+    Radius(f64),
+    /// At this control value: an approach, a force, or the way of the device.
+    Control(f64),
+}
+
+impl Turn {
+    /// Its number.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
+        }
+    }
+
+    /// The same turn where lengths are `length` times and forces `force` times as large.
+    #[must_use]
+    pub fn in_units(self, length: f64, force: f64, control: Control) -> Self {
+        match self {
+            Self::Approach(x) => Self::Approach(x * length),
+            Self::Force(x) => Self::Force(x * force),
+            Self::Radius(x) => Self::Radius(x * length),
+            Self::Control(x) => Self::Control(x * if control == Control::Force { force } else { length }),
+        }
+    }
+}

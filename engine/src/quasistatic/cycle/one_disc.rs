@@ -1,0 +1,232 @@
+//! A loop on the [`Lane`]: up to a touch, the turn or a limit point, and down until the bodies are apart.
+
+use super::balance::{Balance, Held};
+use super::error::CycleError;
+use super::event::{EventKind, Passed, PassedKind};
+use super::lane::Lane;
+use super::path::{End, Path, beyond};
+use super::setting::Areas;
+use crate::annuli::{Around, Contacts, Crest, points};
+use crate::disc::{Local, Place, Solution};
+use crate::quasistatic::curve::{Detail, places};
+use crate::quasistatic::descent::{descend, stable_start};
+use crate::quasistatic::jump::{self, Landing, Run};
+use crate::quasistatic::{descent, energy};
+
+/// A gap that is nothing, in waves.
+const TOUCHES: f64 = 1e-11;
+
+/// Halvings and secants by which a touch is located.
+const LOCATED: usize = 80;
+
+impl Path<'_, '_> {
+    /// The disc at a place, held at its own control value.
+    fn disc(&self, at: &Local) -> Result<Held, CycleError> {
+        let contacts = Contacts::of_disc(at.contact_radius);
+        let value = self.balance.control.value(at.approach, at.force);
+        Ok(self.balance.held(&contacts, &points(self.balance.ground, &contacts), value)?)
+    }
+
+    /// Follows the disc `held` while the control goes up, to what ends its stable stretch; `None` where it is not on one.
+    pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, CycleError> {
+        let Lane { solution, monotone, .. } = lane;
+        let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(None) };
+        let stretch = &monotone.stretches[from.stretch];
+        let turn = lane.turns(self.setting.turn, [from.place, stretch.outer]);
+        let mut to = turn.unwrap_or(stretch.outer);
+        let mut end = if turn.is_some() { End::Turn } else { End::Fold(from.stretch) };
+        let at_end = self.disc(&solution.at(to))?;
+        // What could touch may lie beyond the table.
+        self.counted(&at_end)?;
+        if let Some(crest) = self.balance.least_gap(&at_end).filter(|crest| crest.gap < 0.0) {
+            let (place, crest) = self.touch_between(lane, [from.place, to], crest)?;
+            (to, end) = (place, End::Touch(crest));
+        }
+        let last = self.passed(lane, [from.place, to])?;
+        if matches!(end, End::Fold(at) if at + 1 == monotone.stretches.len()) {
+            // No limit point: the table ends.
+            return Err(CycleError::BeyondGap {
+                radius: solution.reach(),
+                approach: last.approach,
+                force: last.force,
+            });
+        }
+        Ok(Some((end, last)))
+    }
+
+    /// Records the stable states between two places, in the order of the way, with their area; the last of them.
+    fn passed(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<Held, CycleError> {
+        let solution = &lane.solution;
+        let [begin, end] = [from, to].map(|place| solution.at(place).contact_radius);
+        let radius = |place: Place| solution.at(place).contact_radius;
+        let [inner, outer] = [begin.min(end), begin.max(end)];
+        // The smallest force of a loop is that of a state of it.
+        let all =
+            places(solution, outer, inner, Detail::Drawn).into_iter().chain(lane.extremes.iter().copied());
+        let mut between: Vec<(f64, Place)> = all.map(|place| (radius(place), place)).collect();
+        between.retain(|(s, _)| inner < *s && *s < outer);
+        between.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if begin > end {
+            between.reverse();
+        }
+        for (_, place) in between {
+            let held = self.disc(&solution.at(place))?;
+            self.counted(&held)?;
+            self.record(&held);
+        }
+        let last = self.disc(&solution.at(to))?;
+        self.counted(&last)?;
+        if self.setting.areas == Areas::Yes {
+            self.area += energy::work(solution, self.setting.control, from, to).unwrap_or(f64::NAN);
+        }
+        self.record(&last);
+        Ok(last)
+    }
+
+    /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps. Each crest is brought to its own
+    /// touch; whether another overlaps there is looked at as a whole.
+    fn touch_between(
+        &self,
+        lane: &Lane,
+        [from, mut to]: [Place; 2],
+        mut crest: Crest,
+    ) -> Result<(Place, Crest), CycleError> {
+        /// Crests that may overlap one after the other.
+        const CRESTS: usize = 8;
+        for _ in 0..CRESTS {
+            (to, crest) = self.touch_of(lane, [from, to], crest)?;
+            let held = self.disc(&lane.solution.at(to))?;
+            let rounding = -TOUCHES * self.balance.ground.wave;
+            match self.balance.least_gap(&held).filter(|other| other.gap < rounding) {
+                Some(other) => crest = other,
+                None => break,
+            }
+        }
+        Ok((to, crest))
+    }
+
+    /// Where the gap at one crest vanishes between two places.
+    fn touch_of(
+        &self,
+        lane: &Lane,
+        [from, to]: [Place; 2],
+        crest: Crest,
+    ) -> Result<(Place, Crest), CycleError> {
+        /// The part of the gap's own length around the last place of the crest in which it is looked for.
+        const NEAR: f64 = 1.0 / 14.0;
+        let (solution, ground) = (&lane.solution, self.balance.ground);
+        let [mut lo, mut hi] = [from, to].map(|place| solution.at(place).contact_radius);
+        let on = |s: f64| solution.place(s).unwrap_or(to);
+        let (mut below, mut above, mut best) = (f64::NAN, crest.gap, crest);
+        let mut side = 0;
+        for k in 0..LOCATED {
+            if self.progress.stop() {
+                return Err(CycleError::Cancelled);
+            }
+            let secant = (lo * above - hi * below) / (above - below);
+            let s = if k > 2 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
+            if s <= lo || s >= hi || hi - lo <= 4.0 * f64::EPSILON * hi {
+                break;
+            }
+            let held = self.disc(&solution.at(on(s)))?;
+            let around = Around::new(ground, &held.state, held.approach);
+            let near = NEAR * ground.length_at(best.radius);
+            let found =
+                around.minimum([(best.radius - near).max(s), (best.radius + near).min(ground.reach())]);
+            if found.gap < 0.0 {
+                (hi, above, best) = (s, found.gap, found);
+                below = if side == 1 { 0.5 * below } else { below };
+                side = 1;
+            } else {
+                (lo, below) = (s, found.gap);
+                above = if side == -1 { 0.5 * above } else { above };
+                side = -1;
+            }
+        }
+        Ok((on(hi), best))
+    }
+
+    /// Runs from the limit point at the outer end of a stretch to where the edge lands, with what touches on the way.
+    pub(super) fn advance(&mut self, lane: &Lane, before: &Held, stretch: usize) -> Result<Held, CycleError> {
+        let value = lane.monotone.stretches[stretch].values[1];
+        let landing = jump::run(&lane.solution, &lane.monotone, stretch, value, Run::Outward).ok().flatten();
+        let ends = CycleError::BeyondGap {
+            radius: lane.solution.reach(),
+            approach: before.approach,
+            force: before.force,
+        };
+        let landed = self.disc(&lane.solution.at(landing.ok_or(ends)?.place))?;
+        let mut passed = Vec::new();
+        let value = before.control_value;
+        // Contact gained is gained once: what would have touched before the landing is in it, or touches there too.
+        let landed = match self.balance.touched(&landed, value, &mut passed)? {
+            Some(start) => self
+                .balance
+                .run(start, value, 1.0, self.setting.mobility, &mut passed)
+                .map_err(|error| beyond(error, before.approach, before.force))?,
+            None => Some(landed),
+        };
+        let landed = landed.ok_or(CycleError::Lost { control_value: value })?;
+        self.jumped(EventKind::Advance, before, Some(&landed), None, passed);
+        Ok(landed)
+    }
+
+    /// The way down of the disc `held`, until the bodies are apart; false where it is on no stable stretch.
+    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<bool, CycleError> {
+        let Lane { solution, monotone, .. } = lane;
+        let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(false) };
+        let descent = descend(solution, monotone, from, 0.0);
+        for (piece, jump) in descent.pieces.iter().zip(&descent.jumps) {
+            self.passed(lane, *piece)?;
+            self.receded(lane, jump)?;
+        }
+        if descent.pulls_off() {
+            return Ok(true);
+        }
+        let last = descent.pieces.last().map(|[_, end]| solution.at(*end));
+        let value = last.map_or(f64::NAN, |at| self.balance.control.value(at.approach, at.force));
+        Err(CycleError::Lost { control_value: value })
+    }
+
+    /// One jump of the way down as an event.
+    fn receded(&mut self, lane: &Lane, jump: &descent::Jump) -> Result<(), CycleError> {
+        let solution = &lane.solution;
+        let before = self.disc(&solution.at(jump.before))?;
+        let landed = jump.landing.map(|Landing { place, .. }| self.disc(&solution.at(place))).transpose()?;
+        let passed = match &landed {
+            Some(_) => Vec::new(),
+            None => vec![Passed { kind: PassedKind::Vanish, radius: 0.0 }],
+        };
+        self.jumped(EventKind::Recede, &before, landed.as_ref(), None, passed);
+        Ok(())
+    }
+}
+
+impl Balance<'_> {
+    /// What these contacts are followed on, where they are one disc.
+    pub(super) fn lane_of(&self, contacts: &Contacts) -> Option<&Lane> {
+        self.lane.filter(|_| contacts.is_disc())
+    }
+
+    /// The disc to which a disc runs at the control value; `None` where it vanishes.
+    ///
+    /// # Errors
+    /// The table ends before.
+    pub(super) fn disc_run(
+        &self,
+        lane: &Lane,
+        disc: &Contacts,
+        value: f64,
+        run: Run,
+    ) -> Result<Option<Held>, CycleError> {
+        let held = |contacts: &Contacts| self.held(contacts, &points(self.ground, contacts), value);
+        match (lane.landing(disc.disc, value, run), run) {
+            (Some(s), _) => Ok(Some(held(&Contacts::of_disc(s))?)),
+            (None, Run::Inward) => Ok(None),
+            (None, Run::Outward) => {
+                let Held { approach, force, .. } = held(disc)?;
+                Err(CycleError::BeyondGap { radius: self.ground.reach(), approach, force })
+            }
+        }
+    }
+}
