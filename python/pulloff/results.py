@@ -397,7 +397,8 @@ class Fit(Result):
 
     def _title(self) -> str:
         said = self._said()
-        return f"{said['points']} points, chi squared per point {said['chi_squared']:.4g}, {said['verdict']}"
+        fitted = sum(said["rows"][branch][part] for branch in ("approach", "retraction") for part in ("contact", "free"))
+        return f"{fitted} points, chi squared per point {said['chi_squared']:.4g}, {said['verdict']}"
 
 
 def _columns_of(text: str) -> Dict[str, Any]:

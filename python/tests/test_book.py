@@ -14,11 +14,14 @@ import matplotlib
 matplotlib.use("Agg")
 spec = {"preset": "fig-9", "axis": [{"key": "gap.amplitude", "values": [1e-3, 2e-3, 3e-3, 4e-3]}]}
 """
+# A measured curve is what an experiment sees: the stable states alone.
 FRAME = """
 import pandas
-exact = pulloff.Problem("fig-9").trace()
-frame = pandas.DataFrame({"approach": exact.approach, "force": exact.force})
-problem = pulloff.Problem("fig-9", {"material.work_of_adhesion": 0.0041})
+smooth = {"gap.amplitude": 0.0, "basis.kind": "exact"}
+exact = pulloff.Problem("fig-9", smooth).trace()
+seen = exact.stable_displacement
+frame = pandas.DataFrame({"approach": exact.approach[seen], "force": exact.force[seen]})
+problem = pulloff.Problem("fig-9", {**smooth, "material.work_of_adhesion": 0.0041})
 """
 
 
