@@ -58,7 +58,7 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         direction: None,
     };
     let p = u.len();
-    let factor = variance(&problem.real(&at.residuals), scale, p, robust);
+    let factor = variance(&problem.real(&at.residuals), scale, problem.taken(), robust);
     // What is known before counts as points do.
     let known = problem.of_priors() * factor.sqrt();
     let rows = at.jacobian.nrows();

@@ -164,6 +164,12 @@ impl Paths {
 }
 
 impl Problem {
+    /// How many of the residuals the parameters take: what is known before costs none.
+    #[must_use]
+    pub fn taken(&self) -> usize {
+        self.parameters.len() - self.priors.len()
+    }
+
     /// Residuals of one attached point.
     #[must_use]
     pub fn per_point(&self) -> usize {

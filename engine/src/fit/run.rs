@@ -180,7 +180,7 @@ pub(super) fn fit_branches(
     let what = determined(&problem, &solved, &scatter.correlation, options.robust);
     let priors = given(&problem, &what.shares, &mut notes);
     let real = problem.real(&solved.minimum.at.residuals);
-    let degrees = (real.len() as f64 / scatter.correlation.rows() - u.len() as f64).max(1.0);
+    let degrees = (real.len() as f64 / scatter.correlation.rows() - problem.taken() as f64).max(1.0);
     let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
     let bootstrapped = match &what.errors {
         Some(errors) => {
@@ -198,7 +198,7 @@ pub(super) fn fit_branches(
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
     let lists = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
-    let left = (real.len() - u.len().min(real.len())).max(1) as f64;
+    let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
     Ok(Fit {
         verdict: verdict(ending, what.errors.is_some(), &reasons),
         reasons,

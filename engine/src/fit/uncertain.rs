@@ -1,7 +1,8 @@
 //! Values that are given with an error: `path.control.stiffness=10%,gap.radius_of_curvature=50 um+-1 um`.
 //!
-//! An error is a share of the value in per cent, or a number with or without a unit. The value is that of the preset, unless one
-//! stands before `+-` or `±`: so writes it a fit, whose own value is known from the points too and must not be counted twice.
+//! An error is a share of the value in per cent, or a number with or without a unit. The value is the one in the preset, unless
+//! another stands before `+-` or `±`. A fit writes the second form: the value that it leaves in the preset comes from the points too,
+//! and a second fit must not count them twice.
 
 use super::options::{FitError, target};
 use super::problem::{Parameter, Prior, Target};

@@ -193,16 +193,23 @@ impl Balance<'_> {
     pub fn least_gap(&self, held: &Held) -> Option<Crest> {
         let to = self.ground.can_touch_up_to(held.approach);
         let contacts = &held.state.contacts;
-        if contacts.rings.is_empty() && contacts.has_disc() {
-            // Searched with the table, which is as fine as the gap wherever that is.
+        if contacts.is_disc() {
+            // Searched with the table, which is as fine as the gap is there.
             let end = to.min(self.ground.reach());
             let opening = (TAU * self.work_of_adhesion * contacts.disc).sqrt();
             let overlap = -ROUNDING * (held.approach.abs() + opening);
-            let (panels, progress) = (&self.ground.panels, self.progress);
-            let least = (end > contacts.disc)
-                .then(|| outside::least_gap(panels, contacts.disc, held.approach, end, overlap, progress));
-            let [radius, gap] = least?.at?;
-            return Some(Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
+            if end <= contacts.disc {
+                return None;
+            }
+            let (panels, s) = (&self.ground.panels, contacts.disc);
+            let least = outside::least_gap(panels, s, held.approach, end, overlap, self.progress);
+            let found =
+                least.at.map(|[radius, gap]| Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
+            let overlaps = found.is_some_and(|crest| crest.gap < 0.0);
+            // A search that was given up says nothing of what lies beyond: that is sampled, as it is around rings.
+            if overlaps || least.given_up.is_none() {
+                return found;
+            }
         }
         let around = Around::new(self.ground, &held.state, held.approach);
         around.crests(to).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))

@@ -112,7 +112,7 @@ pub enum Warning {
     },
     /// Energy and areas do not agree.
     Balance {
-        /// |Π − Σ areas + Σ losses| over the losses.
+        /// |Π − Σ areas + Σ losses| over the losses or the work of loading, whichever is more.
         share: f64,
     },
     /// A jump's loss by energy and by area do not agree.
@@ -131,7 +131,7 @@ impl std::fmt::Display for Warning {
                 write!(f, "at the control value {control_value} edges are known to {digits:.1} digits only")
             }
             Self::Balance { share } => {
-                write!(f, "energies and areas differ by {share:.1e} of the losses")
+                write!(f, "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more")
             }
             Self::Area { event, share } => {
                 write!(

@@ -251,31 +251,7 @@ impl Path<'_, '_> {
         if balance.work_of_adhesion == 0.0 {
             return self.without_adhesion(crest);
         }
-        let mut held = self.first_touch(crest, first)?;
-        self.record(&held);
-        while self.measure(&held) < turn.value() {
-            let (end, next) = self.way_up(&held)?;
-            held = match end {
-                End::Turn => {
-                    held = next;
-                    break;
-                }
-                End::Limit(null) => {
-                    let start = balance.kicked(&next.state.contacts, &null, 1.0);
-                    self.jump(EventKind::Advance, &next, start, None)?
-                }
-                End::Fold(stretch) => {
-                    balance.lane.map(|lane| self.advance(lane, &next, stretch)).transpose()?
-                }
-                End::Touch(crest) => {
-                    let start = balance
-                        .seeded(&next.state.contacts, crest.radius, next.control_value)
-                        .map_err(|error| beyond(error, next.approach, next.force))?;
-                    self.jump(EventKind::Touch, &next, start, Some(crest.radius))?
-                }
-            }
-            .ok_or(CycleError::Lost { control_value: next.control_value })?;
-        }
+        let held = self.loaded(crest, first)?;
         let reached = self.measure(&held);
         let losses_up: f64 = self.events.iter().filter_map(|event| event.dissipated).sum();
         let at_turn = self.state(&held);
@@ -298,11 +274,49 @@ impl Path<'_, '_> {
         self.direction = Direction::Unloading;
         self.piece += 1;
         self.record(&held);
+        self.unloaded(held)?;
+        Ok(self.finished(TurnReached { asked: turn, reached }, work_of_loading))
+    }
+
+    /// From the first touch at a crest to the turn.
+    fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, CycleError> {
+        let mut held = self.first_touch(crest, value)?;
+        self.record(&held);
+        while self.measure(&held) < self.setting.turn.value() {
+            let (end, next) = self.way_up(&held)?;
+            held = match end {
+                End::Turn => {
+                    held = next;
+                    break;
+                }
+                End::Limit(null) => {
+                    let start = self.balance.kicked(&next.state.contacts, &null, 1.0);
+                    self.jump(EventKind::Advance, &next, start, None)?
+                }
+                End::Fold(stretch) => {
+                    self.balance.lane.map(|lane| self.advance(lane, &next, stretch)).transpose()?
+                }
+                End::Touch(crest) => {
+                    let start = self
+                        .balance
+                        .seeded(&next.state.contacts, crest.radius, next.control_value)
+                        .map_err(|error| beyond(error, next.approach, next.force))?;
+                    self.jump(EventKind::Touch, &next, start, Some(crest.radius))?
+                }
+            }
+            .ok_or(CycleError::Lost { control_value: next.control_value })?;
+        }
+        Ok(held)
+    }
+
+    /// From the turn until the bodies are apart.
+    fn unloaded(&mut self, mut held: Held) -> Result<(), CycleError> {
+        let balance = self.balance;
         loop {
-            if let Some(lane) = balance.lane.filter(|_| held.state.contacts.is_disc())
+            if let Some(lane) = balance.lane_of(&held.state.contacts)
                 && self.descend(lane, &held)?
             {
-                break;
+                return Ok(());
             }
             let (end, next) = self.stretch(&held)?;
             let End::Limit(null) = end else {
@@ -311,10 +325,9 @@ impl Path<'_, '_> {
             let start = balance.kicked(&next.state.contacts, &null, -1.0);
             match self.jump(EventKind::Recede, &next, start, None)? {
                 Some(landed) => held = landed,
-                None => break,
+                None => return Ok(()),
             }
         }
-        Ok(self.finished(TurnReached { asked: turn, reached }, work_of_loading))
     }
 
     /// The sums of what has happened.
@@ -408,7 +421,7 @@ impl Path<'_, '_> {
 
     /// Follows stable states while the control goes up, to what ends them.
     fn way_up(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
-        let lane = self.balance.lane.filter(|_| held.state.contacts.is_disc());
+        let lane = self.balance.lane_of(&held.state.contacts);
         match lane.map(|lane| self.rise(lane, held)).transpose()?.flatten() {
             Some(found) => Ok(found),
             None => self.stretch(held),

@@ -60,7 +60,8 @@ pub struct Totals {
     pub work_of_loading: f64,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
-    /// |Π(last) − Σ areas + Σ losses| over the losses, from the first touch to before the pull-off.
+    /// |Π(last) − Σ areas + Σ losses| over the losses or the work of loading, whichever is more, from the first touch to before the
+    /// pull-off.
     pub balance: Option<f64>,
 }
 
