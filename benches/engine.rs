@@ -14,7 +14,7 @@ use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::cycle::{Areas, EVEN, Setting, cycle};
+use pulloff_engine::quasistatic::path::{Areas, EVEN, Setting, cycle};
 use pulloff_engine::ritz::{Grading, Rings};
 use pulloff_engine::stability::{Axis, Family, Law};
 use std::sync::Arc;

@@ -11,7 +11,7 @@ use pulloff_engine::fit::{Options, fit_own};
 use pulloff_engine::preset::shipped::SHIPPED;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::progress::Progress;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::{CycleReport, StabilityReport, TraceReport, UnloadReport};
 use pulloff_engine::sweep::{Column, measure::measure as row};
 use std::cell::Cell;

@@ -72,7 +72,7 @@ impl Mend for CaseError {
     fn can_be_mended(&self) -> bool {
         match self {
             Self::Cancelled => false,
-            Self::Cycle { error, .. } => error.is_of_values(),
+            Self::Path { error, .. } => error.is_of_values(),
             _ => true,
         }
     }

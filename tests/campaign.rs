@@ -31,9 +31,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::cycle::{
-    Areas, CycleState, Event as CycleEvent, EventKind as CycleEventKind,
-};
+use pulloff_engine::quasistatic::path::{Areas, Event as CycleEvent, EventKind as CycleEventKind, PathState};
 use pulloff_engine::quasistatic::{EventKind, PathStop, Unloading};
 use quadrature::{Bump, Disc, Path, State, Term};
 use rayon::prelude::*;
@@ -573,7 +571,7 @@ fn way_down(problem: &Problem, case: &Case) -> Result<Unloading, String> {
     if start.contact_radius * case.units().length > LARGEST_CONTACT * problem.end * problem.length {
         return Err("turns where the quadrature does not look".to_owned());
     }
-    let plain = |state: &CycleState| pulloff_engine::quasistatic::State {
+    let plain = |state: &PathState| pulloff_engine::quasistatic::State {
         contact_radius: state.contact_radius,
         approach: state.approach,
         force: state.force,

@@ -16,7 +16,7 @@ use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::cycle::{Areas, Cycle, CycleError, EVEN, Setting, cycle};
+use crate::quasistatic::path::{Areas, EVEN, Path, PathError, Setting, cycle};
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
 use crate::quasistatic::unload::{UnloadError, unload_while};
@@ -100,9 +100,9 @@ pub enum CaseError {
     },
     /// There is no loop of loading and unloading.
     #[error("{}", words_of_cycle(error, *.control, shown))]
-    Cycle {
+    Path {
         /// Why, in the user's units.
-        error: Box<CycleError>,
+        error: Box<PathError>,
         /// What was controlled.
         control: Control,
         /// How numbers are shown.
@@ -269,17 +269,17 @@ impl Case {
     /// the share of the way that is done, roughly.
     ///
     /// # Errors
-    /// [`CaseError::Cycle`], and [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Path`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn cycle(
         &self,
         control: Control,
         turn: Option<Turn>,
         areas: Areas,
         progress: &dyn Progress,
-    ) -> Result<Cycle, CaseError> {
-        let failed = |error: CycleError| match error {
-            CycleError::Cancelled => CaseError::Cancelled,
-            error => CaseError::Cycle {
+    ) -> Result<Path, CaseError> {
+        let failed = |error: PathError| match error {
+            PathError::Cancelled => CaseError::Cancelled,
+            error => CaseError::Path {
                 error: Box::new(error.in_units(control, self.units())),
                 control,
                 shown: Box::new(self.shown.clone()),
@@ -429,7 +429,7 @@ fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
     }
 }
 
-fn words_of_cycle(error: &CycleError, control: Control, shown: &UnitSystem) -> String {
+fn words_of_cycle(error: &PathError, control: Control, shown: &UnitSystem) -> String {
     error.words(control, shown)
 }
 

@@ -15,23 +15,22 @@ use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::cycle::{
-    Areas, Balance, Cycle, CycleError, CycleState, Direction, EVEN, EventKind, Setting, Warning, cycle,
-    cycle_on,
+use pulloff_engine::quasistatic::path::{
+    Areas, Balance, Direction, EVEN, EventKind, Path, PathError, PathState, Setting, Warning, cycle, cycle_on,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use support::{Numbers, numbers, random_gap, reference, wavy};
 
-fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, areas: Areas) -> Cycle {
+fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, areas: Areas) -> Path {
     let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
     let setting = Setting { control, turn, areas, mobility: EVEN };
     cycle(&table, gamma, &setting, &Unwatched).unwrap()
 }
 
 /// Holds the events of a loop to a reference, `tolerance` of each range; losses to `losses` of themselves.
-fn agrees(found: &Cycle, reference: &Value, tolerance: f64, losses: f64) {
+fn agrees(found: &Path, reference: &Value, tolerance: f64, losses: f64) {
     let events = reference["events"].as_array().unwrap();
     let name = |kind: EventKind| kind.name().replace("first-touch", "first touch");
     let kinds: Vec<String> = found.events.iter().map(|event| name(event.kind)).collect();
@@ -96,7 +95,7 @@ fn weak_adhesion_takes_the_rings_of_another_program() {
     let found = looped(wavy(0.0025, 0.05), 1e-4, Control::Displacement, turn, Areas::Yes);
     agrees(&found, &reference("fig9-weak"), 1e-9, 1e-8);
     assert!(found.totals.balance.unwrap() < 1e-8 && found.warnings.is_empty(), "{:?}", found.totals);
-    let rings = found.states.iter().map(|state: &CycleState| state.contacts.len()).max();
+    let rings = found.states.iter().map(|state: &PathState| state.contacts.len()).max();
     assert_eq!(rings, Some(2));
 }
 
@@ -166,7 +165,7 @@ fn without_adhesion_the_loop_is_that_of_the_table() {
 }
 
 /// What holds for every loop.
-fn check(found: &Cycle, name: &str, identity: f64) {
+fn check(found: &Path, name: &str, identity: f64) {
     for event in &found.events {
         if let Some(lost) = event.dissipated {
             assert!(lost >= 0.0, "{name}: {event:?}");
@@ -207,7 +206,7 @@ fn forces_and_springs_close_their_loops() {
     }
 }
 
-fn random_loop(number: u64, areas: Areas) -> Result<(Cycle, String), String> {
+fn random_loop(number: u64, areas: Areas) -> Result<(Path, String), String> {
     let mut random = fastrand::Rng::with_seed(number);
     let (gap, name) = random_gap(&mut random);
     let gamma = 1e-5 * 500.0_f64.powf(random.f64());
@@ -289,16 +288,16 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
         cycle_on(&ground, gamma, &setting, &Unwatched).unwrap_err()
     };
     let before = fails(1e-4, Control::Displacement, Turn::Control(-0.01));
-    assert_eq!(before, CycleError::TurnBeforeTouch { turn: -0.01, touch: 0.0 });
-    assert_eq!(fails(0.0, Control::Force, Turn::Force(-0.1)), CycleError::NoTension { load: -0.1 });
+    assert_eq!(before, PathError::TurnBeforeTouch { turn: -0.01, touch: 0.0 });
+    assert_eq!(fails(0.0, Control::Force, Turn::Force(-0.1)), PathError::NoTension { load: -0.1 });
     let beyond = fails(1e-4, Control::Displacement, Turn::Radius(2.0));
-    assert!(matches!(beyond, CycleError::RadiusBeyondGap { radius: 2.0, .. }));
-    assert!(matches!(fails(1e-4, Control::Force, Turn::Approach(f64::NAN)), CycleError::BadTurn(_)));
+    assert!(matches!(beyond, PathError::RadiusBeyondGap { radius: 2.0, .. }));
+    assert!(matches!(fails(1e-4, Control::Force, Turn::Approach(f64::NAN)), PathError::BadTurn(_)));
     let never = fails(1e-4, Control::Displacement, Turn::Force(50.0));
-    assert!(matches!(never, CycleError::BeyondGap { .. }), "{never:?}");
+    assert!(matches!(never, PathError::BeyondGap { .. }), "{never:?}");
     let setting =
         Setting { control: Control::Force, turn: Turn::Force(0.01), areas: Areas::No, mobility: EVEN };
-    assert_eq!(cycle_on(&ground, 1e-4, &setting, &|| true).unwrap_err(), CycleError::Cancelled);
+    assert_eq!(cycle_on(&ground, 1e-4, &setting, &|| true).unwrap_err(), PathError::Cancelled);
 }
 
 #[test]
@@ -364,7 +363,7 @@ fn without_adhesion_solving_afresh_finds_the_same() {
 }
 
 /// Contact, pressed everywhere, gaps open everywhere else: without adhesion that is one solution alone.
-fn is_the_one_solution(ground: &Ground, found: &Cycle, name: &str) {
+fn is_the_one_solution(ground: &Ground, found: &Path, name: &str) {
     let balance = Balance {
         ground,
         work_of_adhesion: 0.0,
@@ -508,7 +507,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
 }
 
 /// Waves with one corner or kink, or two far enough apart.
-fn broken_loop(number: u64) -> Result<(Cycle, String), String> {
+fn broken_loop(number: u64) -> Result<(Path, String), String> {
     let mut random = fastrand::Rng::with_seed(number);
     let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
     let wavelength = between(&mut random, 0.05, 0.12);

@@ -8,7 +8,7 @@ use pulloff_engine::annuli::Ground;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
-use pulloff_engine::quasistatic::cycle::{Areas, CycleState, Direction, EVEN, Setting, cycle_on};
+use pulloff_engine::quasistatic::path::{Areas, Direction, EVEN, PathState, Setting, cycle_on};
 use pulloff_engine::ritz::kernel::disc_interaction;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -114,15 +114,15 @@ fn elements_added_while_the_energy_falls_find_the_same_contacts() {
     let turn = Turn::Approach(0.03);
     let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
     let found = cycle_on(&ground, GAMMA, &setting, &pulloff_engine::progress::Unwatched).unwrap();
-    let loading = |state: &&CycleState| state.direction == Direction::Loading;
+    let loading = |state: &&PathState| state.direction == Direction::Loading;
     let pieces = found.states.iter().filter(loading).map(|state| state.piece).max().unwrap();
     // The middle of each stretch of loading: limit points move with the width of an element.
-    let middles: Vec<&CycleState> = (0..=pieces)
+    let middles: Vec<&PathState> = (0..=pieces)
         .filter_map(|piece| {
             let states: Vec<_> = found.states.iter().filter(loading).filter(|s| s.piece == piece).collect();
             let [first, last] = [states.first()?, states.last()?].map(|state| state.approach);
             states.into_iter().min_by(|a, b| {
-                let away = |state: &CycleState| (state.approach - 0.5 * (first + last)).abs();
+                let away = |state: &PathState| (state.approach - 0.5 * (first + last)).abs();
                 away(a).total_cmp(&away(b))
             })
         })

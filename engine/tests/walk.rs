@@ -14,7 +14,7 @@ use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem, Reduced};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::cycle::{Areas, Cycle, EVEN, EventKind, Setting, cycle};
+use pulloff_engine::quasistatic::path::{Areas, EVEN, EventKind, Path, Setting, cycle};
 use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
 use pulloff_engine::quasistatic::{Curve, Point};
 use std::f64::consts::TAU;
@@ -86,7 +86,7 @@ fn near(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
 }
 
 /// Walks the loop by n and x; the largest differences of edges, δ and P, and of losses as a share.
-fn walks(curve: &Curve, control: Control, found: &Cycle) -> [f64; 4] {
+fn walks(curve: &Curve, control: Control, found: &Path) -> [f64; 4] {
     let mut walker = Walker { curve, control, at: None, inward: false, range: [curve.outermost(), 0.0] };
     let (end, made) = walker.asked(|walk, emit| walk.first_touch(emit));
     assert_eq!(end, WalkEnd::Done);
@@ -128,7 +128,7 @@ fn walks(curve: &Curve, control: Control, found: &Cycle) -> [f64; 4] {
     worst
 }
 
-fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Cycle {
+fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Path {
     let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
     let setting = Setting { control, turn, areas: Areas::No, mobility: EVEN };
     cycle(&table, gamma, &setting, &pulloff_engine::progress::Unwatched).unwrap()
@@ -168,7 +168,7 @@ fn by_hand_the_rings_of_weak_adhesion_are_walked() {
 #[test]
 fn stability_is_that_of_the_eigenvalues() {
     use pulloff_engine::annuli::Ground;
-    use pulloff_engine::quasistatic::cycle::Balance;
+    use pulloff_engine::quasistatic::path::Balance;
     let gamma = 1e-4;
     let curve = curve(wavy(0.0025, 0.05), gamma, 0.4);
     let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();

@@ -121,7 +121,7 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
         CaseError::Basis(_) | CaseError::Table { .. } => "GapError",
         CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => "StartError",
         CaseError::Unload { .. } => "UnstableStart",
-        CaseError::Cycle { .. } => "NoLoop",
+        CaseError::Path { .. } => "NoLoop",
         CaseError::Cancelled => "Cancelled",
     };
     plain(py, name, &error.to_string())

@@ -21,7 +21,7 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
 use pulloff_engine::stability::{Axis, COMPLIANCE};

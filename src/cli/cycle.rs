@@ -12,7 +12,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::schema::TURN_KEYS;
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::cycle::COLUMNS;
 use pulloff_engine::report::{CycleReport, columns, cycle_table, json};
 use std::process::ExitCode;

@@ -10,7 +10,7 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::admissible::falls;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::CycleReport;
 use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
 use pulloff_engine::report::unload::{EventReport, StateReport};

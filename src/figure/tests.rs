@@ -8,7 +8,7 @@ use crate::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::cycle::Areas;
+use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::CycleReport;
 use pulloff_engine::units::UnitSystem;
 

@@ -8,7 +8,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::problem::Turn;
 use crate::progress::Unwatched;
-use crate::quasistatic::cycle::{Areas, CycleState, Direction};
+use crate::quasistatic::path::{Areas, Direction, PathState};
 
 const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
 
@@ -58,7 +58,7 @@ fn looped(preset: &Preset, top: f64, n: usize) -> Points {
     let case = Case::new(preset).unwrap();
     let cycle = case.cycle(control, Some(Turn::Control(top)), Areas::No, &Unwatched).unwrap();
     assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
-    let radii = |same: &[CycleState]| {
+    let radii = |same: &[PathState]| {
         let of = same.iter().map(|state| state.contact_radius);
         of.fold([f64::INFINITY, 0.0], |[lo, hi], s| [lo.min(s), f64::max(hi, s)])
     };

@@ -11,7 +11,7 @@
 //! | [`ascent`] | the way up at a rising control, one disc alone |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
-//! | [`cycle`] | the whole loop of loading and unloading, with rings of contact |
+//! | [`path`] | the whole loop of loading and unloading, with rings of contact |
 //! | [`profile`] | one state across the radius: pressure inside, deformed gap outside |
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
 //! | [`overlap`] | where a curve or a path passes states that are not admissible |
@@ -23,7 +23,6 @@
 pub mod admissible;
 pub mod ascent;
 pub mod curve;
-pub mod cycle;
 pub mod descent;
 pub mod energy;
 pub mod equilibrium;
@@ -31,6 +30,7 @@ pub mod jump;
 pub mod landscape;
 pub mod monotone;
 pub mod overlap;
+pub mod path;
 pub mod profile;
 pub mod start;
 pub mod unload;

@@ -10,7 +10,7 @@ use crate::preset::{BasisSpec, Preset};
 use crate::problem::Turn;
 use crate::problem::{Control, Reduced, Units};
 use crate::progress::{Part, Progress};
-use crate::quasistatic::cycle::{Areas, Cycle, CycleState, Event, Passed, Totals, TurnReached};
+use crate::quasistatic::path::{Areas, Event, Passed, Path, PathState, Totals, TurnReached};
 use serde::Serialize;
 
 /// A loop: from apart to the first touch, up to a turn, and down until the bodies are apart.
@@ -193,7 +193,7 @@ impl CycleReport {
 
     /// The document of a loop of `case`.
     #[must_use]
-    pub fn new(preset: &Preset, case: &Case, cycle: &Cycle) -> Self {
+    pub fn new(preset: &Preset, case: &Case, cycle: &Path) -> Self {
         let units = case.units();
         let of_control = of_control(cycle.control, units);
         let mut warnings = case.warnings_of_problem();
@@ -287,7 +287,7 @@ impl TurnReport {
 }
 
 impl CycleStateReport {
-    fn new(problem: &Reduced, state: &CycleState) -> Self {
+    fn new(problem: &Reduced, state: &PathState) -> Self {
         let Units { length, force, energy, .. } = problem.units;
         Self {
             contact_radius: state.contact_radius * length,
@@ -305,7 +305,7 @@ impl CycleEventReport {
     fn new(problem: &Reduced, control: Control, event: &Event) -> Self {
         let units = problem.units;
         let state =
-            |state: &Option<CycleState>| state.as_ref().map(|state| CycleStateReport::new(problem, state));
+            |state: &Option<PathState>| state.as_ref().map(|state| CycleStateReport::new(problem, state));
         let passed =
             |passed: &Passed| PassedReport { kind: passed.kind.name(), radius: passed.radius * units.length };
         Self {

@@ -50,7 +50,7 @@ impl Fault {
             CaseError::Basis(_) | CaseError::Table { .. } => REASONS[1],
             CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
             CaseError::Unload { .. } => REASONS[3],
-            CaseError::Cycle { .. } => REASONS[7],
+            CaseError::Path { .. } => REASONS[7],
             CaseError::Cancelled => REASONS[4],
         };
         Self::new(reason, &error.to_string())

@@ -8,8 +8,8 @@ use crate::case::Case;
 use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::Progress;
-use crate::quasistatic::cycle::Areas;
 use crate::quasistatic::overlap::passed;
+use crate::quasistatic::path::Areas;
 use crate::quasistatic::{Losses, PathStop};
 use crate::units::Quantity as Unit;
 

@@ -10,8 +10,8 @@ use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
 use crate::progress::Progress;
-use crate::quasistatic::cycle::{self, Cycle, CycleState};
 use crate::quasistatic::monotone::weighted;
+use crate::quasistatic::path::{self, Path, PathState};
 use crate::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
 use crate::report::number::exact;
 use crate::theory::guduru::Guduru;
@@ -77,7 +77,7 @@ pub(super) struct UnloadingPath {
 
 /// The loop under one control, reduced.
 pub(super) struct Loop {
-    pub(super) cycle: Cycle,
+    pub(super) cycle: Path,
 }
 
 /// The fit of `data.free` to the measured curve of the preset, in the user's units.
@@ -130,7 +130,7 @@ impl Fitting {
 }
 
 impl Loop {
-    fn event(&self, kind: cycle::EventKind) -> Option<&cycle::Event> {
+    fn event(&self, kind: path::EventKind) -> Option<&path::Event> {
         self.cycle.events.iter().find(|event| event.kind == kind)
     }
 
@@ -138,23 +138,23 @@ impl Loop {
         self.cycle.totals.dissipated.map(Cell::Number)
     }
 
-    pub(super) fn first_touch(&self, of: fn(&CycleState) -> f64) -> Option<Cell> {
-        let after = self.event(cycle::EventKind::FirstTouch)?.after.as_ref()?;
+    pub(super) fn first_touch(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
+        let after = self.event(path::EventKind::FirstTouch)?.after.as_ref()?;
         Some(Cell::Number(of(after)))
     }
 
     pub(super) fn touches(&self) -> Cell {
-        let touches = self.cycle.events.iter().filter(|event| event.kind == cycle::EventKind::Touch);
+        let touches = self.cycle.events.iter().filter(|event| event.kind == path::EventKind::Touch);
         Cell::Count(touches.count())
     }
 
     pub(super) fn rings_at_most(&self) -> Cell {
-        let rings = |state: &CycleState| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
+        let rings = |state: &PathState| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
         Cell::Count(self.cycle.states.iter().map(rings).max().unwrap_or(0))
     }
 
     pub(super) fn contact_share(&self) -> Option<Cell> {
-        let at = self.event(cycle::EventKind::Turn)?.before.as_ref()?;
+        let at = self.event(path::EventKind::Turn)?.before.as_ref()?;
         let circle = std::f64::consts::PI * at.contact_radius * at.contact_radius;
         (circle > 0.0).then_some(Cell::Number(at.contact_area / circle))
     }

@@ -19,7 +19,7 @@ use crate::gap::shapes::{Harmonic, Harmonics};
 use crate::problem::Turn;
 use crate::problem::{Control, Problem};
 use crate::progress::Unwatched;
-use crate::quasistatic::cycle::{Areas, Cycle, EVEN, Event, EventKind, Setting, cycle};
+use crate::quasistatic::path::{Areas, EVEN, Event, EventKind, Path, Setting, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -201,7 +201,7 @@ fn annulus() -> Result<Group, VerifyError> {
 }
 
 /// The loop on the waves of Fig. 9; `None` where it could not be computed.
-fn run(work_of_adhesion: f64) -> Result<Option<Cycle>, VerifyError> {
+fn run(work_of_adhesion: f64) -> Result<Option<Path>, VerifyError> {
     let Shape::WavySphere { radius_of_curvature, amplitude, wavelength } = fig_9().problem.shape else {
         return Ok(None);
     };
@@ -213,7 +213,7 @@ fn run(work_of_adhesion: f64) -> Result<Option<Cycle>, VerifyError> {
     Ok(cycle(&table, work_of_adhesion, &setting, &Unwatched).ok())
 }
 
-fn of_loop(known: &Known, found: Option<&Cycle>) -> Group {
+fn of_loop(known: &Known, found: Option<&Path>) -> Group {
     /// Of states over their range, and of losses relative.
     const STATES: f64 = 1e-9;
     const LOSSES: f64 = 1e-8;
@@ -260,12 +260,12 @@ fn of_loop(known: &Known, found: Option<&Cycle>) -> Group {
 }
 
 /// The energies lost against the areas that the path encloses.
-fn balance(known: &Known, found: Option<&Cycle>) -> Row {
+fn balance(known: &Known, found: Option<&Path>) -> Row {
     /// The share of the losses that may be missing.
     const BOUND: f64 = 1e-7;
     let what = format!("{}: work against loss", known.name);
     let sums = found.and_then(|found| {
-        let Cycle { totals, .. } = found;
+        let Path { totals, .. } = found;
         Some((totals.work_of_loading + totals.work_of_unloading?, totals.dissipated?))
     });
     let (work, lost) = sums.unwrap_or((f64::NAN, f64::NAN));

@@ -8,7 +8,7 @@ use super::walker::Walk;
 use crate::annuli::{Contacts, Ground};
 use crate::problem::Control;
 use crate::quasistatic::Point;
-use crate::quasistatic::cycle::point;
+use crate::quasistatic::path::point;
 use nalgebra::DVector;
 
 /// An edge this near to a corner, in waves, stands on it.

@@ -16,9 +16,9 @@ use crate::gap::{Gap, wave_index};
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
-use crate::quasistatic::cycle::balance::keeps_widths;
-use crate::quasistatic::cycle::{Balance, Held};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
+use crate::quasistatic::path::balance::keeps_widths;
+use crate::quasistatic::path::{Balance, Held};
 use crate::quasistatic::{Point, Stability, State, Stiffness};
 use std::f64::consts::PI;
 

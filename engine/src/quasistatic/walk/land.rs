@@ -8,8 +8,8 @@ use crate::annuli::{AnnuliError, Contacts, Ground};
 use crate::continuation::Vector;
 use crate::problem::Control;
 use crate::progress::Unwatched;
-use crate::quasistatic::cycle::path::first_crest;
-use crate::quasistatic::cycle::{Balance, CycleError, CycleState, Direction, EVEN, Held, Passed, PassedKind};
+use crate::quasistatic::path::course::first_crest;
+use crate::quasistatic::path::{Balance, Direction, EVEN, Held, Passed, PassedKind, PathError, PathState};
 use crate::quasistatic::unload::{Event, EventKind};
 use crate::quasistatic::{Point, State, energy};
 use nalgebra::{DMatrix, DVector};
@@ -97,13 +97,13 @@ impl Walk<'_> {
             let table = &self.equilibrium().table;
             let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
             match self.jumped(ground.clone(), from) {
-                Err(CycleError::State(AnnuliError::BeyondGap { .. })) if !whole => {
+                Err(PathError::State(AnnuliError::BeyondGap { .. })) if !whole => {
                     radius = 1.5 * ground.reach();
                 }
-                Err(CycleError::State(AnnuliError::BeyondGap { .. })) => {
+                Err(PathError::State(AnnuliError::BeyondGap { .. })) => {
                     return Err(WalkFailure::NothingOutward);
                 }
-                Err(CycleError::Cancelled) => return Err(WalkFailure::Stable),
+                Err(PathError::Cancelled) => return Err(WalkFailure::Stable),
                 Err(error) => return Err(WalkFailure::Edges(error.to_string())),
                 Ok(jumped) => return Ok(jumped),
             }
@@ -111,11 +111,11 @@ impl Walk<'_> {
         Err(WalkFailure::NothingOutward)
     }
 
-    /// The same on a gap known so far; [`CycleError::Cancelled`] where nothing runs.
-    fn jumped(&self, ground: Ground, from: &Point) -> Result<Jumped, CycleError> {
+    /// The same on a gap known so far; [`PathError::Cancelled`] where nothing runs.
+    fn jumped(&self, ground: Ground, from: &Point) -> Result<Jumped, PathError> {
         let equilibrium = self.equilibrium();
         let scales = &equilibrium.scales;
-        let lost = |control_value| CycleError::Lost { control_value };
+        let lost = |control_value| PathError::Lost { control_value };
         let contacts = edges::contacts(scales, from);
         let [delta, force] = edges::device(scales, from);
         // Without adhesion a ring begins with no width, a little further on.
@@ -150,7 +150,7 @@ impl Walk<'_> {
                 (balance.kicked(&contacts, &null, sense), sense)
             }
             At::Nothing => {
-                let null = falling(&before).ok_or(CycleError::Cancelled)?;
+                let null = falling(&before).ok_or(PathError::Cancelled)?;
                 let sense = if self.inward { -1.0 } else { 1.0 };
                 (balance.kicked(&contacts, &null, sense), sense)
             }
@@ -158,7 +158,7 @@ impl Walk<'_> {
         let held = balance.run(start, value, sense, EVEN, &mut passed)?;
         let gamma = balance.work_of_adhesion;
         let direction = if sense > 0.0 { Direction::Loading } else { Direction::Unloading };
-        let state = |held: &Held| CycleState::new(held, gamma, direction, 0);
+        let state = |held: &Held| PathState::new(held, gamma, direction, 0);
         let (old, new) = (state(&before), held.as_ref().map(state));
         let crests: Vec<f64> = passed
             .iter()
@@ -196,7 +196,7 @@ impl Walk<'_> {
     }
 
     fn touched(&self) -> Result<Reached, WalkFailure> {
-        let said = |error: CycleError| WalkFailure::Edges(error.to_string());
+        let said = |error: PathError| WalkFailure::Edges(error.to_string());
         let adheres = self.equilibrium().problem.work_of_adhesion > 0.0;
         let mut radius = self.range[0];
         for _ in 0..LONGER {
@@ -223,7 +223,7 @@ impl Walk<'_> {
                 .seeded(&none, crest.radius, value)
                 .and_then(|start| balance.run(start, value, 1.0, EVEN, &mut passed));
             let held = match landed {
-                Err(CycleError::State(AnnuliError::BeyondGap { .. })) if !whole => {
+                Err(PathError::State(AnnuliError::BeyondGap { .. })) if !whole => {
                     radius = 1.5 * ground.reach();
                     continue;
                 }
@@ -235,7 +235,7 @@ impl Walk<'_> {
     }
 }
 
-fn plain(state: &CycleState) -> State {
+fn plain(state: &PathState) -> State {
     State {
         contact_radius: state.contact_radius,
         approach: state.approach,

@@ -9,7 +9,7 @@ use crate::annuli::{Contacts, Ground};
 use crate::continuation::{Settings, Tracer, Vector};
 use crate::problem::Control;
 use crate::quasistatic::Point;
-use crate::quasistatic::cycle::NotFound;
+use crate::quasistatic::path::NotFound;
 
 /// The longest step of an edge, in waves.
 const LONGEST: f64 = 0.2;

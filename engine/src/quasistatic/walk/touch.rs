@@ -5,7 +5,7 @@ use crate::annuli::{Around, Crest};
 use crate::continuation::{Tracer, Vector};
 use crate::problem::Control;
 use crate::quasistatic::Point;
-use crate::quasistatic::cycle::Held;
+use crate::quasistatic::path::Held;
 
 /// A gap that is nothing, in waves.
 pub(super) const ROUNDING: f64 = 1e-11;

@@ -4,8 +4,8 @@ use crate::annuli::Ground;
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::Curve;
-use crate::quasistatic::cycle::Balance;
 use crate::quasistatic::equilibrium::Equilibrium;
+use crate::quasistatic::path::Balance;
 use crate::quasistatic::{Point, walk::arrival::WalkFailure, walk::edges};
 use std::sync::Arc;
 

@@ -5,11 +5,11 @@
 //! is 0; before that it pulls there. All controls rise together, so the approach is the one that is stepped.
 
 use super::balance::Held;
-use super::error::CycleError;
-use super::event::{CycleState, Direction, Event, EventKind};
-use super::path::Path;
+use super::course::Course;
+use super::error::PathError;
+use super::event::{Direction, Event, EventKind, PathState};
 use super::point::Step;
-use super::setting::{Cycle, Totals, TurnReached};
+use super::setting::{Path, Totals, TurnReached};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
 use crate::problem::Turn;
@@ -23,15 +23,15 @@ const LIFT: f64 = 1e-3;
 /// Points by which a least pressure is found.
 const POINTS: usize = 15;
 
-impl Path<'_, '_> {
+impl Course<'_, '_> {
     fn lift(&self) -> f64 {
         LIFT * self.balance.ground.wave.powi(2) / self.balance.ground.crest
     }
 
     /// The loop of bodies that do not adhere, from the first touch of `crest`; the balance is that of a held approach.
-    pub(super) fn without_adhesion(mut self, crest: Crest) -> Result<Cycle, CycleError> {
+    pub(super) fn without_adhesion(mut self, crest: Crest) -> Result<Path, PathError> {
         let turn = self.setting.turn;
-        let apart = CycleState {
+        let apart = PathState {
             contact_radius: crest.radius,
             approach: crest.gap,
             force: 0.0,
@@ -66,7 +66,7 @@ impl Path<'_, '_> {
         };
         let turn = TurnReached { asked: turn, reached };
         let warnings = self.warnings(None);
-        Ok(Cycle {
+        Ok(Path {
             control: self.setting.control,
             turn,
             events: self.events,
@@ -79,12 +79,12 @@ impl Path<'_, '_> {
     /// The way back: what happened on the way up, the other way round.
     fn reversed(&mut self, up: &[Event]) {
         let last_piece = self.piece;
-        let turned = |state: &CycleState| CycleState {
+        let turned = |state: &PathState| PathState {
             direction: Direction::Unloading,
             piece: 2 * last_piece + 1 - state.piece,
             ..state.clone()
         };
-        let back: Vec<CycleState> = self.states.iter().rev().map(turned).collect();
+        let back: Vec<PathState> = self.states.iter().rev().map(turned).collect();
         self.states.extend(back);
         for event in up.iter().rev() {
             let kind = match event.kind {
@@ -104,8 +104,8 @@ impl Path<'_, '_> {
         &mut self,
         kind: EventKind,
         radius: Option<f64>,
-        before: Option<CycleState>,
-        after: Option<CycleState>,
+        before: Option<PathState>,
+        after: Option<PathState>,
     ) {
         let control_value = after.as_ref().or(before.as_ref()).map_or(f64::NAN, |state| state.control_value);
         self.events.push(Event {
@@ -122,7 +122,7 @@ impl Path<'_, '_> {
     }
 
     /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
-    fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, CycleError> {
+    fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, PathError> {
         let mut delta = delta + self.lift();
         match self.setting.turn {
             Turn::Approach(turn) => delta = delta.min(turn),
@@ -134,23 +134,23 @@ impl Path<'_, '_> {
         let start = self
             .balance
             .seeded(contacts, crest, delta)
-            .map_err(|error| super::path::beyond(error, delta, 0.0))?;
+            .map_err(|error| super::course::beyond(error, delta, 0.0))?;
         let mut passed = Vec::new();
         let held = self
             .balance
             .run(start, delta, 1.0, self.setting.mobility, &mut passed)
-            .map_err(|error| super::path::beyond(error, delta, 0.0))?
-            .ok_or(CycleError::Lost { control_value: delta })?;
+            .map_err(|error| super::course::beyond(error, delta, 0.0))?
+            .ok_or(PathError::Lost { control_value: delta })?;
         self.record(&held);
         Ok(held)
     }
 
     /// Follows the contacts up to the next event, which is passed.
-    fn risen(&mut self, from: &Held) -> Result<Held, CycleError> {
+    fn risen(&mut self, from: &Held) -> Result<Held, PathError> {
         const FIRST: f64 = 0.02;
         const LONGEST: f64 = 0.15;
         const SHORTEST: f64 = 1e-10;
-        let lost = |held: &Held| CycleError::Lost { control_value: held.control_value };
+        let lost = |held: &Held| PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
         let mut length = FIRST;
         loop {

@@ -33,7 +33,7 @@ impl Direction {
 
 /// One state of a loop, in reduced units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CycleState {
+pub struct PathState {
     /// The outermost edge, a length.
     pub contact_radius: f64,
     /// δ, a length.
@@ -54,7 +54,7 @@ pub struct CycleState {
     pub piece: usize,
 }
 
-impl CycleState {
+impl PathState {
     /// The state of edges that are held.
     pub fn new(held: &Held, gamma: f64, direction: Direction, piece: usize) -> Self {
         let contacts = &held.state.contacts;
@@ -174,9 +174,9 @@ pub struct Event {
     /// Where a crest touched, contacts merged or split or one vanished, a length.
     pub radius: Option<f64>,
     /// The state before; `None` while the bodies were apart.
-    pub before: Option<CycleState>,
+    pub before: Option<PathState>,
     /// The state after; `None` where they came apart.
-    pub after: Option<CycleState>,
+    pub after: Option<PathState>,
     /// The energy lost, by the drop of the potential; `None` for a pull-off under a dead load.
     pub dissipated: Option<f64>,
     /// The same by the work that the edges leave over on their way; `None` where it was not asked for.

@@ -22,13 +22,14 @@
 //! | `describe` | both in the user's units, in words |
 //! | [`lane`] | the equilibria of one disc, exactly |
 //! | `one_disc` | a loop on them |
-//! | [`path`] | the loop |
+//! | [`course`] | the loop |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
 //! | `zero` | the loop without adhesion |
 
 mod area;
 pub mod balance;
+pub mod course;
 mod describe;
 pub mod error;
 pub mod event;
@@ -36,16 +37,15 @@ mod follow;
 pub mod jump;
 pub mod lane;
 mod one_disc;
-pub mod path;
 pub mod point;
 pub mod setting;
 mod zero;
 
 pub use balance::{Balance, Held, NotFound};
-pub use error::{CycleError, Warning};
-pub use event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
+pub use course::{cycle, cycle_on};
+pub use error::{PathError, Warning};
+pub use event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
 pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
-pub use path::{cycle, cycle_on};
 pub use point::{Point, Step};
-pub use setting::{Areas, Cycle, Setting, Totals, TurnReached};
+pub use setting::{Areas, Path, Setting, Totals, TurnReached};

@@ -203,8 +203,9 @@ impl Balance<'_> {
             }
             let (panels, s) = (&self.ground.panels, contacts.disc);
             let least = outside::least_gap(panels, s, held.approach, end, overlap, self.progress);
-            let found =
-                least.at.map(|[radius, gap]| Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
+            let found = least
+                .at
+                .map(|[radius, gap]| Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
             let overlaps = found.is_some_and(|crest| crest.gap < 0.0);
             // A search that was given up says nothing of what lies beyond: that is sampled, as it is around rings.
             if overlaps || least.given_up.is_none() {

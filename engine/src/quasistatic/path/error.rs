@@ -6,7 +6,7 @@ use crate::problem::Control;
 
 /// Why there is no loop. All numbers are in reduced units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CycleError {
+pub enum PathError {
     /// The control turns before the bodies touch.
     #[error("the control turns at {turn}, before the bodies touch at {touch}: turn above that")]
     TurnBeforeTouch {
@@ -91,7 +91,7 @@ pub enum CycleError {
     Cancelled,
 }
 
-impl From<TableError> for CycleError {
+impl From<TableError> for PathError {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Cancelled => Self::Cancelled,
@@ -131,7 +131,10 @@ impl std::fmt::Display for Warning {
                 write!(f, "at the control value {control_value} edges are known to {digits:.1} digits only")
             }
             Self::Balance { share } => {
-                write!(f, "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more")
+                write!(
+                    f,
+                    "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more"
+                )
             }
             Self::Area { event, share } => {
                 write!(

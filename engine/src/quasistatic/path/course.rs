@@ -1,10 +1,10 @@
 //! The loop itself.
 
 use super::balance::{Balance, Held};
-use super::error::{CycleError, Warning};
-use super::event::{CycleState, Direction, Event, EventKind, Passed, PassedKind};
+use super::error::{PathError, Warning};
+use super::event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
-use super::setting::{Areas, Cycle, Setting, Totals, TurnReached, measure};
+use super::setting::{Areas, Path, Setting, Totals, TurnReached, measure};
 use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
@@ -34,12 +34,12 @@ pub(super) enum End {
 }
 
 /// A loop while it runs.
-pub(super) struct Path<'a, 'b> {
+pub(super) struct Course<'a, 'b> {
     pub balance: &'a Balance<'b>,
     pub setting: &'a Setting<'a>,
     pub progress: &'a dyn Progress,
     pub events: Vec<Event>,
-    pub states: Vec<CycleState>,
+    pub states: Vec<PathState>,
     pub piece: usize,
     pub direction: Direction,
     pub steps: usize,
@@ -58,13 +58,13 @@ const LENGTHS: f64 = 10.0;
 /// The loop of the gap of `table` with the work of adhesion `gamma` (E* = 1): as [`cycle_on`], as far out as the loop goes.
 ///
 /// # Errors
-/// [`CycleError`].
+/// [`PathError`].
 pub fn cycle(
     table: &Arc<Table>,
     gamma: f64,
     setting: &Setting<'_>,
     progress: &dyn Progress,
-) -> Result<Cycle, CycleError> {
+) -> Result<Path, PathError> {
     let mut reach = match setting.turn {
         Turn::Radius(radius) => BEYOND * radius,
         Turn::Approach(approach) => 2.0 * approach.abs().sqrt(),
@@ -76,7 +76,7 @@ pub fn cycle(
     }
     for _ in 0..40 {
         if !reach.is_finite() {
-            return Err(CycleError::BadTurn(setting.turn.value()));
+            return Err(PathError::BadTurn(setting.turn.value()));
         }
         let ground = Ground::new(Arc::clone(table), reach, progress)?;
         let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
@@ -90,9 +90,9 @@ pub fn cycle(
         }
         match cycle_on(&ground, gamma, setting, progress) {
             Err(
-                CycleError::BeyondGap { .. }
-                | CycleError::RadiusBeyondGap { .. }
-                | CycleError::State(AnnuliError::BeyondGap { .. }),
+                PathError::BeyondGap { .. }
+                | PathError::RadiusBeyondGap { .. }
+                | PathError::State(AnnuliError::BeyondGap { .. }),
             ) if !whole => {
                 reach = 2.0 * ground.reach();
             }
@@ -103,11 +103,11 @@ pub fn cycle(
             other => return other,
         }
     }
-    Err(CycleError::NeverTouches { searched: reach })
+    Err(PathError::NeverTouches { searched: reach })
 }
 
 /// The largest approach of a loop.
-fn highest(cycle: &Cycle) -> f64 {
+fn highest(cycle: &Path) -> f64 {
     cycle.states.iter().map(|state| state.approach).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -116,19 +116,19 @@ fn highest(cycle: &Cycle) -> f64 {
 /// `progress` is asked before each step with the share of the way that is done, 0 to 1, roughly.
 ///
 /// # Errors
-/// [`CycleError`].
+/// [`PathError`].
 pub fn cycle_on(
     ground: &Ground,
     gamma: f64,
     setting: &Setting<'_>,
     progress: &dyn Progress,
-) -> Result<Cycle, CycleError> {
+) -> Result<Path, PathError> {
     // Without adhesion all controls rise together, and the approach is the one that is stepped.
     let stepped = if gamma > 0.0 { setting.control } else { Control::Displacement };
     let lane = (gamma > 0.0).then(|| Lane::new(ground, gamma, stepped));
     let balance =
         Balance { ground, work_of_adhesion: gamma, control: stepped, progress, lane: lane.as_ref() };
-    let path = Path {
+    let path = Course {
         balance: &balance,
         setting,
         progress,
@@ -176,26 +176,26 @@ pub fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
 }
 
 /// The error with what was reached, where an edge ran beyond what is known of the gap, or a state has too many contacts.
-pub(super) fn beyond(error: CycleError, approach: f64, force: f64) -> CycleError {
+pub(super) fn beyond(error: PathError, approach: f64, force: f64) -> PathError {
     match error {
-        CycleError::State(AnnuliError::BeyondGap { known, .. }) => {
-            CycleError::BeyondGap { radius: known, approach, force }
+        PathError::State(AnnuliError::BeyondGap { known, .. }) => {
+            PathError::BeyondGap { radius: known, approach, force }
         }
-        CycleError::State(
+        PathError::State(
             error
             @ (AnnuliError::Contacts(ContactsError::TooMany { .. }) | AnnuliError::TooManyPoints { .. }),
-        ) => CycleError::TooMany { error, approach },
+        ) => PathError::TooMany { error, approach },
         other => other,
     }
 }
 
-impl Path<'_, '_> {
-    pub(super) fn state(&self, held: &Held) -> CycleState {
-        let state = CycleState::new(held, self.balance.work_of_adhesion, self.direction, self.piece);
+impl Course<'_, '_> {
+    pub(super) fn state(&self, held: &Held) -> PathState {
+        let state = PathState::new(held, self.balance.work_of_adhesion, self.direction, self.piece);
         if self.balance.control == self.setting.control {
             return state;
         }
-        CycleState { control_value: self.setting.control.value(held.approach, held.force), ..state }
+        PathState { control_value: self.setting.control.value(held.approach, held.force), ..state }
     }
 
     /// What the turn is measured by.
@@ -214,22 +214,22 @@ impl Path<'_, '_> {
         self.states.push(state);
     }
 
-    fn whole(mut self) -> Result<Cycle, CycleError> {
+    fn whole(mut self) -> Result<Path, PathError> {
         let (balance, setting) = (self.balance, self.setting);
         let ground = balance.ground;
         let turn = setting.turn;
         if !turn.value().is_finite() {
-            return Err(CycleError::BadTurn(turn.value()));
+            return Err(PathError::BadTurn(turn.value()));
         }
         if let Turn::Radius(radius) = turn
             && radius > ground.reach()
         {
-            return Err(CycleError::RadiusBeyondGap { radius, known: ground.reach() });
+            return Err(PathError::RadiusBeyondGap { radius, known: ground.reach() });
         }
         let Some(crest) = first_crest(ground, self.progress) else {
             let searched = ground.reach();
             let stopped = self.progress.stop();
-            return Err(if stopped { CycleError::Cancelled } else { CycleError::NeverTouches { searched } });
+            return Err(if stopped { PathError::Cancelled } else { PathError::NeverTouches { searched } });
         };
         let first = match setting.control {
             Control::Force => 0.0,
@@ -243,9 +243,9 @@ impl Path<'_, '_> {
         };
         if turn.value() < least {
             return Err(if setting.control == Control::Force && balance.work_of_adhesion == 0.0 {
-                CycleError::NoTension { load: turn.value() }
+                PathError::NoTension { load: turn.value() }
             } else {
-                CycleError::TurnBeforeTouch { turn: turn.value(), touch: least }
+                PathError::TurnBeforeTouch { turn: turn.value(), touch: least }
             });
         }
         if balance.work_of_adhesion == 0.0 {
@@ -279,7 +279,7 @@ impl Path<'_, '_> {
     }
 
     /// From the first touch at a crest to the turn.
-    fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, CycleError> {
+    fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
         let mut held = self.first_touch(crest, value)?;
         self.record(&held);
         while self.measure(&held) < self.setting.turn.value() {
@@ -304,13 +304,13 @@ impl Path<'_, '_> {
                     self.jump(EventKind::Touch, &next, start, Some(crest.radius))?
                 }
             }
-            .ok_or(CycleError::Lost { control_value: next.control_value })?;
+            .ok_or(PathError::Lost { control_value: next.control_value })?;
         }
         Ok(held)
     }
 
     /// From the turn until the bodies are apart.
-    fn unloaded(&mut self, mut held: Held) -> Result<(), CycleError> {
+    fn unloaded(&mut self, mut held: Held) -> Result<(), PathError> {
         let balance = self.balance;
         loop {
             if let Some(lane) = balance.lane_of(&held.state.contacts)
@@ -320,7 +320,7 @@ impl Path<'_, '_> {
             }
             let (end, next) = self.stretch(&held)?;
             let End::Limit(null) = end else {
-                return Err(CycleError::Lost { control_value: next.control_value });
+                return Err(PathError::Lost { control_value: next.control_value });
             };
             let start = balance.kicked(&next.state.contacts, &null, -1.0);
             match self.jump(EventKind::Recede, &next, start, None)? {
@@ -331,7 +331,7 @@ impl Path<'_, '_> {
     }
 
     /// The sums of what has happened.
-    fn finished(self, turn: TurnReached, work_of_loading: f64) -> Cycle {
+    fn finished(self, turn: TurnReached, work_of_loading: f64) -> Path {
         let control = self.setting.control;
         let losses =
             |events: &[Event]| events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
@@ -356,7 +356,7 @@ impl Path<'_, '_> {
             work_of_unloading: total.map(|total| total - work_of_loading),
             balance,
         };
-        Cycle { control, turn, events: self.events, states: self.states, totals, warnings }
+        Path { control, turn, events: self.events, states: self.states, totals, warnings }
     }
 
     /// What is to be known about it.
@@ -385,8 +385,8 @@ impl Path<'_, '_> {
     /// The loss of a jump by area, where it is asked for.
     fn by_area(
         &self,
-        before: Option<&CycleState>,
-        after: Option<&CycleState>,
+        before: Option<&PathState>,
+        after: Option<&PathState>,
         value: f64,
         passed: &[Passed],
     ) -> Option<f64> {
@@ -410,7 +410,7 @@ impl Path<'_, '_> {
     }
 
     /// The loss of a first touch by area, where it is asked for.
-    fn by_area_of_touch(&self, after: &CycleState, value: f64, passed: &[Passed]) -> Option<f64> {
+    fn by_area_of_touch(&self, after: &PathState, value: f64, passed: &[Passed]) -> Option<f64> {
         if self.setting.areas == Areas::No {
             return None;
         }
@@ -420,7 +420,7 @@ impl Path<'_, '_> {
     }
 
     /// Follows stable states while the control goes up, to what ends them.
-    fn way_up(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
+    fn way_up(&mut self, held: &Held) -> Result<(End, Held), PathError> {
         let lane = self.balance.lane_of(&held.state.contacts);
         match lane.map(|lane| self.rise(lane, held)).transpose()?.flatten() {
             Some(found) => Ok(found),
@@ -429,14 +429,14 @@ impl Path<'_, '_> {
     }
 
     /// The first touch and what it jumps to.
-    fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, CycleError> {
+    fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
         let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
         let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
         let held = self
             .balance
             .run(start, value, 1.0, self.setting.mobility, &mut passed)
             .map_err(|error| beyond(error, crest.gap, 0.0))?
-            .ok_or(CycleError::Lost { control_value: value })?;
+            .ok_or(PathError::Lost { control_value: value })?;
         let after = self.state(&held);
         let loss = match self.setting.control {
             // The bodies apart hold nothing at P = 0.
@@ -464,7 +464,7 @@ impl Path<'_, '_> {
         before: &Held,
         start: Contacts,
         radius: Option<f64>,
-    ) -> Result<Option<Held>, CycleError> {
+    ) -> Result<Option<Held>, PathError> {
         let mut passed: Vec<Passed> =
             radius.iter().map(|radius| Passed { kind: PassedKind::Touch, radius: *radius }).collect();
         let value = before.control_value;

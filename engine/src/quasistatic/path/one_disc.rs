@@ -1,10 +1,10 @@
 //! A loop on the [`Lane`]: up to a touch, the turn or a limit point, and down until the bodies are apart.
 
 use super::balance::{Balance, Held};
-use super::error::CycleError;
+use super::course::{Course, End, beyond};
+use super::error::PathError;
 use super::event::{EventKind, Passed, PassedKind};
 use super::lane::Lane;
-use super::path::{End, Path, beyond};
 use super::setting::Areas;
 use crate::annuli::{Around, Contacts, Crest, points};
 use crate::disc::{Local, Place, Solution};
@@ -19,16 +19,16 @@ const TOUCHES: f64 = 1e-11;
 /// Halvings and secants by which a touch is located.
 const LOCATED: usize = 80;
 
-impl Path<'_, '_> {
+impl Course<'_, '_> {
     /// The disc at a place, held at its own control value.
-    fn disc(&self, at: &Local) -> Result<Held, CycleError> {
+    fn disc(&self, at: &Local) -> Result<Held, PathError> {
         let contacts = Contacts::of_disc(at.contact_radius);
         let value = self.balance.control.value(at.approach, at.force);
         Ok(self.balance.held(&contacts, &points(self.balance.ground, &contacts), value)?)
     }
 
     /// Follows the disc `held` while the control goes up, to what ends its stable stretch; `None` where it is not on one.
-    pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, CycleError> {
+    pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, PathError> {
         let Lane { solution, monotone, .. } = lane;
         let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(None) };
         let stretch = &monotone.stretches[from.stretch];
@@ -45,7 +45,7 @@ impl Path<'_, '_> {
         let last = self.passed(lane, [from.place, to])?;
         if matches!(end, End::Fold(at) if at + 1 == monotone.stretches.len()) {
             // No limit point: the table ends.
-            return Err(CycleError::BeyondGap {
+            return Err(PathError::BeyondGap {
                 radius: solution.reach(),
                 approach: last.approach,
                 force: last.force,
@@ -55,7 +55,7 @@ impl Path<'_, '_> {
     }
 
     /// Records the stable states between two places, in the order of the way, with their area; the last of them.
-    fn passed(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<Held, CycleError> {
+    fn passed(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<Held, PathError> {
         let solution = &lane.solution;
         let [begin, end] = [from, to].map(|place| solution.at(place).contact_radius);
         let radius = |place: Place| solution.at(place).contact_radius;
@@ -90,7 +90,7 @@ impl Path<'_, '_> {
         lane: &Lane,
         [from, mut to]: [Place; 2],
         mut crest: Crest,
-    ) -> Result<(Place, Crest), CycleError> {
+    ) -> Result<(Place, Crest), PathError> {
         /// Crests that may overlap one after the other.
         const CRESTS: usize = 8;
         for _ in 0..CRESTS {
@@ -111,7 +111,7 @@ impl Path<'_, '_> {
         lane: &Lane,
         [from, to]: [Place; 2],
         crest: Crest,
-    ) -> Result<(Place, Crest), CycleError> {
+    ) -> Result<(Place, Crest), PathError> {
         /// The part of the gap's own length around the last place of the crest in which it is looked for.
         const NEAR: f64 = 1.0 / 14.0;
         let (solution, ground) = (&lane.solution, self.balance.ground);
@@ -121,7 +121,7 @@ impl Path<'_, '_> {
         let mut side = 0;
         for k in 0..LOCATED {
             if self.progress.stop() {
-                return Err(CycleError::Cancelled);
+                return Err(PathError::Cancelled);
             }
             let secant = (lo * above - hi * below) / (above - below);
             let s = if k > 2 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
@@ -147,10 +147,10 @@ impl Path<'_, '_> {
     }
 
     /// Runs from the limit point at the outer end of a stretch to where the edge lands, with what touches on the way.
-    pub(super) fn advance(&mut self, lane: &Lane, before: &Held, stretch: usize) -> Result<Held, CycleError> {
+    pub(super) fn advance(&mut self, lane: &Lane, before: &Held, stretch: usize) -> Result<Held, PathError> {
         let value = lane.monotone.stretches[stretch].values[1];
         let landing = jump::run(&lane.solution, &lane.monotone, stretch, value, Run::Outward).ok().flatten();
-        let ends = CycleError::BeyondGap {
+        let ends = PathError::BeyondGap {
             radius: lane.solution.reach(),
             approach: before.approach,
             force: before.force,
@@ -166,13 +166,13 @@ impl Path<'_, '_> {
                 .map_err(|error| beyond(error, before.approach, before.force))?,
             None => Some(landed),
         };
-        let landed = landed.ok_or(CycleError::Lost { control_value: value })?;
+        let landed = landed.ok_or(PathError::Lost { control_value: value })?;
         self.jumped(EventKind::Advance, before, Some(&landed), None, passed);
         Ok(landed)
     }
 
     /// The way down of the disc `held`, until the bodies are apart; false where it is on no stable stretch.
-    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<bool, CycleError> {
+    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<bool, PathError> {
         let Lane { solution, monotone, .. } = lane;
         let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(false) };
         let descent = descend(solution, monotone, from, 0.0);
@@ -185,11 +185,11 @@ impl Path<'_, '_> {
         }
         let last = descent.pieces.last().map(|[_, end]| solution.at(*end));
         let value = last.map_or(f64::NAN, |at| self.balance.control.value(at.approach, at.force));
-        Err(CycleError::Lost { control_value: value })
+        Err(PathError::Lost { control_value: value })
     }
 
     /// One jump of the way down as an event.
-    fn receded(&mut self, lane: &Lane, jump: &descent::Jump) -> Result<(), CycleError> {
+    fn receded(&mut self, lane: &Lane, jump: &descent::Jump) -> Result<(), PathError> {
         let solution = &lane.solution;
         let before = self.disc(&solution.at(jump.before))?;
         let landed = jump.landing.map(|Landing { place, .. }| self.disc(&solution.at(place))).transpose()?;
@@ -218,14 +218,14 @@ impl Balance<'_> {
         disc: &Contacts,
         value: f64,
         run: Run,
-    ) -> Result<Option<Held>, CycleError> {
+    ) -> Result<Option<Held>, PathError> {
         let held = |contacts: &Contacts| self.held(contacts, &points(self.ground, contacts), value);
         match (lane.landing(disc.disc, value, run), run) {
             (Some(s), _) => Ok(Some(held(&Contacts::of_disc(s))?)),
             (None, Run::Inward) => Ok(None),
             (None, Run::Outward) => {
                 let Held { approach, force, .. } = held(disc)?;
-                Err(CycleError::BeyondGap { radius: self.ground.reach(), approach, force })
+                Err(PathError::BeyondGap { radius: self.ground.reach(), approach, force })
             }
         }
     }

@@ -13,7 +13,7 @@
 //! ```
 
 use super::balance::Balance;
-use super::event::CycleState;
+use super::event::PathState;
 use crate::annuli::Contacts;
 use crate::annuli::ground::gauss;
 use crate::elementary::{exp, ln, sin};
@@ -55,12 +55,12 @@ impl Balance<'_> {
     /// between them that is new opens from one of the crests, a length each.
     pub fn area_between(
         &self,
-        before: Option<&CycleState>,
-        after: Option<&CycleState>,
+        before: Option<&PathState>,
+        after: Option<&PathState>,
         value: f64,
         crests: &[f64],
     ) -> Option<f64> {
-        let intervals = |state: Option<&CycleState>| state.map_or(Vec::new(), |state| state.contacts.clone());
+        let intervals = |state: Option<&PathState>| state.map_or(Vec::new(), |state| state.contacts.clone());
         let (old, new) = (intervals(before), intervals(after));
         let grows = length(&new) >= length(&old);
         let (small, large) = if grows { (&old, &new) } else { (&new, &old) };

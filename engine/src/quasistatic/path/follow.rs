@@ -1,9 +1,9 @@
 //! Following stable states to what ends them: a limit point, a touch, the turn; past corners of the gap; with the areas on the way.
 
 use super::balance::{Balance, Held};
-use super::error::CycleError;
+use super::course::{Course, End};
+use super::error::PathError;
 use super::event::Direction;
-use super::path::{End, Path};
 use super::point::{Point, Step};
 use super::setting::Areas;
 use crate::annuli::ground::gauss;
@@ -36,11 +36,11 @@ enum Side {
     Towards,
 }
 
-impl Path<'_, '_> {
+impl Course<'_, '_> {
     /// Follows stable states from `held` to what ends them.
-    pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), CycleError> {
+    pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), PathError> {
         let sense = self.direction.sense();
-        let lost = CycleError::Lost { control_value: held.control_value };
+        let lost = PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
         let mut length = FIRST;
         loop {
@@ -125,10 +125,10 @@ impl Path<'_, '_> {
         from: &Point,
         edge: usize,
         way: f64,
-    ) -> Result<(Option<End>, Point), CycleError> {
+    ) -> Result<(Option<End>, Point), PathError> {
         /// How far beyond, in waves.
         const BEYOND_CORNER: f64 = 1e-3;
-        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let lost = || PathError::Lost { control_value: from.held.control_value };
         let sense = self.direction.sense();
         let step = Step::of_edge(self.balance, from, edge);
         let (mut at, mut target) = (None, way);
@@ -175,37 +175,37 @@ impl Path<'_, '_> {
     }
 
     /// Counts a step, and asks whether to go on.
-    pub(super) fn counted(&mut self, held: &Held) -> Result<(), CycleError> {
+    pub(super) fn counted(&mut self, held: &Held) -> Result<(), PathError> {
         self.steps += 1;
         if self.steps > STEPS {
-            return Err(CycleError::TooLong { steps: STEPS, control_value: held.control_value });
+            return Err(PathError::TooLong { steps: STEPS, control_value: held.control_value });
         }
         // What could touch may lie beyond the table, where the gap goes on.
         let ground = self.balance.ground;
         if ground.reach() < ground.table.end() * (1.0 - 1e-9)
             && ground.can_touch_up_to(held.approach) >= ground.reach()
         {
-            return Err(CycleError::BeyondGap {
+            return Err(PathError::BeyondGap {
                 radius: ground.reach(),
                 approach: held.approach,
                 force: held.force,
             });
         }
         self.progress.report(self.share(held));
-        if self.progress.stop() { Err(CycleError::Cancelled) } else { Ok(()) }
+        if self.progress.stop() { Err(PathError::Cancelled) } else { Ok(()) }
     }
 
     /// Why no further step could be taken.
-    pub(super) fn stopped(&self, held: &Held) -> CycleError {
+    pub(super) fn stopped(&self, held: &Held) -> PathError {
         let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
         let count = points(self.balance.ground, &held.state.contacts).count();
         if known - radius < 1e-3 * self.balance.ground.wave {
-            CycleError::BeyondGap { radius: known, approach: held.approach, force: held.force }
+            PathError::BeyondGap { radius: known, approach: held.approach, force: held.force }
         } else if count as f64 > NEARLY * MOST_POINTS_IN_ALL as f64 {
             let error = AnnuliError::TooManyPoints { points: count, most: MOST_POINTS_IN_ALL };
-            CycleError::TooMany { error, approach: held.approach }
+            PathError::TooMany { error, approach: held.approach }
         } else {
-            CycleError::Lost { control_value: held.control_value }
+            PathError::Lost { control_value: held.control_value }
         }
     }
 
@@ -227,9 +227,9 @@ impl Path<'_, '_> {
         from: &Point,
         mut length: f64,
         mut next: Point,
-    ) -> Result<(f64, Point, Option<End>), CycleError> {
+    ) -> Result<(f64, Point, Option<End>), PathError> {
         let sense = self.direction.sense();
-        let lost = || CycleError::Lost { control_value: from.held.control_value };
+        let lost = || PathError::Lost { control_value: from.held.control_value };
         let mut end = None;
         if next.along_control() * sense <= 0.0 {
             let mut slope = |point: &Point| Some(point.along_control() * sense);
@@ -261,8 +261,8 @@ impl Path<'_, '_> {
         from: &Point,
         mut length: f64,
         mut next: Point,
-    ) -> Result<(f64, Point, Option<Crest>), CycleError> {
-        let lost = || CycleError::Lost { control_value: from.held.control_value };
+    ) -> Result<(f64, Point, Option<Crest>), PathError> {
+        let lost = || PathError::Lost { control_value: from.held.control_value };
         let mut touched = None;
         let ground = self.balance.ground;
         // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.

@@ -2,7 +2,7 @@
 
 use super::balance::Held;
 use super::error::Warning;
-use super::event::{CycleState, Event};
+use super::event::{Event, PathState};
 use super::jump::Mobility;
 use crate::problem::{Control, Turn};
 
@@ -67,7 +67,7 @@ pub struct Totals {
 
 /// A whole loop, in reduced units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cycle {
+pub struct Path {
     /// What was controlled.
     pub control: Control,
     /// Where it turned.
@@ -75,7 +75,7 @@ pub struct Cycle {
     /// The events in order.
     pub events: Vec<Event>,
     /// Stable states in order, dense enough to be drawn: those before and after events among them.
-    pub states: Vec<CycleState>,
+    pub states: Vec<PathState>,
     /// The sums.
     pub totals: Totals,
     /// What is to be known about it.

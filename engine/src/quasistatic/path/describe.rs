@@ -1,6 +1,6 @@
 //! Errors and warnings of a loop in the user's units and in words.
 
-use super::error::{CycleError, Warning};
+use super::error::{PathError, Warning};
 use crate::annuli::{AnnuliError, ContactsError};
 use crate::problem::{Control, Units};
 use crate::units::number::said;
@@ -15,7 +15,7 @@ fn of_control(control: Control, units: &Units) -> f64 {
     if control == Control::Force { units.force } else { units.length }
 }
 
-impl CycleError {
+impl PathError {
     /// Whether another value would do, of the turn, the load or the gap; else the computation itself failed.
     #[must_use]
     pub fn is_of_values(&self) -> bool {

@@ -9,7 +9,7 @@
 //! greatest one inside. On the way contacts merge, touch and vanish.
 
 use super::balance::{Balance, CONVERGED, Held, keeps_widths, moved};
-use super::error::CycleError;
+use super::error::PathError;
 use super::event::{Passed, PassedKind};
 use crate::annuli::{Contacts, points};
 use crate::elementary::cbrt;
@@ -59,8 +59,8 @@ impl Balance<'_> {
     /// The contacts with a small new one at a crest, whose edges advance.
     ///
     /// # Errors
-    /// [`CycleError`] where there is no state.
-    pub fn seeded(&self, contacts: &Contacts, crest: f64, value: f64) -> Result<Contacts, CycleError> {
+    /// [`PathError`] where there is no state.
+    pub fn seeded(&self, contacts: &Contacts, crest: f64, value: f64) -> Result<Contacts, PathError> {
         let root = self.work_of_adhesion.sqrt();
         let mut half = 0.5 * self.narrow();
         let mut found = contacts.clone();
@@ -85,7 +85,7 @@ impl Balance<'_> {
     /// nothing is left. What happens on the way is added to `passed`.
     ///
     /// # Errors
-    /// [`CycleError`].
+    /// [`PathError`].
     pub fn run(
         &self,
         start: Contacts,
@@ -93,12 +93,12 @@ impl Balance<'_> {
         sense: f64,
         mobility: Mobility<'_>,
         passed: &mut Vec<Passed>,
-    ) -> Result<Option<Held>, CycleError> {
+    ) -> Result<Option<Held>, PathError> {
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             if self.progress.stop() {
-                return Err(CycleError::Cancelled);
+                return Err(PathError::Cancelled);
             }
             contacts = self.tidied(contacts, sense, passed);
             if contacts.is_empty() {
@@ -144,7 +144,7 @@ impl Balance<'_> {
             }
             contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
         }
-        Err(CycleError::NoLanding { control_value: value, steps: STEPS })
+        Err(PathError::NoLanding { control_value: value, steps: STEPS })
     }
 
     /// A step of the flow.
@@ -154,7 +154,7 @@ impl Balance<'_> {
         lowest: f64,
         sense: f64,
         mobility: Mobility<'_>,
-    ) -> Result<DVector<f64>, CycleError> {
+    ) -> Result<DVector<f64>, PathError> {
         let contacts = &held.state.contacts;
         let scales = self.scales(contacts).edges;
         let slow: Vec<f64> = contacts.edges().iter().map(|edge| mobility(edge.radius).recip()).collect();
@@ -183,7 +183,7 @@ impl Balance<'_> {
             }
             mu = if mu > 0.0 { 2.0 * mu } else { 0.05 * size / fastest };
         }
-        Err(CycleError::NoLanding { control_value: held.control_value, steps: 200 })
+        Err(PathError::NoLanding { control_value: held.control_value, steps: 200 })
     }
 
     /// The contacts with a seed where the gap is negative.
@@ -192,7 +192,7 @@ impl Balance<'_> {
         held: &Held,
         value: f64,
         passed: &mut Vec<Passed>,
-    ) -> Result<Option<Contacts>, CycleError> {
+    ) -> Result<Option<Contacts>, PathError> {
         let Some(crest) = self.least_gap(held).filter(|crest| crest.gap < 0.0) else { return Ok(None) };
         passed.push(Passed { kind: PassedKind::Touch, radius: crest.radius });
         self.seeded(&held.state.contacts, crest.radius, value).map(Some)
