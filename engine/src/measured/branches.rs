@@ -78,6 +78,14 @@ pub enum BranchError {
          of x and force look swapped"
     )]
     Swapped,
+    /// A negative contact radius among the rows that are used.
+    #[error("row {row}: the contact radius {radius:?} is negative: are the columns swapped?")]
+    NegativeRadius {
+        /// The row, from 1.
+        row: usize,
+        /// The radius.
+        radius: f64,
+    },
     /// A contact radius of the other sign.
     #[error("a contact radius has no other sign: leave x as it is, x=+")]
     TurnedRadius,
@@ -103,6 +111,10 @@ impl Points {
         let mut points = self.used(asked);
         if points.len() < END_ROWS {
             return Err(BranchError::Few(points.len()));
+        }
+        let radius = |point: &Point| if self.abscissa == Abscissa::Radius { point.x } else { point.radius };
+        if let Some(point) = points.iter().find(|point| radius(point) < 0.0) {
+            return Err(BranchError::NegativeRadius { row: point.row, radius: radius(point) });
         }
         let mut notes = Vec::new();
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());

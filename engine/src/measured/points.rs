@@ -114,14 +114,6 @@ pub enum PointsError {
     /// A deflection or a position without a spring.
     #[error("the {0} needs the stiffness of the spring: set path.control.stiffness")]
     NoSpring(&'static str),
-    /// A negative contact radius.
-    #[error("row {row}: the contact radius {radius:?} is negative: are the columns swapped?")]
-    NegativeRadius {
-        /// The row, from 1.
-        row: usize,
-        /// The radius.
-        radius: f64,
-    },
     /// A column that does not vary.
     #[error("the {0} is the same in all rows")]
     Constant(&'static str),
@@ -248,10 +240,6 @@ impl Measured {
             (None, None) => return Err(PointsError::Constant("force")),
         };
         let radius = column(Role::Radius).map(base);
-        let radii = if abscissa == Abscissa::Radius { Some(&x) } else { radius.as_ref().map(|(s, _)| s) };
-        if let Some((at, s)) = radii.and_then(|radii| radii.iter().enumerate().find(|(_, s)| **s < 0.0)) {
-            return Err(PointsError::NegativeRadius { row: at + 1, radius: *s });
-        }
         for (values, what) in [(&x, abscissa.name()), (&force, "force")] {
             if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
                 return Err(PointsError::Constant(what));

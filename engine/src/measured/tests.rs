@@ -429,6 +429,12 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
     assert_eq!(parts(&points.branches(&usual).unwrap()), [[30, 0, 10]]);
     let none = points.branches(&Asked { free: FreePart::None, ..usual }).unwrap();
     assert_eq!((parts(&none), none.rows), (vec![[30, 0, 0]], [0, 40]));
+    // A negative radius is refused where its row is used, and nothing to a file whose first rows are left out.
+    let mut noisy = points.clone();
+    noisy.x[1] = -0.001;
+    let refused = BranchError::NegativeRadius { row: 2, radius: -0.001 };
+    assert_eq!(noisy.branches(&Asked { skip: 1, ..usual }), Err(refused));
+    assert_eq!(parts(&noisy.branches(&Asked { skip: 2, ..usual }).unwrap()), [[28, 0, 10]]);
     let within = FreePart::Within(Span { lo: 0.0, hi: 0.1 });
     assert_eq!(points.branches(&Asked { free: within, ..usual }), Err(BranchError::FreeRadius));
     assert_eq!(

@@ -214,6 +214,37 @@ impl FitReport {
         for note in &self.notes {
             let _ = writeln!(text, "note: {note}");
         }
+        self.values(&mut text);
+        if let Some([Some(value), error]) = self.youngs_modulus {
+            let error = error.map_or_else(String::new, |error| {
+                format!(" +- {}", significant(units.shown(Quantity::Stress, error).number, 2))
+            });
+            let unit =
+                units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));
+            let _ = writeln!(
+                text,
+                "E = {}{error}{unit}, if the other body is rigid",
+                significant(units.shown(Quantity::Stress, value).number, 6)
+            );
+        }
+        text.push('\n');
+        if let Some(correlations) = self.correlations.as_ref().filter(|rows| rows.len() > 1) {
+            let mut pairs = Vec::new();
+            for (i, row) in correlations.iter().enumerate() {
+                for (j, r) in row.iter().enumerate().take(i) {
+                    let names = [j, i].map(|k| self.parameters[k].letter.as_str());
+                    pairs.push(format!("{} {} {r:+.2}", names[0], names[1]));
+                }
+            }
+            let _ = writeln!(text, "correlations: {}", pairs.join(", "));
+        }
+        self.close(&mut text);
+        text
+    }
+
+    /// The values with their errors and intervals.
+    fn values(&self, text: &mut String) {
+        let units = &self.shown;
         let shown = |quantity, x: f64| units.shown(quantity, x);
         let number = |quantity, x| significant(shown(quantity, x).number, 6);
         let mut rows = vec![["key", "", "value", "error", "start", ""].map(str::to_owned).to_vec()];
@@ -267,31 +298,6 @@ impl FitReport {
                 );
             }
         }
-        if let Some([Some(value), error]) = self.youngs_modulus {
-            let error = error.map_or_else(String::new, |error| {
-                format!(" +- {}", significant(shown(Quantity::Stress, error).number, 2))
-            });
-            let unit =
-                units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));
-            let _ = writeln!(
-                text,
-                "E = {}{error}{unit}, if the other body is rigid",
-                number(Quantity::Stress, value)
-            );
-        }
-        text.push('\n');
-        if let Some(correlations) = self.correlations.as_ref().filter(|rows| rows.len() > 1) {
-            let mut pairs = Vec::new();
-            for (i, row) in correlations.iter().enumerate() {
-                for (j, r) in row.iter().enumerate().take(i) {
-                    let names = [j, i].map(|k| self.parameters[k].letter.as_str());
-                    pairs.push(format!("{} {} {r:+.2}", names[0], names[1]));
-                }
-            }
-            let _ = writeln!(text, "correlations: {}", pairs.join(", "));
-        }
-        self.close(&mut text);
-        text
     }
 
     fn close(&self, text: &mut String) {
