@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`table`] | the table of g: panels with their series, grown outward when asked |
 //! | [`panels`] | its panels, and what is read from them |
+//! | [`blend`] | tables of mixtures of gaps |
 //! | [`sources`] | g of any gap, from samples of its slope |
 //! | [`waves`] | g of a paraboloid with waves |
 //! | [`cubic`] | g of a gap that is cubic between knots |
@@ -19,6 +20,7 @@
 //! Everything is in reduced units (E* = 1).
 
 pub mod basis;
+pub mod blend;
 pub mod chebyshev;
 pub mod cubic;
 pub mod exact;

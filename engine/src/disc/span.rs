@@ -36,6 +36,15 @@ impl Span {
         }
     }
 
+    /// Whether derivatives on the panel are by its own variable, where `jumps` says of a break whether h' jumps there.
+    pub fn is_steep(&self, jumps: impl Fn(f64) -> bool) -> bool {
+        match self.variable {
+            Variable::Fifth => true,
+            Variable::Radius => false,
+            Variable::Root { base } => jumps(base),
+        }
+    }
+
     /// v at x.
     pub fn variable_at(&self, x: f64) -> f64 {
         let [centre, half] = self.line();

@@ -11,6 +11,7 @@
 //!
 //! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4, eqs. (4.1)-(4.9), for g.
 
+use super::blend::Blend;
 use super::chebyshev::Rule;
 use super::law::Law;
 use super::panels::{Panel, Panels};
@@ -87,6 +88,8 @@ struct Stage {
 pub struct Table {
     gap: Arc<dyn Gap>,
     form: Form,
+    /// What the gap is a mixture of, with the weights, where that is known.
+    blend: Option<(Arc<Blend>, Vec<f64>)>,
     /// The panels that have been asked for.
     stages: Mutex<BTreeMap<Stage, Arc<Panels>>>,
 }
@@ -104,9 +107,15 @@ impl Table {
     /// [`TableError`].
     pub fn new(gap: Arc<dyn Gap>, reach: f64, progress: &dyn Progress) -> Result<Self, TableError> {
         let form = gap.form();
-        let table = Self { gap, form, stages: Mutex::default() };
+        let table = Self { gap, form, blend: None, stages: Mutex::default() };
         table.up_to_while(reach, 0, progress)?;
         Ok(table)
+    }
+
+    /// The table of `gap`, which is the mixture of the gaps of `blend` with these weights.
+    pub fn of_blend(gap: Arc<dyn Gap>, blend: &Arc<Blend>, weights: Vec<f64>) -> Self {
+        let form = gap.form();
+        Self { gap, form, blend: Some((Arc::clone(blend), weights)), stages: Mutex::default() }
     }
 
     /// The table of `gap`, which is that of `key`: made once, and shared while it is among the last ones asked for.
@@ -210,6 +219,9 @@ impl Table {
     }
 
     fn fill(&self, panels: &mut Panels, reach: f64, progress: &dyn Progress) -> Result<(), TableError> {
+        if let Some((blend, weights)) = &self.blend {
+            return blend.fill(weights, panels, reach, progress);
+        }
         match &self.form {
             Form::Power { exponent, .. } => {
                 let spans = Law::spans(*exponent, reach, panels.smallest);
@@ -260,11 +272,7 @@ impl Table {
                     for (j, x) in rule.nodes.iter().enumerate() {
                         [value[j], slope[j]] = sampled.transform(&*self.gap, &span, *x);
                     }
-                    let steep = match span.variable {
-                        Variable::Fifth => true,
-                        Variable::Radius => false,
-                        Variable::Root { base } => sampled.jumps_at(base),
-                    };
+                    let steep = span.is_steep(|base| sampled.jumps_at(base));
                     panels.push(span, rule, &value, &slope, steep);
                 }
             }
@@ -343,7 +351,7 @@ fn part(piece: &Piece, [lo, hi]: [f64; 2]) -> Piece {
 
 /// The panels of a gap, parted where its slope grows so much on one that its inner end had no relative digits: a gap may rise
 /// like r^20.
-fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
+pub(super) fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
     let parted = |span: Span| {
         let [inner, outer] = [span.lo, span.hi].map(|r| gap.jet(r).first.abs());
         let growth = if span.variable == Variable::Radius && span.lo > 0.0 { outer / inner } else { 1.0 };

@@ -6,6 +6,7 @@
 
 use super::axis::{Axis, COMPLIANCE};
 use super::law::{Edge, Law, root_of};
+use crate::disc::blend::Blend;
 use crate::disc::table::Kept;
 use crate::disc::{Exact, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
@@ -45,8 +46,11 @@ pub struct Family {
     roles: Vec<Role>,
     /// The unit of length, the same for all members.
     pub length: f64,
-    /// The tables of the gaps at both ends of the number that enters linearly.
-    ends: Option<[Arc<Table>; 2]>,
+    /// The tables of the gaps at both ends of the number that enters linearly; of two such numbers at all four corners, the second
+    /// number first.
+    ends: Vec<Arc<Table>>,
+    /// What the gaps of all members are mixtures of, where that costs less than a table of their own.
+    blend: Option<Arc<Blend>>,
     /// The table of the gap where no axis changes it.
     own: Option<Arc<Table>>,
     kept: Kept<Shape>,
@@ -179,7 +183,8 @@ impl Family {
             axes,
             roles: Vec::new(),
             length,
-            ends: None,
+            ends: Vec::new(),
+            blend: None,
             own: None,
             kept: Mutex::default(),
             base: Made::of(preset.clone(), length),
@@ -188,16 +193,13 @@ impl Family {
         };
         family.roles = family.axes.iter().map(|axis| family.role(axis)).collect::<Result<_, _>>()?;
         let others = family.roles.contains(&Role::Other);
-        if let Some(linear) = family.roles.iter().position(|role| *role == Role::Linear) {
-            if others || family.roles.iter().filter(|role| **role == Role::Linear).count() > 1 {
+        if family.roles.contains(&Role::Linear) {
+            if others {
                 for role in family.roles.iter_mut().filter(|role| **role == Role::Linear) {
                     *role = Role::Other;
                 }
             } else {
-                let axis = family.axes[linear].clone();
-                let [lo, hi] = axis.range.map(|value| family.with(&[(&axis, value)]));
-                let [lo, hi] = [Made::of(lo?, length), Made::of(hi?, length)];
-                family.ends = Some([family.table(&lo)?, family.table(&hi)?]);
+                family.blend = family.corners()?;
             }
         } else if !others {
             family.own = Some(family.table(&family.base)?);
@@ -206,6 +208,38 @@ impl Family {
         family.radii = [preset.end_contact_radius(start * length) / length, start];
         family.check_features()?;
         Ok(family)
+    }
+
+    /// Tabulates the gaps at the ends of the numbers that enter linearly; what they make of all members, where it is worth it.
+    fn corners(&mut self) -> Result<Option<Arc<Blend>>, FamilyError> {
+        let linear: Vec<&Axis> =
+            (0..self.axes.len()).filter(|k| self.roles[*k] == Role::Linear).map(|k| &self.axes[k]).collect();
+        let mut corners: Vec<Vec<(&Axis, f64)>> = vec![Vec::new()];
+        for axis in linear {
+            let with =
+                |value: f64| corners.iter().map(move |corner| [&corner[..], &[(axis, value)]].concat());
+            corners = axis.range.into_iter().flat_map(with).collect();
+        }
+        let made: Vec<Arc<Made>> = corners
+            .iter()
+            .map(|corner| Ok(Made::of(self.with(corner)?, self.length)))
+            .collect::<Result<_, Invalid>>()?;
+        let blend = Blend::of(made.iter().map(|made| Arc::clone(&made.reduced.gap)).collect());
+        let tables: Result<_, TableError> = made.iter().map(|made| self.table(made)).collect();
+        self.ends = tables?;
+        Ok(blend.map(Arc::new))
+    }
+
+    /// The weights of the corners at values of the numbers left open.
+    fn weights(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
+        let mut weights = vec![1.0];
+        for k in (0..self.axes.len()).filter(|k| self.roles[*k] == Role::Linear) {
+            let [from, to] = self.axes[k].range;
+            let share = (value(k) - from) / (to - from);
+            weights =
+                [1.0 - share, share].iter().flat_map(|by| weights.iter().map(move |w| w * by)).collect();
+        }
+        weights
     }
 
     /// Refuses an axis on which the gap becomes too fine to be tabulated again and again.
@@ -253,6 +287,11 @@ impl Family {
             return Ok(Arc::clone(made));
         }
         let made = Made::of(self.with(&values)?, self.length);
+        if let Some(blend) = &self.blend {
+            let weights = self.weights(&|k| self.axes[k].value(at[k]));
+            let table = Table::of_blend(Arc::clone(&made.reduced.gap), blend, weights);
+            made.table.get_or_init(|| Arc::new(table));
+        }
         let mut kept = lock();
         if kept.len() >= KEPT {
             kept.remove(0);
@@ -351,7 +390,6 @@ impl Family {
 
     /// The number whose gap is linear in it, by its place among the axes.
     pub fn linear(&self) -> Option<usize> {
-        self.ends.as_ref()?;
         self.roles.iter().position(|role| *role == Role::Linear)
     }
 
@@ -396,12 +434,10 @@ impl Family {
                 Role::Adhesion(factor) => work_of_adhesion = factor * value(k),
                 Role::Device => control = device(value(k)).in_units(units.stiffness),
                 Role::Linear => {
-                    if let Some([lo, hi]) = &self.ends {
-                        let [from, to] = self.axes[k].range;
-                        let share = (value(k) - from) / (to - from);
-                        let reach = self.radii[1].max(self.reach(&self.preset));
-                        source = Some(Source::Mixed([lo.up_to(reach)?, hi.up_to(reach)?], share));
-                    }
+                    let reach = self.radii[1].max(self.reach(&self.preset));
+                    let parts = self.weights(&value).into_iter().zip(&self.ends);
+                    let parts = parts.map(|(weight, table)| Ok((weight, table.up_to(reach)?)));
+                    source = Some(Source::Mixed(parts.collect::<Result<_, TableError>>()?));
                 }
                 Role::Other => {}
             }
@@ -437,8 +473,8 @@ enum Source {
         curvature: f64,
         waves: Vec<Wave>,
     },
-    /// At both ends of the number that enters linearly, and the share between them.
-    Mixed([Arc<Panels>; 2], f64),
+    /// At the corners of the numbers that enter linearly, each with its weight.
+    Mixed(Vec<(f64, Arc<Panels>)>),
 }
 
 /// One problem of a family, reduced by the family's length.
@@ -468,10 +504,15 @@ impl Member<'_> {
                 let (whole, slopes) = waves::at(*curvature, waves, s);
                 (slopes, whole)
             }
-            Source::Mixed([lo, hi], share) => {
-                let mix = |a: f64, b: f64| a + share * (b - a);
-                let ((a, [ag, aa]), (b, [bg, ba])) = (of(lo)?, of(hi)?);
-                ([mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2])], [mix(ag, bg), mix(aa, ba)])
+            Source::Mixed(parts) => {
+                let (mut slopes, mut whole) = ([0.0; 3], [0.0; 2]);
+                for (weight, panels) in parts {
+                    let (more, values) = of(panels)?;
+                    for (sum, x) in slopes.iter_mut().zip(more).chain(whole.iter_mut().zip(values)) {
+                        *sum += weight * x;
+                    }
+                }
+                (slopes, whole)
             }
         };
         let edge = Edge::of(self.control, s, slopes);
