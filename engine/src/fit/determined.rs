@@ -1,12 +1,14 @@
 //! What the points determine: covariance, condition, and the direction in which they say nothing.
 //!
 //! ```text
-//! C = κ² S² [Σψ²/(n − p)] / (mean ψ')² (JᵀJ)⁻¹ JᵀRJ (JᵀJ)⁻¹,    ψ of r/S,    κ = 1 + (p/n) var ψ'/(mean ψ')²
+//! C = H⁻¹ (f JᵀVRVJ + K) H⁻¹,    H = JᵀΦJ + K,    f = κ² [Σψ²/(n − p)]/[ΣV²/n] / (φ/mean Φ)²,    κ = 1 + (p/n) (1 − φ)/φ
+//! Φ_i = E ψ'(r_i) = erf(t/√2),    V_i² = E ψ(r_i)² = s_i² [erf(t/√2) − √(2/π) t exp(−t²/2) + t² erfc(t/√2)],    t = c/s_i
 //! ```
 //!
-//! R is the correlation of the noise of the rows, 1 for white noise.
-//!
-//! P. J. Huber, *Robust Statistics* (1981), eq. (7.6.6). The condition is that of J with columns of length 1: beyond
+//! ψ is Huber's, linear up to c; φ is the share of the residuals up to there, `s_i` the standard deviation of the residual i, which goes with
+//! the slope of the curve. R is the correlation of the noise of the rows, 1 for white noise, and K the weights of what is known before. Where
+//! all `s_i` are one and K is none this is P. J. Huber, *Robust Statistics* (1981), eq. (7.6.6); where they differ, H. White, Econometrica 48,
+//! 817 (1980), with variances that are known but for a factor. The condition is that of J with columns of length 1: beyond
 //! [`LARGEST_CONDITION`] no errors are told.
 
 use super::least_squares::Evaluated;
@@ -18,7 +20,7 @@ use crate::elementary::{exp, exp_m1, ln};
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// The condition beyond which errors mean nothing.
 pub const LARGEST_CONDITION: f64 = 1e3;
@@ -92,20 +94,20 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
         sum / (lengths[i] * lengths[j])
     });
-    let mut whole = inner.clone();
-    if correlation.share > 0.0 {
-        let points = together(problem, &at.jacobian, correlation);
-        whole = &inner * (points + known.tr_mul(&known)) * &inner;
-    }
+    let (points, bread) = sandwich(problem, solved, correlation, robust);
+    let known = problem.of_priors();
+    let known = known.tr_mul(&known);
+    let Some(bread) = (bread + &known).try_inverse() else { return none };
+    let mut whole = &bread * (points + &known) * &bread;
     // The level of a force in steps is not known better than they are, however many rows stand at it.
     let level = &inner * at.jacobian.tr_mul(&rounding(problem, at.residuals.len()));
-    whole += &level * level.transpose() / factor;
+    whole += &level * level.transpose();
     let share = |prior: &Prior, j: usize| {
-        let along = inner.column(prior.parameter)[j] / prior.sigma;
-        (along * along * factor / whole[(j, j)]).min(1.0)
+        let along = bread.column(prior.parameter)[j] / prior.sigma;
+        (along * along / whole[(j, j)]).min(1.0)
     };
     let shares = problem.priors.iter().map(|prior| (0..p).map(|j| share(prior, j)).collect()).collect();
-    let errors = DVector::from_iterator(p, (0..p).map(|j| (factor * whole[(j, j)]).sqrt()));
+    let errors = DVector::from_iterator(p, (0..p).map(|j| whole[(j, j)].sqrt()));
     let correlations = DMatrix::from_fn(p, p, |i, j| whole[(i, j)] / (whole[(i, i)] * whole[(j, j)]).sqrt());
     Determined {
         condition,
@@ -128,6 +130,46 @@ fn rounding(problem: &Problem, rows: usize) -> DVector<f64> {
         0.0
     };
     DVector::from_fn(rows, |i, _| if problem.data[i / per].free && i.is_multiple_of(per) { off } else { 0.0 })
+}
+
+/// `f JᵀVRVJ` and `JᵀΦJ`.
+fn sandwich(
+    problem: &Problem,
+    solved: &Solved,
+    correlation: &Correlation,
+    robust: bool,
+) -> (DMatrix<f64>, DMatrix<f64>) {
+    let at = &solved.minimum.at;
+    let spread = problem.spread(solved);
+    let limit = if robust { HUBER * solved.scale } else { f64::INFINITY };
+    // Φ and V.
+    let of_row = |s: &f64| {
+        let t = limit / s;
+        if t.is_infinite() {
+            return [1.0, *s];
+        }
+        let inside = libm::erf(t * FRAC_1_SQRT_2);
+        let tail = t * t * libm::erfc(t * FRAC_1_SQRT_2) - (2.0 / PI).sqrt() * t * exp(-0.5 * t * t);
+        [inside, s * (inside + tail).sqrt()]
+    };
+    let of_rows: Vec<[f64; 2]> = spread.iter().map(of_row).collect();
+    let scaled = |by: &dyn Fn(&[f64; 2]) -> f64| {
+        let mut jacobian = at.jacobian.clone();
+        for (mut row, of_row) in jacobian.row_iter_mut().zip(&of_rows) {
+            row *= by(of_row);
+        }
+        jacobian
+    };
+    let noisy = scaled(&|[_, v]| *v);
+    let points =
+        if correlation.share > 0.0 { together(problem, &noisy, correlation) } else { noisy.tr_mul(&noisy) };
+    let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
+        let real = problem.real(&DVector::from_iterator(of_rows.len(), of_rows.iter().map(of)));
+        real.iter().sum::<f64>() / real.len() as f64
+    };
+    let expected = mean(&|[_, v]| v * v) / mean(&|[inside, _]| *inside).powi(2);
+    let found = variance(&problem.real(&at.residuals), solved.scale, problem.taken(), robust);
+    (points * (found / expected), at.jacobian.tr_mul(&scaled(&|[inside, _]| *inside)))
 }
 
 /// `JᵀRJ`: the rows of a branch in the order of the file, those in contact and those apart.

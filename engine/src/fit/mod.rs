@@ -17,6 +17,7 @@
 //! | [`determined`] | covariance, condition, the direction in words |
 //! | [`intervals`] | profile intervals and the block bootstrap |
 //! | [`scatter`] | the noise of the rows as neighbours show it |
+//! | `spread` | how that noise goes with the slope of the curve |
 //! | [`chance`] | how likely a statistic is by chance |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
 //! | `uncertain` | values that are given with an error |
@@ -47,6 +48,7 @@ pub mod rows;
 pub mod run;
 pub mod scatter;
 pub mod solve;
+mod spread;
 pub mod start;
 mod uncertain;
 pub mod verdict;

@@ -20,6 +20,7 @@ use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::progress::{Part, Progress};
+use crate::units::{Quantity, number::said};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -169,6 +170,12 @@ pub(super) fn fit_branches(
         problem = problem.without_loading(why, &mut notes)?;
         (starts, solved) = found(&mut problem)?;
     }
+    if branches.noise.from[1] == Origin::Apart {
+        solved = of_correlated(&mut problem, solved, options.robust, progress);
+    }
+    if preset.data.uncertain.is_empty() {
+        solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
+    }
     if branches.baseline.is_none() {
         notes.push(
             "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
@@ -180,7 +187,11 @@ pub(super) fn fit_branches(
     let what = determined(&problem, &solved, &scatter.correlation, options.robust);
     let priors = given(&problem, &what.shares, &mut notes);
     let real = problem.real(&solved.minimum.at.residuals);
-    let degrees = (real.len() as f64 / scatter.correlation.rows() - problem.taken() as f64).max(1.0);
+    let mut degrees = (real.len() as f64 / scatter.correlation.rows() - problem.taken() as f64).max(1.0);
+    // Of two variances that neighbours tell, one may decide a value; each is known by some half of the rows.
+    if least.is_some_and(|[least_x, _]| least_x.is_finite()) {
+        degrees = degrees.min(0.5 * scatter.degrees);
+    }
     let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
     let bootstrapped = match &what.errors {
         Some(errors) => {
@@ -298,6 +309,48 @@ fn last(
         solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     }
     Ok(solved)
+}
+
+/// Fits again where the noise is correlated from row to row: its σ, which differences of neighbours tell, is larger by 1/√(1 − r), r the
+/// correlation of neighbours.
+fn of_correlated(problem: &mut Problem, solved: Solved, robust: bool, progress: &dyn Progress) -> Solved {
+    let correlation = problem.scatter(&solved).correlation;
+    if correlation.share <= 0.0 {
+        return solved;
+    }
+    problem.sigma[1] /= (1.0 - correlation.at(1.0)).sqrt();
+    solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
+}
+
+/// Fits again where the points contradict what a tare of the force is assumed to be, 0 ± σ: with σ² = b² − v, the largest likelihood of b, which
+/// the points alone give with the variance v; J. O. Berger, *Statistical Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
+fn of_tare(
+    problem: &mut Problem,
+    solved: Solved,
+    robust: bool,
+    (notes, progress): (&mut Vec<String>, &dyn Progress),
+) -> Solved {
+    let is_of = |prior: &&mut Prior| problem.parameters[prior.parameter].target == Target::Baseline;
+    let jacobian = &solved.minimum.at.jacobian;
+    let Some(prior) = problem.priors.iter_mut().find(is_of) else { return solved };
+    let j = prior.parameter;
+    let mut weights = jacobian.tr_mul(jacobian);
+    let Some(alone) = weights.clone().try_inverse() else { return solved };
+    weights[(j, j)] += prior.sigma.powi(-2);
+    let Some(both) = weights.try_inverse() else { return solved };
+    let off = (solved.minimum.parameters[j] - prior.mean) / (1.0 - both[(j, j)] / prior.sigma.powi(2));
+    let found = off * off - solved.scale.powi(2) * alone[(j, j)];
+    if found.is_nan() || found <= prior.sigma * prior.sigma {
+        return solved;
+    }
+    prior.sigma = found.sqrt();
+    let parameter = &problem.parameters[j];
+    let wider = parameter.slope(parameter.value(prior.mean)).abs() * prior.sigma;
+    notes.push(format!(
+        "the points contradict that: the tare is taken to be off by {}",
+        said(&problem.preset.units, Quantity::Force, wider)
+    ));
+    solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
 }
 
 /// The bootstrap that is made unasked: where there are few degrees of freedom, a straight line says too little of the intervals.

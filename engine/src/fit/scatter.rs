@@ -20,8 +20,8 @@ use crate::measured::branches::median;
 /// Rows farther off than so many times the scale of all are outliers, and left out.
 const OUTLIER: f64 = 4.0;
 /// Values beyond so many standard deviations count as so many, and the variance of normal values that is left so.
-const CLIPPED: f64 = 2.5;
-const LEFT: f64 = 0.977_56;
+pub(super) const CLIPPED: f64 = 2.5;
+pub(super) const LEFT: f64 = 0.977_56;
 /// Fewer rows of a branch say nothing of neighbours.
 const FEWEST: usize = 5;
 /// Rows apart by which a correlation is looked for, at least.
@@ -73,6 +73,16 @@ impl Correlation {
         (1.0 + 2.0 * sum) / count
     }
 
+    /// By how much the variance of second differences is off, as a share, where the decay is told by so many rows: var ρ = (1 − ρ²)/n;
+    /// M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946). The variance of that share.
+    fn of_few(&self, rows: usize) -> f64 {
+        if self.share <= 0.0 {
+            return 0.0;
+        }
+        let slope = self.share * (8.0 - 4.0 * self.decay) / 6.0;
+        slope * slope * (1.0 - self.decay * self.decay) / rows as f64 / self.of_differences().powi(2)
+    }
+
     /// The variance of second differences, in that of white noise.
     fn of_differences(&self) -> f64 {
         1.0 - (8.0 * self.at(1.0) - 2.0 * self.at(2.0)) / 6.0
@@ -86,6 +96,8 @@ pub struct Scatter {
     pub contact: Option<f64>,
     /// The degrees of freedom of s².
     pub degrees: f64,
+    /// The variance of s², as a share of its square, that the correlation has in it: it is known from the rows apart alone.
+    pub of_correlation: f64,
     /// The scale of the residuals of the same rows, which has in it what the model leaves.
     pub residuals: f64,
     /// Their number.
@@ -152,79 +164,19 @@ impl Problem {
             }
         }
         let contact = variance(&differences).map(|found| (found / correlation.of_differences()).sqrt());
+        let rows_apart = apart.iter().map(Vec::len).sum();
+        let of_correlation = correlation.of_few(rows_apart);
+        // Of two independent variances; F. E. Satterthwaite, Biom. Bull. 2, 110 (1946).
+        let degrees = 1.0 / (correlation.rows() / degrees.max(1.0) + 0.5 * of_correlation);
         Scatter {
             contact: contact.filter(|s| *s > 0.0),
-            degrees: (degrees / correlation.rows()).max(1.0),
+            degrees: degrees.max(1.0),
+            of_correlation,
             residuals: variance(&residuals).unwrap_or(0.0).sqrt(),
             rows: residuals.len(),
             correlation,
-            apart: apart.iter().map(Vec::len).sum(),
+            apart: rows_apart,
         }
-    }
-}
-
-impl Problem {
-    /// By how much σ of x and of P are off where neither was known, by how the noise of the rows in contact varies with the slope of the
-    /// curve: that of x matters where it is steep, that of P where it is level. `None` of too few rows.
-    ///
-    /// ```text
-    /// var d_i = a n_x² + b n_P²,     n the normal of the curve in σ,     (√a, √b) by the largest likelihood
-    /// ```
-    pub(super) fn off(&self, solved: &Solved) -> Option<[f64; 2]> {
-        const TIMES: usize = 50;
-        const SAME: f64 = 1e-4;
-        let u = &solved.minimum.parameters;
-        let feet = self.feet(&self.paths(u)?, &self.instrument_at(u))?;
-        let normal = |row: &Row| feet[row.index].map(|foot| [0, 1].map(|k| foot.normals[0][k].powi(2)));
-        let mut rows: Vec<([f64; 2], f64)> = Vec::new();
-        for branch in 0..self.branches() {
-            for three in self.rows(solved, branch, false, 0).windows(3) {
-                let (Some(a), Some(b), Some(c)) = (normal(&three[0]), normal(&three[1]), normal(&three[2]))
-                else {
-                    continue;
-                };
-                let d = three[0].residual - 2.0 * three[1].residual + three[2].residual;
-                rows.push(([0, 1].map(|k| (a[k] + 4.0 * b[k] + c[k]) / 6.0), d * d / 6.0));
-            }
-        }
-        if rows.len() < FEWEST_APART {
-            return None;
-        }
-        let middle = median(rows.iter().map(|(_, square)| square.sqrt()).collect())? / 0.6745;
-        let mut found = [middle * middle; 2];
-        for _ in 0..TIMES {
-            // Normal equations of the squares, weighted by what they vary by.
-            let [mut xx, mut xp, mut pp, mut x, mut p] = [0.0; 5];
-            for ([of_x, of_p], square) in &rows {
-                let variance = found[0] * of_x + found[1] * of_p;
-                let square = square.min(CLIPPED * CLIPPED * variance) / LEFT;
-                let weight = 1.0 / (variance * variance);
-                xx += weight * of_x * of_x;
-                xp += weight * of_x * of_p;
-                pp += weight * of_p * of_p;
-                x += weight * of_x * square;
-                p += weight * of_p * square;
-            }
-            let whole = xx * pp - xp * xp;
-            let both = [(x * pp - p * xp) / whole, (p * xx - x * xp) / whole];
-            // None is below 0: the other has it all.
-            let next = if both[0] <= 0.0 {
-                [0.0, p / pp]
-            } else if both[1] <= 0.0 {
-                [x / xx, 0.0]
-            } else {
-                both
-            };
-            if next.iter().any(|next| !next.is_finite()) {
-                return None;
-            }
-            let is_same = (0..2).all(|k| (next[k] - found[k]).abs() <= SAME * found[k]);
-            found = next;
-            if is_same {
-                break;
-            }
-        }
-        Some(found.map(f64::sqrt))
     }
 }
 

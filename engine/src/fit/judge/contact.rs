@@ -3,7 +3,7 @@
 //! ```text
 //! m_b = mean of r over bin b,    var m_b = s² (v_b − g_bᵀ (JᵀJ)⁻¹ g_b),    g_b = mean of J over the bin
 //! F = Σ m_b² n_b / s² / Σ n_b var m_b,   and each m_b alone
-//! ln(R²/s²) √n < 4.4 + 9/√n            R the scale of the residuals, s that of neighbours
+//! ln(R²/s²) √n < 4.4 + 9/√n            R the scale of the residuals, s that of neighbours; in quadrature 3.1 deviations of the correlation
 //! ```
 //!
 //! v is 1/n in white noise. What a fit of the same points takes out of a mean is left out by the second term. False alarms, each of
@@ -16,7 +16,7 @@ use super::super::scatter::{Row, Scatter};
 use super::super::solve::Solved;
 use super::super::verdict::Reason;
 use super::{ROUNDING, runs};
-use crate::elementary::ln;
+use crate::elementary::{hypot, ln};
 use crate::measured::Segment;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
@@ -24,6 +24,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
+/// A normal value is beyond so many of its deviations, on one side, once in a thousand times.
+const ONE_IN_THOUSAND: f64 = 3.1;
 /// Rows in a bin, at least, and bins of a branch.
 const ROWS: usize = 5;
 const BINS: [usize; 2] = [6, 12];
@@ -57,7 +59,9 @@ pub(super) fn of_contact(
     let mut reasons = of_bins(problem, solved, scatter, inner, s);
     let count = scatter.rows as f64 / scatter.correlation.rows();
     let ratio = scatter.residuals / s;
-    if 2.0 * ln(ratio) * count.sqrt() > 4.4 + 9.0 / count.sqrt() {
+    let limit =
+        hypot((4.4 + 9.0 / count.sqrt()) / count.sqrt(), ONE_IN_THOUSAND * scatter.of_correlation.sqrt());
+    if 2.0 * ln(ratio) > limit {
         reasons.push(Reason::new(
             "scatter",
             ratio,

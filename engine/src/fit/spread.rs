@@ -1,0 +1,107 @@
+//! How the noise of a residual goes with the slope of the curve: that of x matters where it is steep, that of P where it is level.
+//!
+//! ```text
+//! var r_i = a n_x² + b n_P²,     n the normal of the curve in σ,     (a, b) by the largest likelihood
+//! ```
+//!
+//! Both are 1 where σ of x and of P are what they are said to be. The least σ of x is no noise: a is 0 there, and the residuals of a steep
+//! curve are smaller than those of rows apart.
+
+use super::distance::Nearest;
+use super::problem::Problem;
+use super::scatter::{CLIPPED, LEFT, Row};
+use super::solve::Solved;
+use crate::measured::branches::median;
+use nalgebra::DVector;
+
+/// Fewer rows say nothing of two variances.
+const FEWEST: usize = 20;
+
+/// `n_x²` and `n_P²` of a foot; of a row apart, whose residual is that of P, none and all.
+fn normal(foot: Option<&Nearest>) -> [f64; 2] {
+    foot.map_or([0.0, 1.0], |foot| [0, 1].map(|k| foot.normals[0][k].powi(2)))
+}
+
+impl Problem {
+    /// `n_x²` and `n_P²` of the rows.
+    fn normals(&self, solved: &Solved) -> Option<Vec<[f64; 2]>> {
+        let u = &solved.minimum.parameters;
+        let feet = self.feet(&self.paths(u)?, &self.instrument_at(u))?;
+        Some(feet.iter().map(|foot| normal(foot.as_ref())).collect())
+    }
+
+    /// By how much σ of x and of P are off where neither was known, (√a, √b) of second differences of the rows in contact. `None` of too
+    /// few rows.
+    pub(super) fn off(&self, solved: &Solved) -> Option<[f64; 2]> {
+        let normals = self.normals(solved)?;
+        let normal = |row: &Row| normals[row.index];
+        let mut rows: Vec<([f64; 2], f64)> = Vec::new();
+        for branch in 0..self.branches() {
+            for three in self.rows(solved, branch, false, 0).windows(3) {
+                let [a, b, c] = [0, 1, 2].map(|i| normal(&three[i]));
+                let d = three[0].residual - 2.0 * three[1].residual + three[2].residual;
+                rows.push(([0, 1].map(|k| (a[k] + 4.0 * b[k] + c[k]) / 6.0), d * d / 6.0));
+            }
+        }
+        components(&rows).map(|found| found.map(f64::sqrt))
+    }
+
+    /// The standard deviation of each residual in σ; 1 where there are too few rows, or two residuals of each.
+    pub(super) fn spread(&self, solved: &Solved) -> DVector<f64> {
+        let residuals = &solved.minimum.at.residuals;
+        let of = || {
+            let normals = self.normals(solved).filter(|_| self.per_point() == 1)?;
+            let rows: Vec<([f64; 2], f64)> =
+                normals.iter().zip(residuals).map(|(normal, r)| (*normal, r * r)).collect();
+            let [of_x, of_p] = components(&rows)?;
+            let variances = normals.iter().map(|normal| of_x * normal[0] + of_p * normal[1]);
+            let spread = DVector::from_iterator(residuals.len(), variances.map(f64::sqrt));
+            spread.iter().all(|s| *s > 0.0).then_some(spread)
+        };
+        of().unwrap_or_else(|| DVector::repeat(residuals.len(), 1.0))
+    }
+}
+
+/// a and b of squares, each beside `n_x²` and `n_P²` of its row. `None` of too few rows.
+fn components(rows: &[([f64; 2], f64)]) -> Option<[f64; 2]> {
+    const TIMES: usize = 50;
+    const SAME: f64 = 1e-4;
+    if rows.len() < FEWEST {
+        return None;
+    }
+    let middle = median(rows.iter().map(|(_, square)| square.sqrt()).collect())? / 0.6745;
+    let mut found = [middle * middle; 2];
+    for _ in 0..TIMES {
+        // Normal equations of the squares, weighted by what they vary by.
+        let [mut xx, mut xp, mut pp, mut x, mut p] = [0.0; 5];
+        for ([of_x, of_p], square) in rows {
+            let variance = found[0] * of_x + found[1] * of_p;
+            let square = square.min(CLIPPED * CLIPPED * variance) / LEFT;
+            let weight = 1.0 / (variance * variance);
+            xx += weight * of_x * of_x;
+            xp += weight * of_x * of_p;
+            pp += weight * of_p * of_p;
+            x += weight * of_x * square;
+            p += weight * of_p * square;
+        }
+        let whole = xx * pp - xp * xp;
+        let both = [(x * pp - p * xp) / whole, (p * xx - x * xp) / whole];
+        // None is below 0: the other has it all.
+        let next = if both[0] <= 0.0 {
+            [0.0, p / pp]
+        } else if both[1] <= 0.0 {
+            [x / xx, 0.0]
+        } else {
+            both
+        };
+        if next.iter().any(|next| !next.is_finite()) {
+            return None;
+        }
+        let is_same = (0..2).all(|k| (next[k] - found[k]).abs() <= SAME * found[k]);
+        found = next;
+        if is_same {
+            break;
+        }
+    }
+    Some(found)
+}
