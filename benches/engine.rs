@@ -14,7 +14,8 @@ use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Areas, EVEN, Setting, cycle};
+use pulloff_engine::quasistatic::Detail;
+use pulloff_engine::quasistatic::path::{Losses, Setting, cycle};
 use pulloff_engine::ritz::{Grading, Rings};
 use pulloff_engine::stability::{Axis, Family, Law};
 use std::sync::Arc;
@@ -79,7 +80,7 @@ fn trace(bencher: Bencher, rings: usize) {
 /// Every jump of the curve with its two losses.
 fn unload(bencher: Bencher, case: &Case, control: Control) {
     let curve = case.curve(&Unwatched).unwrap();
-    bencher.bench_local(|| case.unload(&curve, control).unwrap());
+    bencher.bench_local(|| case.unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap());
 }
 
 #[divan::bench(args = SIZES, max_time = 5)]
@@ -148,7 +149,8 @@ fn events(bencher: Bencher, case: &Case) {
         for control in controls {
             curve.hold(control);
         }
-        controls.map(|control| case.unload(&curve, control).unwrap())
+        let setting = |control| Setting { detail: Detail::Borders, ..Setting::new(control) };
+        controls.map(|control| case.unload(&curve, &setting(control), &Unwatched).unwrap())
     });
 }
 
@@ -217,10 +219,10 @@ fn state_with_rings(bencher: Bencher, rings: u32) {
 fn whole_loop(bencher: Bencher, work_of_adhesion: f64, turn: f64) {
     let gap = problem().gap;
     let turn = Turn::Approach(turn);
-    let setting = Setting { control: Control::Displacement, turn, areas: Areas::No, mobility: EVEN };
+    let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
     bencher.bench_local(|| {
         let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &Unwatched).unwrap());
-        cycle(&table, black_box(work_of_adhesion), &setting, &Unwatched).unwrap()
+        cycle(&table, black_box(work_of_adhesion), turn, &setting, &Unwatched).unwrap()
     });
 }
 

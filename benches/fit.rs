@@ -13,6 +13,7 @@ use pulloff_engine::measured::{Abscissa, Points, Segment, Spec, parse};
 use pulloff_engine::preset::{Preset, read};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::path::Setting;
 use std::fmt::Write;
 
 /// Points of a fit.
@@ -43,7 +44,7 @@ fn preset(gap: &str) -> Preset {
 fn unloaded(preset: &Preset) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, Control::Displacement).unwrap();
+    let unloading = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
     let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
     let force = |delta: f64| {
         let piece = |[outer, inner]: &[f64; 2]| {
@@ -57,9 +58,9 @@ fn unloaded(preset: &Preset) -> Points {
             }
             Some(state(lo).force)
         };
-        unloading.pieces.iter().find_map(piece).unwrap_or(0.0)
+        unloading.pieces().iter().find_map(piece).unwrap_or(0.0)
     };
-    let (top, least) = (curve.samples[0].approach, unloading.min_approach.approach);
+    let (top, least) = (curve.samples[0].approach, unloading.farthest().unwrap().approach);
     let bottom = least - 0.3 * (top - least);
     let mut random = SplitMix64::new(1);
     let mut normal = move || (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;

@@ -11,8 +11,8 @@ use pulloff_engine::fit::{Options, fit_own};
 use pulloff_engine::preset::shipped::SHIPPED;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::progress::Progress;
-use pulloff_engine::quasistatic::path::Areas;
-use pulloff_engine::report::{CycleReport, StabilityReport, TraceReport, UnloadReport};
+use pulloff_engine::report::path::Extent;
+use pulloff_engine::report::{PathReport, StabilityReport, TraceReport};
 use pulloff_engine::sweep::{Column, measure::measure as row};
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -75,17 +75,17 @@ fn main() {
             drop(CurveData::compute(&preset, &Staged::new(&stop)).map(|curve| curve.checked(progress)));
         });
         measure("trace", &|progress| drop(TraceReport::compute_while(&preset, progress)));
-        measure("unload", &|progress| drop(UnloadReport::compute_while(&preset, progress)));
+        measure("unload", &|progress| drop(PathReport::unload(&preset, Extent::default(), progress)));
         measure("stability", &|progress| drop(StabilityReport::compute(&preset, 101, progress)));
-        measure("cycle", &|progress| drop(CycleReport::compute(&preset, Areas::Yes, progress)));
+        measure("cycle", &|progress| drop(PathReport::cycle(&preset, None, Extent::default(), progress)));
         // A map of five hundred waves takes minutes.
         if SHIPPED.iter().any(|shipped| shipped.name == name) {
             let wish = MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
             measure("map", &|progress| drop(wish.run(progress)));
         }
         let wished = [
-            "pull_off_force",
-            "pull_off_approach",
+            "last_contact_force",
+            "last_contact_approach",
             "snaps",
             "inadmissible_share",
             "cycle_loss",

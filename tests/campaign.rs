@@ -31,8 +31,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Areas, Event as CycleEvent, EventKind as CycleEventKind, PathState};
-use pulloff_engine::quasistatic::{EventKind, PathStop, Unloading};
+use pulloff_engine::quasistatic::path::{Event, EventKind, Path as Ours, PathState, Setting};
 use quadrature::{Bump, Disc, Path, State, Term};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -445,7 +444,7 @@ fn judge(problem: &Problem) -> Outcome {
         Ok(curve) => curve,
         Err(error) => return refused(problem, &error),
     };
-    let ours = match case.unload(&curve, case.control) {
+    let ours = match case.unload(&curve, &Setting::one_disc(case.control), &Unwatched) {
         Ok(ours) => ours,
         Err(error) => return refused(problem, &error),
     };
@@ -495,8 +494,9 @@ fn judge(problem: &Problem) -> Outcome {
     if std::env::var("SHOW").is_ok() {
         let path = disc.unload(problem.control, &stretches, from, 0.004 * from).unwrap();
         for (event, jump) in ours.events.iter().zip(&path.jumps) {
-            let s = event.before.contact_radius * case.units().length / problem.length;
-            let at = case.basis.equilibrium(&case.reduced, event.before.contact_radius).unwrap();
+            let s = event.before.as_ref().unwrap().contact_radius * case.units().length / problem.length;
+            let at =
+                case.basis.equilibrium(&case.reduced, event.before.as_ref().unwrap().contact_radius).unwrap();
             println!("engine {s:e} truth {:e} slopes {:?}", jump.before.radius, at.slopes());
             for n in [16, 24, 40] {
                 let d = disc.clone().with_nodes(n);
@@ -536,8 +536,8 @@ fn judge(problem: &Problem) -> Outcome {
     match found {
         Ok(errors) => {
             let corners = disc.corners();
-            let on_corner = |event: &&pulloff_engine::quasistatic::Event| {
-                let s = event.before.contact_radius * case.units().length / problem.length;
+            let on_corner = |event: &&Event| {
+                let s = event.before.as_ref().unwrap().contact_radius * case.units().length / problem.length;
                 corners.iter().any(|corner| (corner[0] - s).abs() <= 1e-14 * s)
             };
             Outcome::Right {
@@ -554,48 +554,24 @@ fn judge(problem: &Problem) -> Outcome {
 const QUESTIONS: u64 = 5_000;
 
 /// The way down of the loop that turns at the start of a problem, as an unloading; why there is none, in words.
-fn way_down(problem: &Problem, case: &Case) -> Result<Unloading, String> {
+fn way_down(problem: &Problem, case: &Case) -> Result<Ours, String> {
     let asked = AtomicU64::new(0);
     let tired = || asked.fetch_add(1, Ordering::Relaxed) > QUESTIONS;
     let turn = Turn::Radius(case.start);
-    let cycle = case.cycle(case.control, Some(turn), Areas::Yes, &tired).map_err(|error| {
+    let cycle = case.cycle(Some(turn), &case.setting(), &tired).map_err(|error| {
         let words = error.to_string();
         words.chars().filter(|c| !c.is_ascii_digit()).collect::<String>()
     })?;
-    let turned = cycle.events.iter().position(|event| event.kind == CycleEventKind::Turn);
+    let turned = cycle.events.iter().position(|event| event.kind == EventKind::Turn);
     let turned = turned.ok_or("no turn")?;
     let start = cycle.events[turned].after.clone().ok_or("nothing at the turn")?;
-    if start.contacts.len() != 1 || start.contacts[0][0] > 0.0 {
+    if start.rings() > 0 {
         return Err("turns with rings".to_owned());
     }
     if start.contact_radius * case.units().length > LARGEST_CONTACT * problem.end * problem.length {
         return Err("turns where the quadrature does not look".to_owned());
     }
-    let plain = |state: &PathState| pulloff_engine::quasistatic::State {
-        contact_radius: state.contact_radius,
-        approach: state.approach,
-        force: state.force,
-        energy: state.energy,
-    };
-    let event = |event: &CycleEvent| pulloff_engine::quasistatic::Event {
-        kind: if event.after.is_some() { EventKind::Snap } else { EventKind::PullOff },
-        control_value: event.control_value,
-        before: plain(event.before.as_ref().unwrap()),
-        after: event.after.as_ref().map(plain),
-        dissipated: event.dissipated,
-        dissipated_by_area: event.dissipated_by_area,
-    };
-    let start = plain(&start);
-    Ok(Unloading {
-        control: case.control,
-        start,
-        asked: None,
-        events: cycle.events[turned + 1..].iter().map(event).collect(),
-        pieces: Vec::new(),
-        stop: PathStop::PullOff,
-        min_force: start,
-        min_approach: start,
-    })
+    Ok(Ours { events: cycle.events[turned + 1..].to_vec(), states: vec![start], ..cycle })
 }
 
 /// Compares the way down of a loop with the unloading of its disc.
@@ -608,7 +584,7 @@ fn judge_loop(problem: &Problem) -> Outcome {
         Ok(ours) => ours,
         Err(reason) => return Outcome::Refused(format!("{}: {reason}", problem.kind)),
     };
-    let from = ours.start.contact_radius * case.units().length / problem.length;
+    let from = ours.start().unwrap().contact_radius * case.units().length / problem.length;
     let known = LARGEST_CONTACT * problem.end;
     let disc = Disc::new(&problem.terms, problem.gamma, (1.05 * from).min(known));
     let found = [1, 12].map(|finer| {
@@ -627,11 +603,11 @@ fn refused(problem: &Problem, error: &CaseError) -> Outcome {
     let words = error.to_string();
     let reason = match error {
         CaseError::Start { .. } => "no start",
-        CaseError::Unload { .. } => "unstable start",
+        CaseError::Path { .. } => "unstable start",
         CaseError::Table { .. } => "too fine to tabulate",
         _ => "other",
     };
-    if let (CaseError::Start { .. } | CaseError::Unload { .. }, Some(Truth { from, .. })) =
+    if let (CaseError::Start { .. } | CaseError::Path { .. }, Some(Truth { from, .. })) =
         (error, truth(problem))
     {
         return Outcome::Wrong(format!("refused, and starts at {from:e}: {words}"));
@@ -699,15 +675,14 @@ fn scaled(problem: &Problem, case: &Case, s: f64, approach: f64, force: f64) -> 
 fn compare(
     problem: &Problem,
     case: &Case,
-    ours: &Unloading,
+    ours: &Ours,
     disc: &Disc,
     from: f64,
     truth: &Path,
 ) -> Result<Worst, String> {
     let length = case.units().length / problem.length;
-    let in_ours = |state: &pulloff_engine::quasistatic::State| {
-        scaled(problem, case, state.contact_radius * length, state.approach, state.force)
-    };
+    let in_ours =
+        |state: &PathState| scaled(problem, case, state.contact_radius * length, state.approach, state.force);
     let told = || tell(truth, ours, &in_ours);
     if ours.events.len() != truth.jumps.len() {
         if let Some(tie) = truth.jumps.iter().find(|jump| jump.margin <= TIE * disc.sizes(from)[0]) {
@@ -723,9 +698,9 @@ fn compare(
         worst.states = worst.states.max(error);
         if error <= STATES { Ok(()) } else { Err(format!("{what}: off by {error:e}\n{}", told())) }
     };
-    near("start", in_ours(&ours.start), truth.start)?;
+    near("start", in_ours(ours.start().unwrap()), truth.start)?;
     for (event, jump) in ours.events.iter().zip(&truth.jumps) {
-        let before = in_ours(&event.before);
+        let before = in_ours(event.before.as_ref().unwrap());
         near("limit point", before, jump.before)?;
         match (&event.after, jump.after) {
             (Some(after), Some(truth)) => {
@@ -748,7 +723,7 @@ fn compare(
         }
     }
     for (event, jump) in ours.events.iter().zip(&truth.jumps) {
-        let before = in_ours(&event.before);
+        let before = in_ours(event.before.as_ref().unwrap());
         let error = (before.radius / jump.before.radius - 1.0).abs();
         worst.limits = worst.limits.max(error);
         if error > LIMITS {
@@ -790,14 +765,10 @@ fn ranges(path: &Path) -> [f64; 2] {
     ranges.map(|[lo, hi]| hi - lo)
 }
 
-fn tell(
-    truth: &Path,
-    ours: &Unloading,
-    in_ours: &dyn Fn(&pulloff_engine::quasistatic::State) -> State,
-) -> String {
-    let mut text = format!("  start {:?}, true {:?}\n", in_ours(&ours.start), truth.start);
+fn tell(truth: &Path, ours: &Ours, in_ours: &dyn Fn(&PathState) -> State) -> String {
+    let mut text = format!("  start {:?}, true {:?}\n", in_ours(ours.start().unwrap()), truth.start);
     for event in &ours.events {
-        let (before, after) = (in_ours(&event.before), event.after.as_ref().map(in_ours));
+        let (before, after) = (in_ours(event.before.as_ref().unwrap()), event.after.as_ref().map(in_ours));
         writeln!(text, "  ours {before:?} > {:?}; {:?}", after.map(|a| a.radius), event.dissipated).unwrap();
     }
     for jump in &truth.jumps {

@@ -37,9 +37,11 @@ fn records(text: &str) -> Vec<Vec<String>> {
 const TRACE_HEADER: &str = "step,contact_radius,approach,force,energy,newton_iterations,\
                             stable_displacement,stable_force,stable_chosen,\
                             contact_stiffness,tangent_stiffness,area_slope,admissible";
-const UNLOAD_HEADER: &str = "kind,control_value,before_contact_radius,before_approach,before_force,before_wave,\
-                             after_contact_radius,after_approach,after_force,after_wave,dissipated,\
-                             dissipated_by_area,reason,admissible";
+const UNLOAD_HEADER: &str = "number,kind,direction,control,radius,\
+                             before_contact_radius,before_approach,before_force,before_wave,before_rings,\
+                             before_area,before_energy,after_contact_radius,after_approach,after_force,\
+                             after_wave,after_rings,after_area,after_energy,dissipated,dissipated_by_area,\
+                             admissible";
 /// A short case: rings enough for the few waves it crosses.
 const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.25"];
 
@@ -107,8 +109,10 @@ fn trace_json_has_the_fields_of_the_contract() {
         keys(&document),
         [
             "schema",
+            "document",
             "program_version",
             "problem",
+            "units",
             "warnings",
             "notes",
             "stop",
@@ -169,7 +173,7 @@ fn both_documents_carry_the_resolved_problem() {
         let problem = &document["problem"];
         assert_eq!(
             keys(problem),
-            ["preset", "units", "start_contact_radius", "end_contact_radius", "groups", "critical_force"]
+            ["preset", "start_contact_radius", "end_contact_radius", "groups", "critical_force"]
         );
         assert_eq!(
             keys(&problem["groups"]),
@@ -253,11 +257,11 @@ fn unload_writes_a_table_by_default() {
     assert_eq!(lines[1], "control: displacement");
     assert!(lines[2].starts_with("start: delta "), "{}", lines[2]);
     let events: Vec<&&str> =
-        lines.iter().filter(|l| l.contains(" snap ") || l.contains(" pull-off ")).collect();
+        lines.iter().filter(|l| l.contains(" snap ") || l.contains(" last-contact ")).collect();
     assert_eq!(events.len(), 8);
     assert!(events.iter().all(|line| line.ends_with("agrees")), "{text}");
     assert!(events[0].contains("10>9") && events[7].contains("3>-"), "{text}");
-    assert!(text.contains("P_c") && text.contains("end: the bodies came apart (pull-off)"), "{text}");
+    assert!(text.contains("P_c") && text.contains("end: the bodies are apart"), "{text}");
 }
 
 #[test]
@@ -268,48 +272,54 @@ fn unload_json_has_the_fields_of_the_contract() {
         keys(&document),
         [
             "schema",
+            "document",
             "program_version",
             "problem",
+            "units",
             "warnings",
             "notes",
-            "stop",
             "control",
-            "start",
-            "min_force",
-            "min_approach",
-            "total_dissipated",
+            "contact",
+            "start_note",
+            "turn",
+            "stop",
+            "events",
+            "totals",
             "inadmissible",
-            "events"
+            "states"
         ]
     );
     assert_eq!(document["schema"], 1);
-    assert_eq!(keys(&document["start"]), ["contact_radius", "approach", "force", "wave", "note"]);
-    assert_eq!(document["start"]["note"], Value::Null);
+    assert_eq!((&document["document"], &document["start_note"]), (&"path".into(), &Value::Null));
     let events = events(&document);
     for event in events {
         assert_eq!(
             keys(event),
             [
+                "number",
                 "kind",
-                "control_value",
+                "direction",
+                "control",
+                "radius",
                 "before",
                 "after",
                 "dissipated",
                 "dissipated_by_area",
-                "reason",
+                "passed",
                 "admissible"
             ]
         );
-        assert_eq!(keys(&event["before"]), ["contact_radius", "approach", "force", "wave"]);
+        let state = "approach force contact_radius wave contacts stable held_stiffness area energy";
+        assert_eq!(keys(&event["before"]), state.split(' ').collect::<Vec<_>>());
         let (drop, area) = (number(event, "/dissipated"), number(event, "/dissipated_by_area"));
         assert!((drop - area).abs() <= 1e-6 * drop, "{drop} {area}");
     }
     let (last, snaps) = events.split_last().unwrap();
     assert!(!snaps.is_empty());
     assert!(snaps.iter().all(|snap| snap["kind"] == "snap" && keys(&snap["after"]) == keys(&snap["before"])));
-    assert_eq!((&last["kind"], &last["after"]), (&Value::from("pull-off"), &Value::Null));
+    assert_eq!((&last["kind"], &last["after"]), (&Value::from("last-contact"), &Value::Null));
     let lost: f64 = events.iter().map(|event| number(event, "/dissipated")).sum();
-    assert!((number(&document, "/total_dissipated") / lost - 1.0).abs() < 1e-12);
+    assert!((number(&document, "/totals/dissipated") / lost - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -319,10 +329,9 @@ fn unload_csv_leaves_null_empty() {
     assert_eq!(text.lines().next().unwrap(), UNLOAD_HEADER);
     let rows = records(&text);
     let last = rows.last().unwrap();
-    assert_eq!(last[0], "pull-off");
-    // No landing and, under a dead load, no loss; but a reason.
-    assert!(last[6..12].iter().all(String::is_empty), "{last:?}");
-    assert!(!last[12].is_empty());
+    assert_eq!(last[1], "last-contact");
+    // No landing and, under a dead load, no loss.
+    assert!(last[12..21].iter().all(String::is_empty), "{last:?}");
 }
 
 #[test]
@@ -350,7 +359,7 @@ fn the_control_is_the_same_before_and_after_a_snap() {
     for control in ["displacement", "force", "stiffness=0.15"] {
         let document = home.json(&short("unload", &["--control", control]));
         for event in events(&document).iter().filter(|event| event["kind"] == "snap") {
-            let value = number(event, "/control_value");
+            let value = number(event, "/control");
             for side in ["before", "after"] {
                 let (delta, force) = (number(&event[side], "/approach"), number(&event[side], "/force"));
                 let held = match control {
@@ -369,9 +378,8 @@ fn a_dead_load_pull_off_has_no_loss_and_says_why() {
     let home = Home::new();
     let document = home.json(&short("unload", &["--control", "force"]));
     let last = events(&document).last().unwrap();
-    assert_eq!(last["kind"], "pull-off");
+    assert_eq!(last["kind"], "last-contact");
     assert_eq!((&last["dissipated"], &last["dissipated_by_area"]), (&Value::Null, &Value::Null));
-    assert!(last["reason"].as_str().unwrap().contains("dead load"), "{last}");
     let table = home.quiet(&short("unload", &["--control", "force"]));
     assert!(table.contains("dead load"), "{table}");
 }
@@ -379,7 +387,7 @@ fn a_dead_load_pull_off_has_no_loss_and_says_why() {
 #[test]
 fn the_paper_cases_have_their_events() {
     let home = Home::new();
-    let snaps = |n: usize| [vec!["snap"; n], vec!["pull-off"]].concat();
+    let snaps = |n: usize| [vec!["snap"; n], vec!["last-contact"]].concat();
     assert_eq!(kinds(&home.json(&["unload", "fig-9"])), snaps(7));
     assert_eq!(kinds(&home.json(&["unload", "fig-9", "--control", "force"])), snaps(4));
     assert_eq!(kinds(&home.json(&["unload", "fig-10-force"])), snaps(4));
@@ -392,13 +400,13 @@ fn an_unstable_start_runs_outward_and_says_so() {
     let home = Home::new();
     let arguments = ["unload", "fig-9", "--set", "path.start_contact_radius=0.385"];
     let document = home.json(&arguments);
-    let note = document["start"]["note"].as_str().unwrap();
+    let note = document["start_note"].as_str().unwrap();
     assert!(note.contains("unstable under displacement control") && note.contains("0.385"), "{note}");
-    assert!(number(&document, "/start/contact_radius") > 0.385);
+    assert!(number(&document, "/states/0/contact_radius") > 0.385);
     assert!(home.quiet(&arguments).contains(&format!("note: {note}")));
     // No loss is counted for the run outward: the first event is the next snap inward.
     assert!(
-        number(&document, "/events/0/before/contact_radius") < number(&document, "/start/contact_radius")
+        number(&document, "/events/0/before/contact_radius") < number(&document, "/states/0/contact_radius")
     );
 }
 
@@ -406,9 +414,9 @@ fn an_unstable_start_runs_outward_and_says_so() {
 fn a_start_can_be_an_approach_or_a_preload() {
     let home = Home::new();
     for (key, value, pointer) in [
-        ("path.start_approach", 0.05, "/start/approach"),
-        ("path.start_force", 0.01, "/start/force"),
-        ("path.start_force", -0.02, "/start/force"),
+        ("path.start_approach", 0.05, "/states/0/approach"),
+        ("path.start_force", 0.01, "/states/0/force"),
+        ("path.start_force", -0.02, "/states/0/force"),
     ] {
         let assignment = format!("{key}={value}");
         let document = home.json(&["unload", "fig-9", "--set", &assignment]);
@@ -417,7 +425,7 @@ fn a_start_can_be_an_approach_or_a_preload() {
         assert_eq!(path[key.strip_prefix("path.").unwrap()], value);
         assert_eq!(path.get("start_contact_radius"), None);
         let start = number(&document, "/problem/start_contact_radius");
-        assert!((start - number(&document, "/start/contact_radius")).abs() < 1e-12);
+        assert!((start - number(&document, "/states/0/contact_radius")).abs() < 1e-12);
     }
     home.refused(&["unload", "fig-9", "--set", "path.start_force=-0.05"], &["no contact has the force"]);
 }
@@ -427,7 +435,7 @@ fn without_adhesion_nothing_snaps_on_a_sphere() {
     let home = Home::new();
     let document = home.json(&["unload", "fig-1-hertz"]);
     assert_eq!(events(&document).len(), 0);
-    assert_eq!(number(&document, "/total_dissipated").to_bits(), 0.0f64.to_bits());
+    assert_eq!(number(&document, "/totals/dissipated").to_bits(), 0.0f64.to_bits());
     assert_eq!(number(&document, "/problem/critical_force").to_bits(), 0.0f64.to_bits());
     let table = home.quiet(&["unload", "fig-1-hertz"]);
     assert!(!table.contains("P_c") && !table.contains("NaN") && !table.contains("inf"), "{table}");
@@ -441,7 +449,7 @@ fn without_adhesion_nothing_snaps_on_a_sphere() {
         assert!((force / (4.0 / 3.0 * s.powi(3)) - 1.0).abs() < 0.02, "{point}");
     }
     let preload = home.json(&["unload", "fig-1-hertz", "--set", "path.start_force=0.1"]);
-    assert!((number(&preload, "/start/force") - 0.1).abs() < 1e-12);
+    assert!((number(&preload, "/states/0/force") - 0.1).abs() < 1e-12);
     // Nor on waves so shallow that the curve rises all the way.
     let shallow = ["--set", "material.work_of_adhesion=0", "--set", "gap.amplitude=0.0005"];
     // The gap rises throughout: the disc is connected, and nothing is to be said.
@@ -576,11 +584,11 @@ fn an_unloading_marks_the_events_that_cannot_be() {
         let touched = is_inside(&document, number(event, "/before/contact_radius"))
             || landing.is_some_and(|s| is_inside(&document, s));
         assert_eq!(event["admissible"], !touched);
-        assert_eq!(row[13], (!touched).to_string());
+        assert_eq!(row[21], (!touched).to_string());
         marked += usize::from(touched);
     }
     let table = run(&[]);
-    let lines = table.lines().filter(|line| line.contains(" snap ! ") || line.contains(" pull-off ! "));
+    let lines = table.lines().filter(|line| line.contains(" snap ! ") || line.contains(" last-contact ! "));
     assert!(marked > 0 && lines.count() == marked, "{table}");
     assert!(table.contains("\n! limit point or landing inadmissible"), "{table}");
 }
@@ -662,8 +670,9 @@ fn csv_of_an_si_preset_has_its_units_beside_it() {
     let events = &note(&["unload", "fig-9-si", "--format", "csv", "--control", "force"])[0];
     assert!(
         events.ends_with(
-            "control_value, before_force, after_force in N; before_contact_radius, before_approach, \
-        after_contact_radius, after_approach in m; dissipated, dissipated_by_area in J"
+            "control, before_force, after_force in N; radius, before_contact_radius, before_approach, \
+        after_contact_radius, after_approach in m; before_area, after_area in m^2; before_energy, after_energy, \
+        dissipated, dissipated_by_area in J"
         ),
         "{events}"
     );

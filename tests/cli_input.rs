@@ -126,7 +126,7 @@ fn a_preset_file_needs_only_its_required_keys() {
     let home = Home::new();
     let file = home.file("mine.toml", FILE);
     let document = home.json(&["unload", &file]);
-    assert_eq!(kinds(&document), ["pull-off"]);
+    assert_eq!(kinds(&document), ["last-contact"]);
     let basis = &document["problem"]["preset"]["basis"];
     assert_eq!(*basis, serde_json::json!({"kind": "exact"}));
     let end = document["problem"]["end_contact_radius"].as_f64().unwrap();
@@ -238,7 +238,7 @@ fn presets_are_listed_shown_and_located() {
     assert!(line("mine").contains("yours"), "{list}");
     assert!(line("broken").contains("cannot be read"), "{list}");
     assert_eq!(home.quiet(&["presets", "show", "mine"]), FILE);
-    assert_eq!(kinds(&home.json(&["unload", "mine"])), ["pull-off"]);
+    assert_eq!(kinds(&home.json(&["unload", "mine"])), ["last-contact"]);
 }
 
 // ---- the explorer without a terminal ----
@@ -307,7 +307,7 @@ fn a_profile_without_units_in_si_is_taken_in_metres_with_a_warning() {
         bare.err
     );
     let bare: Value = serde_json::from_str(&bare.out).unwrap();
-    let force = |document: &Value| document["min_force"].as_f64().unwrap();
+    let force = |document: &Value| document["totals"]["largest_pull"]["force"].as_f64().unwrap();
     assert!((force(&bare) / force(&named) - 1.0).abs() < 1e-9, "{bare} {named}");
     home.file("scan.csv", &format!("h [um],r [um]\n{}", rows(1.0)));
     home.refused(&["unload", &preset], &["the header names the gap \"h\" first", "scan.csv"]);

@@ -10,6 +10,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::path::Setting;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::quasistatic::{CurveStop, EventKind};
 use pulloff_engine::report::TraceReport;
@@ -60,13 +61,13 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
 fn a_limit_point_sits_on_the_corner() {
     let case = Case::new(&preset(0.07)).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, Control::Displacement).unwrap();
+    let unloading = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
     assert_eq!(unloading.events.len(), 1);
     let event = &unloading.events[0];
     let units = case.units();
-    assert_eq!(event.kind, EventKind::PullOff);
-    assert!((event.before.contact_radius * units.length - 0.12).abs() < 1e-15);
-    assert!((event.before.approach * units.length + 0.046_354_616_716_3).abs() < 1e-12);
+    assert_eq!(event.kind, EventKind::LastContact);
+    assert!((event.before.as_ref().unwrap().contact_radius * units.length - 0.12).abs() < 1e-15);
+    assert!((event.before.as_ref().unwrap().approach * units.length + 0.046_354_616_716_3).abs() < 1e-12);
     for loss in [event.dissipated, event.dissipated_by_area].into_iter().flatten() {
         assert!((loss * units.energy / 1.026_780_252_15e-4 - 1.0).abs() < 1e-9, "{loss}");
     }

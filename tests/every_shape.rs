@@ -9,7 +9,7 @@ use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{BasisSpec, PARAMETERS, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::{State, Unloading};
+use pulloff_engine::quasistatic::path::{Path as Ours, PathState, Setting};
 use pulloff_engine::ritz::Grading;
 use pulloff_engine::theory::Exact;
 use pulloff_engine::theory::disc::Equilibrium;
@@ -71,15 +71,15 @@ fn off_the_curve(case: &Case, exact: &Exact) -> f64 {
 }
 
 /// The largest differences of radii and losses from the exact path.
-fn off_the_path(case: &Case, ours: &Unloading, exact: &Path) -> [f64; 2] {
+fn off_the_path(case: &Case, ours: &Ours, exact: &Path) -> [f64; 2] {
     let (length, energy) = (case.units().length, case.units().energy);
     let scale = exact.start.contact_radius;
-    let radius = |ours: &State, exact: &Equilibrium| {
+    let radius = |ours: &PathState, exact: &Equilibrium| {
         (ours.contact_radius * length - exact.contact_radius).abs() / scale
     };
-    let mut off = [radius(&ours.start, &exact.start), 0.0];
+    let mut off = [radius(ours.start().unwrap(), &exact.start), 0.0];
     for (event, jump) in ours.events.iter().zip(&exact.jumps) {
-        off[0] = off[0].max(radius(&event.before, &jump.before));
+        off[0] = off[0].max(radius(event.before.as_ref().unwrap(), &jump.before));
         assert_eq!(event.after.is_some(), jump.after.is_some());
         if let (Some(after), Some(truth)) = (&event.after, &jump.after) {
             off[0] = off[0].max(radius(after, truth));
@@ -100,7 +100,7 @@ fn check(name: &str, preset: &Preset, tolerances: [f64; 3]) {
     assert!(curve <= tolerances[0], "{name}: {curve:e}");
     for control in [Control::Displacement, Control::Force] {
         let curve = case.curve(&Unwatched).unwrap();
-        let ours = case.unload(&curve, control).unwrap();
+        let ours = case.unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap();
         let truth = unload(&*exact, control, case.start * case.units().length).unwrap();
         // The exact path goes on to the pull-off, ours to the end asked for.
         let jumps = truth.jumps.len();
@@ -160,7 +160,7 @@ fn the_table_follows_a_start_that_runs_far_outward() {
     assert!(found.len() > 1);
     for (case, truth, waves) in found {
         let curve = case.curve(&Unwatched).unwrap();
-        let ours = case.unload(&curve, Control::Force).unwrap();
+        let ours = case.unload(&curve, &Setting::one_disc(Control::Force), &Unwatched).unwrap();
         let off = off_the_path(&case, &ours, &truth);
         println!("outward by {waves:.2} waves, {off:?}");
         assert_eq!(ours.events.len(), truth.jumps.len(), "{waves}");

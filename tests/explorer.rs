@@ -29,18 +29,18 @@ fn the_walk_meets_the_events_of_the_curve() {
     assert_eq!(events.len(), 6);
     for expected in &events {
         session.does(Id::NextLimit);
-        assert!((session.radius() / expected.before.contact_radius - 1.0).abs() < 1e-9);
+        assert!((session.radius() / expected.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
         assert!(session.model.can_jump());
         session.does(Id::Jump);
         let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
         assert_eq!(event.kind, expected.kind);
         assert!((event.dissipated.unwrap() / expected.dissipated.unwrap() - 1.0).abs() < 1e-8);
-        if let (Some(ours), Some(theirs)) = (event.after, expected.after) {
+        if let (Some(ours), Some(theirs)) = (&event.after, &expected.after) {
             assert!((ours.contact_radius / theirs.contact_radius - 1.0).abs() < 1e-9);
         }
     }
     assert_eq!(session.model.walked_events().len(), 6);
-    assert_eq!(session.model.walked_events()[5].1.kind, "pull-off");
+    assert_eq!(session.model.walked_events()[5].1.kind, "last-contact");
     // Apart: nothing to walk, but nothing is lost either.
     session.does(Id::Step);
     assert!(session.status().contains("apart"));
@@ -56,7 +56,7 @@ fn outward_the_edge_jumps_on_loading() {
     let before = session.radius();
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
-    assert_eq!(event.kind, EventKind::Snap);
+    assert_eq!(event.kind, EventKind::SnapIn);
     assert!(session.radius() > before);
     assert!(event.dissipated.unwrap() > 0.0);
     let node = session.model.history.current().unwrap();
@@ -198,7 +198,7 @@ fn the_control_can_change_in_mid_walk() {
     assert!(session.status().starts_with("Limit point 1/"), "{}", session.status());
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
-    assert!((event.before.force - event.after.unwrap().force).abs() < 1e-12);
+    assert!((event.before.as_ref().unwrap().force - event.after.as_ref().unwrap().force).abs() < 1e-12);
     session.does(Id::Control).does(Id::Control);
     assert!(!session.model.is_unsaved());
 }
@@ -209,7 +209,7 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     session.model.panel = Panel::Events;
     session.all(&[Id::Down, Id::Down, Id::Edit]);
     let event = &session.model.shown_events()[2];
-    assert!((session.radius() / event.before.contact_radius - 1.0).abs() < 1e-9);
+    assert!((session.radius() / event.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
     assert!(session.status().contains("jumps to crest 5"), "{}", session.status());
     assert!(!session.model.is_unsaved());
     // In the walked list it goes back to before the jump.
@@ -219,7 +219,11 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     assert_eq!(session.kind(), NodeKind::Limit);
     assert!(
         (session.radius()
-            / session.model.curve.as_ref().unwrap().report.as_ref().unwrap().events[2].before.contact_radius
+            / session.model.curve.as_ref().unwrap().report.as_ref().unwrap().events[2]
+                .before
+                .as_ref()
+                .unwrap()
+                .contact_radius
             - 1.0)
             .abs()
             < 1e-9
@@ -297,7 +301,18 @@ fn the_least_force_is_one_key_away_under_every_control() {
         let mut session = Session::new("wavy-sphere");
         session.set("path.control", control).does(Id::LeastForce);
         let model = &session.model;
-        let least = model.curve.as_ref().unwrap().report.as_ref().unwrap().min_force;
+        let least = model
+            .curve
+            .as_ref()
+            .unwrap()
+            .report
+            .as_ref()
+            .unwrap()
+            .totals
+            .largest_pull
+            .as_ref()
+            .unwrap()
+            .force;
         let node = model.history.current().unwrap();
         let force = node.state.force * node.setting.units().force;
         assert!((force - least).abs() < 1e-9 * least.abs(), "{control}: {force} {least}");
@@ -393,7 +408,8 @@ fn from_an_unstable_start_the_edge_runs_outward_as_in_an_unloading() {
     session.set("path.start_contact_radius", "0.385").does(Id::Restart);
     assert!(session.status().contains("jump lets the edge run outward"), "{}", session.status());
     session.does(Id::Jump);
-    let start = session.model.curve.as_ref().unwrap().unloading.as_ref().unwrap().start;
+    let start = session.model.curve.as_ref().unwrap().unloading.clone().unwrap();
+    let start = start.start().unwrap();
     assert!((session.radius() / start.contact_radius - 1.0).abs() < 1e-9);
 }
 
@@ -414,7 +430,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     assert!(session.model.curve.as_ref().unwrap().is_checked());
     assert!(session.model.shown_inadmissible().is_empty());
     let events = session.model.shown_events();
-    assert!(events.iter().all(|event| event.admissible == Some(true)));
+    assert!(events.iter().all(|event| event.admissible != Some(false)));
 
     let effects = update(
         &mut session.model,
@@ -450,7 +466,11 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
         assert!((ends[0] / from - 1.0).abs() < 1e-12 && (ends[1] / to - 1.0).abs() < 1e-12);
         last = to;
     }
+    // A path with rings passes no such state.
+    assert!(session.model.shown_events().iter().all(|event| event.admissible.is_none()));
+    session.set("path.contact", "one-disc");
     assert!(session.model.shown_events().iter().all(|event| event.admissible.is_some()));
+    session.does(Id::Undo);
 
     // The log goes on to them, but they are no place to go to.
     session.model.panel = Panel::Events;

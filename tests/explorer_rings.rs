@@ -76,7 +76,7 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
     session.all(&[Id::Reverse, Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
     assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
     let kinds: Vec<&str> = session.model.walked_events().iter().map(|(_, event)| event.kind).collect();
-    assert_eq!(kinds, ["snap", "snap", "snap", "snap", "pull-off"]);
+    assert_eq!(kinds, ["touch", "touch", "snap-in", "snap", "last-contact"]);
 }
 
 #[test]

@@ -29,6 +29,7 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
             control,
             end_contact_radius: None,
             begin: Begin::Disc,
+            contact: pulloff_engine::problem::ContactKind::Rings,
             turn: None,
         },
     }
@@ -60,7 +61,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
         });
         match (event, outcome) {
             (Some(event), Outcome::Done) => {
-                let size = event.before.energy.abs();
+                let size = event.before.as_ref().unwrap().energy.abs();
                 for lost in [event.dissipated, event.dissipated_by_area].into_iter().flatten() {
                     assert!(lost >= -1e-9 * size, "{lost}: {event:?} {preset:?}");
                 }

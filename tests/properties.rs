@@ -9,9 +9,10 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Begin, Control, Start};
-use pulloff_engine::report::unload::{EventReport, StateReport};
-use pulloff_engine::report::{TraceReport, UnloadReport, json};
+use pulloff_engine::problem::{Begin, ContactKind, Control, Start};
+use pulloff_engine::progress::Unwatched;
+use pulloff_engine::report::path::{EventReport, Extent, StateReport};
+use pulloff_engine::report::{PathReport, TraceReport, json};
 use pulloff_engine::ritz::Grading;
 
 /// Steps of the independent walk per wave.
@@ -68,6 +69,7 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
             start,
             end_contact_radius: None,
             begin: Begin::Disc,
+            contact: ContactKind::OneDisc,
             turn: None,
         },
     }
@@ -174,18 +176,19 @@ fn faults_of(case: &Case, control: Control, event: &EventReport) -> Vec<String> 
             faults.push(what);
         }
     };
-    check(finite(&event.before) && event.control_value.is_finite(), format!("not finite: {event:?}"));
+    let before = event.before.as_ref().unwrap();
+    check(finite(before) && event.control.is_finite(), format!("not finite: {event:?}"));
     let units = case.units();
     let explicit = Explicit(case, control);
     let reduced = |s: &StateReport| control.value(s.approach / units.length, s.force / units.force);
     let scale = {
-        let s = &event.before;
+        let s = before;
         (s.approach / units.length).abs() + (s.force / units.force).abs()
     };
     let of_control = if control == Control::Force { units.force } else { units.length };
-    let value = event.control_value / of_control;
+    let value = event.control / of_control;
     check(
-        (reduced(&event.before) - value).abs() <= 1e-10 * (scale + value.abs()),
+        (reduced(before) - value).abs() <= 1e-10 * (scale + value.abs()),
         format!("control before: {event:?}"),
     );
     if let Some(after) = &event.after {
@@ -196,10 +199,10 @@ fn faults_of(case: &Case, control: Control, event: &EventReport) -> Vec<String> 
         );
         let s = after.contact_radius / units.length;
         check(explicit.at(s).is_some_and(|(_, slope)| slope > 0.0), format!("landing unstable: {event:?}"));
-        check(after.contact_radius < event.before.contact_radius, format!("ran outward: {event:?}"));
+        check(after.contact_radius < before.contact_radius, format!("ran outward: {event:?}"));
     }
     let wave = case.reduced.gap.feature_length().unwrap();
-    for state in [Some(&event.before), event.after.as_ref()].into_iter().flatten() {
+    for state in event.before.iter().chain(&event.after) {
         let crest = (state.contact_radius / units.length / wave + 0.5).floor();
         check(state.wave.map(|m| m as f64) == Some(crest), format!("crest: {state:?}"));
     }
@@ -225,7 +228,7 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
         Ok(case) => case,
         Err(error) => return (0, vec![format!("case: {error}")]),
     };
-    let report = match UnloadReport::compute(preset) {
+    let report = match PathReport::unload(preset, Extent::default(), &Unwatched) {
         Ok(report) => report,
         Err(error) => {
             let lost = Explicit(&case, case.control).first().is_none();
@@ -247,7 +250,12 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
     let ours: Vec<_> = report
         .events
         .iter()
-        .map(|e| (e.before.contact_radius / length, e.after.as_ref().map(|a| a.contact_radius / length)))
+        .map(|e| {
+            (
+                e.before.as_ref().unwrap().contact_radius / length,
+                e.after.as_ref().map(|a| a.contact_radius / length),
+            )
+        })
         .collect();
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
     let same = expected.as_ref().is_some_and(|expected| {
@@ -261,8 +269,8 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
     if !same {
         faults.push(format!("path {ours:?} but the walk finds {expected:?}; stop: {}", report.stop));
     }
-    if json(&report).unwrap().contains("\"min_force\": null") {
-        faults.push("min_force is null".to_owned());
+    if json(&report).unwrap().contains("\"largest_pull\": null") {
+        faults.push("largest_pull is null".to_owned());
     }
     match TraceReport::compute(preset) {
         Err(error) => faults.push(format!("trace: {error}")),
@@ -323,6 +331,7 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
             start: Start::ContactRadius(start),
             end_contact_radius: None,
             begin: Begin::Disc,
+            contact: ContactKind::OneDisc,
             turn: None,
         },
     }

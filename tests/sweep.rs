@@ -69,7 +69,7 @@ impl Sweeps {
 const GRID: &str = r#"
 preset = "wavy-sphere"
 set = ["path.start_contact_radius=0.3", "gap.wavelength=0.1"]
-quantities = ["pull_off_force", "snaps_force", "enhancement", "kesari_lew"]
+quantities = ["last_contact_force", "snaps_force", "enhancement", "kesari_lew"]
 [[axis]]
 key = "gap.amplitude"
 values = [0.001, "0.004/2"]
@@ -119,7 +119,7 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
     let last = report["events"].as_array().unwrap().last().unwrap();
     assert_eq!(
         last["before"]["force"].as_f64().unwrap().to_bits(),
-        home.numbers("r.csv", "pull_off_force")[7].to_bits()
+        home.numbers("r.csv", "last_contact_force")[7].to_bits()
     );
     // As many threads as one likes.
     home.sweep("grid.toml", "one.csv", &["--jobs", "1"]);

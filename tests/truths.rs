@@ -19,11 +19,12 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::shapes::Profile;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{ContactKind, Control};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Admissibility;
-use pulloff_engine::report::UnloadReport;
-use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::path::{EventReport, Extent};
 use quadrature::{Disc, Term};
 use std::f64::consts::{PI, TAU};
 use toml::{Table, Value};
@@ -84,13 +85,13 @@ fn check_event(name: &str, event: &EventReport, written: &str) {
     let mut words = written.split_whitespace();
     let mut next = || words.next().unwrap();
     assert_eq!(event.kind, next(), "{name}");
-    let before = &event.before;
+    let before = event.before.as_ref().unwrap();
     for x in [before.contact_radius, before.approach, before.force] {
         assert!(is(x, next()), "{name}: {x:?} of {written}");
     }
     let (after, loss) = (next(), next());
     assert!(
-        is(event.after.map_or(f64::NAN, |after| after.contact_radius), after),
+        is(event.after.as_ref().map_or(f64::NAN, |after| after.contact_radius), after),
         "{name}: {event:?} {written}"
     );
     if loss != "-" {
@@ -115,9 +116,10 @@ fn unloadings_are_those_of_the_table() {
         }
         let preset =
             preset(case["work_of_adhesion"].as_float().unwrap(), &gap, case["path"].as_table().unwrap());
-        let report = UnloadReport::compute(&preset).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let report = PathReport::unload(&preset, Extent::default(), &Unwatched)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
         if let Some(start) = case.get("start") {
-            let (ours, start) = (report.start.contact_radius, start.as_str().unwrap());
+            let (ours, start) = (report.states[0].state.contact_radius, start.as_str().unwrap());
             assert!(is(ours, start), "{name}: starts at {ours:?}");
         }
         let events = case["events"].as_array().unwrap();
@@ -136,23 +138,23 @@ fn a_start_just_inside_a_limit_point_is_the_nearest_stable_state() {
         if let Some(start) = start {
             preset.set("path.start_contact_radius", start.into()).unwrap();
         }
-        UnloadReport::compute(&preset).unwrap()
+        PathReport::unload(&preset, Extent::default(), &Unwatched).unwrap()
     };
     for control in ["displacement", "force", "stiffness=0.15"] {
         let whole = shipped(control, None);
         assert!(whole.events.len() > 2, "{control}");
         for (i, event) in whole.events.iter().enumerate() {
-            let limit = event.before.contact_radius;
+            let limit = event.before.as_ref().unwrap().contact_radius;
             for below in [1e-15, 1e-13, 1e-11, 1e-9] {
                 let start = limit * (1.0 - below);
                 let path = shipped(control, Some(start));
-                let reached = path.start.contact_radius;
+                let reached = path.states[0].state.contact_radius;
                 assert!(
                     (reached - limit).abs() <= 2e-8 * limit,
                     "{control} {limit}: {start:?} > {reached:?}"
                 );
                 assert_eq!(path.events.len(), whole.events.len() - i, "{control} {limit} {below}");
-                let first = path.events[0].before.contact_radius;
+                let first = path.events[0].before.as_ref().unwrap().contact_radius;
                 assert!((first / limit - 1.0).abs() <= 1e-13, "{control}: {first:?} {limit:?}");
             }
         }
@@ -165,7 +167,8 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
     let mut losses = |control: Control| -> Vec<[f64; 2]> {
         preset.path.control = control;
         let case = Case::new(&preset).unwrap();
-        let path = case.unload(&case.curve(&Unwatched).unwrap(), control).unwrap();
+        let path =
+            case.unload(&case.curve(&Unwatched).unwrap(), &Setting::one_disc(control), &Unwatched).unwrap();
         let both = |event: &pulloff_engine::quasistatic::Event| {
             [event.dissipated, event.dissipated_by_area].map(Option::unwrap)
         };
@@ -217,7 +220,9 @@ fn overlaps_are_found_wherever_they_are() {
             assert!(is(ours, gap) && is(crest.radius / case.start, ratio), "{ours} {crest:?}");
         }
     }
-    let report = UnloadReport::compute(&formula("r^2/2 - 0.12*exp(-((r-0.5)/0.01)^2)", 0.001, 0.3)).unwrap();
+    let mut one_disc = formula("r^2/2 - 0.12*exp(-((r-0.5)/0.01)^2)", 0.001, 0.3);
+    one_disc.path.contact = ContactKind::OneDisc;
+    let report = PathReport::unload(&one_disc, Extent::default(), &Unwatched).unwrap();
     let intervals = report.inadmissible.unwrap();
     assert_eq!(intervals.len(), 1, "{intervals:?}");
     let from = intervals[0].from_contact_radius;
@@ -276,14 +281,17 @@ fn eight_rows_are_enough() {
         let disc = Disc::new(&[spline(measured.profile())], gamma, 0.599);
         let held = control.parse().unwrap();
         let truth = disc.unload(held, &disc.rising(held, 1), 0.55, 1e-4).unwrap();
-        let report = UnloadReport::compute(&preset).unwrap();
+        let report = PathReport::unload(&preset, Extent::default(), &Unwatched).unwrap();
         assert_eq!(report.events.len(), truth.jumps.len(), "{gamma} {control}: {truth:?}");
         let last = truth.jumps.last().unwrap();
         assert!(last.after.is_none() && (gamma > 1e-5 || last.before.radius < 0.05), "{last:?}");
         for (event, jump) in report.events.iter().zip(&truth.jumps) {
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-11 * b.abs();
-            assert!(near(event.before.contact_radius, jump.before.radius), "{event:?} {jump:?}");
-            assert!(near(event.before.force, jump.before.force), "{event:?} {jump:?}");
+            assert!(
+                near(event.before.as_ref().unwrap().contact_radius, jump.before.radius),
+                "{event:?} {jump:?}"
+            );
+            assert!(near(event.before.as_ref().unwrap().force, jump.before.force), "{event:?} {jump:?}");
             assert_eq!(event.dissipated.is_some(), jump.loss.is_some());
             if let Some((ours, truth)) = event.dissipated.zip(jump.loss) {
                 assert!((ours / truth - 1.0).abs() <= 1e-7, "{event:?} {jump:?}");
@@ -301,7 +309,7 @@ fn a_thousand_waves_have_the_events_of_their_sum() {
     preset.set("path.start_contact_radius", 1.0.into()).unwrap();
     let (case, gamma) = (Case::new(&preset).unwrap(), preset.material.work_of_adhesion);
     let curve = case.curve(&Unwatched).unwrap();
-    let path = case.unload(&curve, Control::Displacement).unwrap();
+    let path = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
     assert!(path.events.len() > 5, "{:?}", path.events.len());
     let rule = quadrature::gauss(1300);
     // δ and dδ/ds.
@@ -318,11 +326,14 @@ fn a_thousand_waves_have_the_events_of_their_sum() {
     };
     let stable = |s: f64| curve_at(s)[1] > 0.0;
     for event in &path.events {
-        let s = event.before.contact_radius;
+        let s = event.before.as_ref().unwrap().contact_radius;
         assert!(stable(s * (1.0 + 1e-10)) && !stable(s * (1.0 - 1e-10)), "{event:?}");
-        assert!((curve_at(s)[0] - event.before.approach).abs() <= 1e-13, "{event:?}");
-        let Some(after) = event.after else { continue };
-        assert!((curve_at(after.contact_radius)[0] - event.before.approach).abs() <= 1e-13, "{event:?}");
+        assert!((curve_at(s)[0] - event.before.as_ref().unwrap().approach).abs() <= 1e-13, "{event:?}");
+        let Some(after) = &event.after else { continue };
+        assert!(
+            (curve_at(after.contact_radius)[0] - event.before.as_ref().unwrap().approach).abs() <= 1e-13,
+            "{event:?}"
+        );
         assert!(stable(after.contact_radius), "{event:?}");
     }
     // Between two radii there are as many limit points, but for pairs, as the stability changes.

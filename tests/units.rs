@@ -9,9 +9,10 @@ use pulloff_engine::preset::changes::changes;
 use pulloff_engine::preset::{Preset, Value, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::unload::UnloadError;
+use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::quasistatic::{CurveStop, PathStop};
-use pulloff_engine::report::{ProblemReport, TraceReport, UnloadReport, json, table};
+use pulloff_engine::report::path::{EventReport, Extent};
+use pulloff_engine::report::{Head, PathReport, TraceReport, json, path_table};
 use pulloff_engine::units::number::said;
 use pulloff_engine::units::{DisplayUnits, UnitSystem};
 
@@ -186,22 +187,33 @@ start_contact_radius = \"0.1 mm\"
 
 #[test]
 fn figure_9_in_si_gives_the_reduced_answers() {
-    let reduced = UnloadReport::compute(&shipped_preset("fig-9")).unwrap();
-    let si = UnloadReport::compute(&shipped_preset("fig-9-si")).unwrap();
+    let reduced = PathReport::unload(&shipped_preset("fig-9"), Extent::default(), &Unwatched).unwrap();
+    let si = PathReport::unload(&shipped_preset("fig-9-si"), Extent::default(), &Unwatched).unwrap();
     let (radius, modulus) = (5e-3, 40e3);
     let (force, energy) = (modulus * radius * radius, modulus * radius * radius * radius);
     assert_eq!((reduced.events.len(), si.events.len()), (8, 8));
     let near = |what: &str, si: f64, unit: f64, reduced: f64| {
         assert!((si / unit - reduced).abs() <= 1e-10 * reduced.abs(), "{what}: {} {reduced}", si / unit);
     };
-    near("smallest force", si.min_force, force, reduced.min_force);
-    near("smallest approach", si.min_approach, radius, reduced.min_approach);
-    near("loss", si.total_dissipated, energy, reduced.total_dissipated);
+    near(
+        "smallest force",
+        si.totals.largest_pull.as_ref().unwrap().force,
+        force,
+        reduced.totals.largest_pull.as_ref().unwrap().force,
+    );
+    near(
+        "smallest approach",
+        si.totals.farthest.as_ref().unwrap().approach,
+        radius,
+        reduced.totals.farthest.as_ref().unwrap().approach,
+    );
+    near("loss", si.totals.dissipated.unwrap(), energy, reduced.totals.dissipated.unwrap());
     for (a, b) in si.events.iter().zip(&reduced.events) {
-        assert_eq!((a.kind, a.before.wave, a.admissible), (b.kind, b.before.wave, b.admissible));
-        near("control", a.control_value, radius, b.control_value);
+        let wave = |event: &EventReport| event.before.as_ref().unwrap().wave;
+        assert_eq!((a.kind, wave(a), a.admissible), (b.kind, wave(b), b.admissible));
+        near("control", a.control, radius, b.control);
         assert_eq!(a.after.is_some(), b.after.is_some());
-        for (a, b) in [(Some(a.before), Some(b.before)), (a.after, b.after)] {
+        for (a, b) in [(&a.before, &b.before), (&a.after, &b.after)] {
             let (Some(a), Some(b)) = (a, b) else { continue };
             near("delta", a.approach, radius, b.approach);
             near("P", a.force, force, b.force);
@@ -209,19 +221,19 @@ fn figure_9_in_si_gives_the_reduced_answers() {
         }
         near("lost", a.dissipated.unwrap(), energy, b.dissipated.unwrap());
     }
-    let text = table::unload(&si);
-    for words in ["delta [um]", "P [uN]", "s [um]", "lost [nJ]", "start: delta ", " um  P "] {
+    let text = path_table::path(&si);
+    for words in ["delta [um]", "P [uN]", "contact [um]", "lost [nJ]", "start: delta ", " um  P "] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
-    assert!(!table::unload(&reduced).contains('['));
+    assert!(!path_table::path(&reduced).contains('['));
     let document: serde_json::Value = serde_json::from_str(&json(&si).unwrap()).unwrap();
-    let units = &document["problem"]["units"];
+    let units = &document["units"];
     assert_eq!(
         (&units["system"], &units["length"], &units["energy"]),
         (&"SI".into(), &"m".into(), &"J".into())
     );
     let document: serde_json::Value = serde_json::from_str(&json(&reduced).unwrap()).unwrap();
-    let units = &document["problem"]["units"];
+    let units = &document["units"];
     assert_eq!((&units["system"], &units["length"]), (&"reduced".into(), &serde_json::Value::Null));
     assert_eq!(shipped_preset("fig-9").units, UnitSystem::Reduced);
 }
@@ -319,12 +331,16 @@ fn the_coefficient_is_shown_and_typed_in_its_unit() {
     let text = write(&read("p", POWER).unwrap());
     assert!(text.contains("coefficient = \"0.002 um^-1\""), "{text}");
     // The same body in reduced units: c r² with r in units of 1/c.
-    let si = UnloadReport::compute(&read("p", POWER).unwrap()).unwrap();
+    let si = PathReport::unload(&read("p", POWER).unwrap(), Extent::default(), &Unwatched).unwrap();
     let sphere = POWER
         .replace("power-law", "sphere")
         .replace("coefficient = \"2e3 m^-1\"\nexponent = 2", "radius_of_curvature = \"0.25 mm\"");
-    let same = UnloadReport::compute(&read("p", &sphere).unwrap()).unwrap();
-    assert!((si.min_force - same.min_force).abs() <= 1e-9 * same.min_force.abs());
+    let same = PathReport::unload(&read("p", &sphere).unwrap(), Extent::default(), &Unwatched).unwrap();
+    assert!(
+        (si.totals.largest_pull.as_ref().unwrap().force - same.totals.largest_pull.as_ref().unwrap().force)
+            .abs()
+            <= 1e-9 * same.totals.largest_pull.as_ref().unwrap().force.abs()
+    );
 }
 
 #[test]
@@ -364,9 +380,9 @@ start_contact_radius = \"1 mm\"
     let line = "lambda = { value = 50000.0, min = 10000.0, max = 100000.0, unit = \"nm\" }";
     assert!(write(&preset).contains(line), "{}", write(&preset));
     let case = Case::new(&preset).unwrap();
-    let document = json(&ProblemReport::new(&preset, &case)).unwrap();
+    let document = json(&Head::new("path", &preset, &case)).unwrap();
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
-    let parameters = &document["preset"]["gap"]["parameters"];
+    let parameters = &document["problem"]["preset"]["gap"]["parameters"];
     assert_eq!((&parameters["lambda"]["unit"], &parameters["lambda"]["value"]), (&"m".into(), &5e-5.into()));
     assert_eq!((&parameters["k"]["unit"], &parameters["B"]["unit"]), (&"m^-1".into(), &"m^2".into()));
     // A bare number beside a unit counts in it, wherever it comes from.
@@ -424,7 +440,8 @@ start_contact_radius = \"1 mm\"
 
 /// What computing a preset says when it refuses.
 fn refusal(preset: &Preset) -> String {
-    let unloaded = Case::new(preset).and_then(|case| case.unload(&case.curve(&Unwatched)?, case.control));
+    let unloaded =
+        Case::new(preset).and_then(|case| case.unload(&case.curve(&Unwatched)?, &case.setting(), &Unwatched));
     unloaded.unwrap_err().to_string()
 }
 
@@ -486,8 +503,8 @@ fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
         [report.warnings, report.notes, vec![report.stop]].concat()
     };
     let unloaded = |preset: &Preset| {
-        let report = UnloadReport::compute(preset).unwrap();
-        let note = report.start.note.into_iter().collect();
+        let report = PathReport::unload(preset, Extent::default(), &Unwatched).unwrap();
+        let note = report.start_note.into_iter().collect();
         [report.warnings, report.notes, note, vec![report.stop]].concat()
     };
     // Adhesion so weak that crests touch, none at all, and a start that is unstable.
@@ -518,9 +535,8 @@ fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
     let stop = PathStop::Curve(CurveStop::NoEquilibrium(2e-5));
     assert!(stop.words(&si).contains("below the contact radius 20 um (a finer"), "{}", stop.words(&si));
     assert!(stop.to_string().contains("below the contact radius 2e-5 (a finer"), "{stop}");
-    let unstable =
-        UnloadError::UnstableStart { contact_radius: 2e-5, control: Control::Stiffness(5.0), searched: 1e-3 };
-    let words = unstable.words(&si);
+    let unstable = PathError::UnstableStart { contact_radius: 2e-5, searched: 1e-3 };
+    let words = unstable.words(Control::Stiffness(5.0), &si);
     assert!(words.contains("(contact radius 20 um)") && words.contains("stiffness=5 N/m control"), "{words}");
     assert!(words.ends_with("up to the contact radius 1000 um"), "{words}");
 

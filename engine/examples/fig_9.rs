@@ -1,6 +1,6 @@
 //! The unloading of the paper's Fig. 9: a sphere with waves, pulled off by fixed grips.
 
-use pulloff_engine::{UnloadReport, read};
+use pulloff_engine::{Extent, PathReport, Unwatched, read};
 use std::error::Error;
 
 const FIG_9: &str = r#"
@@ -17,10 +17,15 @@ const FIG_9: &str = r#"
 
 fn main() -> Result<(), Box<dyn Error>> {
     let preset = read("fig-9", FIG_9)?;
-    let report = UnloadReport::compute(&preset)?;
+    let report = PathReport::unload(&preset, Extent::default(), &Unwatched)?;
     for event in &report.events {
-        println!("{}: s = {:.4}, lost {:?}", event.kind, event.before.contact_radius, event.dissipated);
+        println!(
+            "{} {}: {} = {:.4}, lost {:?}",
+            event.number, event.kind, report.control, event.control, event.dissipated
+        );
     }
-    println!("smallest force: {:.6}", report.min_force);
+    if let Some(state) = report.totals.largest_pull {
+        println!("largest pull: {:.6} at s = {:.4}", state.force, state.contact_radius);
+    }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use pulloff_engine::preset::Files;
 use pulloff_engine::preset::shipped::SHIPPED;
-use pulloff_engine::{UnloadReport, json, read_in};
+use pulloff_engine::{Extent, PathReport, Unwatched, json, read_in};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         SHIPPED.iter().filter(|preset| wanted.is_empty() || wanted.iter().any(|name| name == preset.name))
     {
         let preset = read_in(Files::SHIPPED, None, preset.name, preset.text, &[] as &[&str])?;
-        print!("{}", json(&UnloadReport::compute(&preset)?)?);
+        print!("{}", json(&PathReport::unload(&preset, Extent::default(), &Unwatched)?)?);
     }
     Ok(())
 }

@@ -11,16 +11,14 @@ use crate::gap::function::Scaled;
 use crate::gap::panels::Refused;
 use crate::gap::{Gap, Shape};
 use crate::preset::{BasisSpec, Material, Preset};
-use crate::problem::Turn;
 use crate::problem::groups::LARGE_TABOR;
-use crate::problem::{Control, Groups, Problem, Reduced, Start, Units};
+use crate::problem::{ContactKind, Control, Groups, Problem, Reduced, Start, Turn, Units};
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::path::{Areas, EVEN, Path, PathError, Setting, cycle};
+use crate::quasistatic::path::{Losses, Path, PathError, Setting, cycle, unload};
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
-use crate::quasistatic::unload::{UnloadError, unload_while};
-use crate::quasistatic::{Curve, CurveStop, Detail, Losses, Unloading};
+use crate::quasistatic::{Curve, CurveStop, Detail};
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use crate::units::number::said;
@@ -43,6 +41,10 @@ pub struct Case {
     pub table: Arc<Table>,
     /// What is controlled, in reduced units.
     pub control: Control,
+    /// Which contacts a path follows.
+    pub contact: ContactKind,
+    /// Whether states are those of ring elements.
+    pub has_elements: bool,
     /// The contact radius at the start, reduced.
     pub start: f64,
     /// The contact radius at the end, reduced.
@@ -90,16 +92,8 @@ pub enum CaseError {
         /// How numbers are shown.
         shown: Box<UnitSystem>,
     },
-    /// The unloading could not start.
-    #[error("{}", error.words(shown))]
-    Unload {
-        /// Why, in the user's units.
-        error: UnloadError,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
-    },
-    /// There is no loop of loading and unloading.
-    #[error("{}", words_of_cycle(error, *.control, shown))]
+    /// There is no path.
+    #[error("{}", words_of_path(error, *.control, shown))]
     Path {
         /// Why, in the user's units.
         error: Box<PathError>,
@@ -161,7 +155,21 @@ impl Case {
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
         let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
-        Ok(Self { problem, reduced, basis, table, control, start, end, turn, tabor, shown })
+        let (contact, has_elements) = (preset.path.contact, preset.basis != BasisSpec::Exact);
+        Ok(Self {
+            problem,
+            reduced,
+            basis,
+            table,
+            control,
+            contact,
+            has_elements,
+            start,
+            end,
+            turn,
+            tabor,
+            shown,
+        })
     }
 
     /// The table of g from the axis to the start.
@@ -205,8 +213,25 @@ impl Case {
     /// # Errors
     /// As [`Case::curve`].
     pub fn curve_in(&self, detail: Detail, progress: &dyn Progress) -> Result<Curve, CaseError> {
+        self.curve_between([self.start, self.end], detail, progress)
+    }
+
+    /// The curve from a radius further out than the start, a reduced length, to the end.
+    ///
+    /// # Errors
+    /// As [`Case::curve`].
+    pub fn curve_from(&self, radius: f64, progress: &dyn Progress) -> Result<Curve, CaseError> {
+        self.curve_between([radius, self.end], Detail::Drawn, progress)
+    }
+
+    fn curve_between(
+        &self,
+        ends: [f64; 2],
+        detail: Detail,
+        progress: &dyn Progress,
+    ) -> Result<Curve, CaseError> {
         let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
-        let curve = Curve::new(self.reduced.clone(), basis, table, [self.start, self.end], detail, progress);
+        let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress);
         if progress.stop() {
             return Err(CaseError::Cancelled);
         }
@@ -237,66 +262,61 @@ impl Case {
         traced.ok_or_else(|| self.no_start())
     }
 
-    /// The quasi-static unloading along `curve`.
-    ///
-    /// # Errors
-    /// [`CaseError::Unload`] when the start is unstable and nothing outward is stable.
-    pub fn unload(&self, curve: &Curve, control: Control) -> Result<Unloading, CaseError> {
-        self.unload_while(curve, control, Losses::Twice, &Unwatched)
+    /// What a path is asked for: the device and the contacts of the preset, losses twice, states to draw.
+    pub fn setting(&self) -> Setting<'static> {
+        Setting { contact: self.contact, ..Setting::new(self.control) }
     }
 
-    /// The same as [`Case::unload`], with these losses; `progress` is asked before each event.
+    /// The same for an unloading, which ring elements follow as one disc.
+    pub fn setting_of_unloading(&self) -> Setting<'static> {
+        let contact = if self.has_elements { ContactKind::OneDisc } else { self.contact };
+        Setting { contact, ..self.setting() }
+    }
+
+    /// The quasi-static unloading along `curve`, reduced; `progress` is asked often.
     ///
     /// # Errors
-    /// As [`Case::unload`], and [`CaseError::Cancelled`] when `progress` said stop.
-    pub fn unload_while(
+    /// [`CaseError::Path`] where there is none, [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn unload(
         &self,
         curve: &Curve,
-        control: Control,
-        losses: Losses,
-        progress: &dyn Progress,
-    ) -> Result<Unloading, CaseError> {
-        unload_while(curve, control, losses, progress).map_err(|e| match e {
-            UnloadError::Cancelled => CaseError::Cancelled,
-            other @ UnloadError::UnstableStart { .. } => {
-                CaseError::Unload { error: other.in_units(self.units()), shown: Box::new(self.shown.clone()) }
-            }
-        })
-    }
-
-    /// The whole loop under `control`, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the
-    /// start of its unloading, where none is given) and down until the bodies are apart. `progress` is asked before each step with
-    /// the share of the way that is done, roughly.
-    ///
-    /// # Errors
-    /// [`CaseError::Path`], and [`CaseError::Cancelled`] when `progress` said stop.
-    pub fn cycle(
-        &self,
-        control: Control,
-        turn: Option<Turn>,
-        areas: Areas,
+        setting: &Setting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
-        let failed = |error: PathError| match error {
+        unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
+    }
+
+    /// The whole loop, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the start of its
+    /// unloading, where none is given) and down until the bodies are apart. `progress` is asked before each step with the share of the
+    /// way that is done, roughly.
+    ///
+    /// # Errors
+    /// As [`Case::unload`].
+    pub fn cycle(
+        &self,
+        turn: Option<Turn>,
+        setting: &Setting<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Path, CaseError> {
+        let turn = turn.or(self.turn).unwrap_or(Turn::Radius(self.start));
+        cycle(&self.table, self.reduced.work_of_adhesion, turn, setting, progress)
+            .map_err(|error| self.no_path(error, setting.control))
+    }
+
+    fn no_path(&self, error: PathError, control: Control) -> CaseError {
+        match error {
             PathError::Cancelled => CaseError::Cancelled,
             error => CaseError::Path {
                 error: Box::new(error.in_units(control, self.units())),
-                control,
+                control: self.shown_control(control),
                 shown: Box::new(self.shown.clone()),
             },
-        };
-        let setting = Setting {
-            control,
-            turn: turn.or(self.turn).unwrap_or(Turn::Radius(self.start)),
-            areas,
-            mobility: EVEN,
-        };
-        cycle(&self.table, self.reduced.work_of_adhesion, &setting, progress).map_err(failed)
+        }
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
     /// twice as wide others are found. `None` where they are the same, or the gap is no profile of averaged rows.
-    pub fn unsettled(&self, unloading: &Unloading, progress: &dyn Progress) -> Option<String> {
+    pub fn unsettled(&self, path: &Path, progress: &dyn Progress) -> Option<String> {
         let Shape::Profile(measured) = &self.problem.shape else { return None };
         let profile = measured.coarser()?;
         let gap: Arc<dyn Gap> = Arc::new(Scaled::new(profile, self.units().length));
@@ -305,16 +325,17 @@ impl Case {
         let basis = Arc::new(Exact::new(Arc::clone(&table), self.start));
         let ends = [self.start, self.end];
         let curve = Curve::new(problem, basis, table, ends, Detail::Drawn, progress)?;
-        let coarser = unload_while(&curve, unloading.control, Losses::Once, progress).ok();
+        let setting = Setting { losses: Losses::Once, ..self.setting() };
+        let coarser = unload(&curve, &Setting { control: path.control, ..setting }, progress).ok();
         if progress.stop() {
             return None;
         }
-        let count = coarser.map_or(0, |path| path.events.len());
-        (count != unloading.events.len()).then(|| {
+        let count = coarser.map_or(0, |found| found.events.len());
+        (count != path.events.len()).then(|| {
             format!(
                 "the events depend on how finely the rows are averaged: {} here, {count} with cells twice as wide; a longer \
                  gap.smoothing leaves less of the noise in the gap",
-                unloading.events.len()
+                path.events.len()
             )
         })
     }
@@ -429,7 +450,7 @@ fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
     }
 }
 
-fn words_of_cycle(error: &PathError, control: Control, shown: &UnitSystem) -> String {
+fn words_of_path(error: &PathError, control: Control, shown: &UnitSystem) -> String {
     error.words(control, shown)
 }
 

@@ -17,16 +17,17 @@
 //! A wavy sphere pulled off at given approach: its edge jumps seven times from wave to wave before it lets go.
 //!
 //! ```
-//! use pulloff_engine::{Material, Preset, Shape, Start, UnloadReport};
+//! use pulloff_engine::{Extent, Material, PathReport, Preset, Shape, Start, Unwatched};
 //!
 //! let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
 //! let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.025 / std::f64::consts::TAU, range_of_action: None };
 //! let preset = Preset::new(material, gap, Start::ContactRadius(0.5));
 //!
-//! let unloading = UnloadReport::compute(&preset)?;
+//! let unloading = PathReport::unload(&preset, Extent::default(), &Unwatched)?;
 //! assert_eq!(unloading.events.len(), 8);
 //! let smooth = 1.5 * std::f64::consts::PI * material.work_of_adhesion;
-//! assert!((unloading.min_force / smooth + 1.48).abs() < 0.01);
+//! let pull = unloading.totals.largest_pull.map_or(0.0, |state| state.force);
+//! assert!((pull / smooth + 1.48).abs() < 0.01);
 //! # Ok::<(), pulloff_engine::CaseError>(())
 //! ```
 //!
@@ -37,9 +38,9 @@
 //! | state a problem | [`Preset`] (in code, or its text by [`read`](fn@read), with files by [`read_in`]), [`Shape`], [`Material`], [`Control`], [`Start`] |
 //! | make it ready | [`Case`]: reduced, its basis built, its start found |
 //! | follow the curve | [`Case::curve`], [`Curve`], [`Case::trace`] |
-//! | unload | [`Case::unload`], [`Unloading`], [`Event`] |
+//! | unload, or press and unload | [`Case::unload`], [`Case::cycle`], [`Path`], [`Event`] |
 //! | look inside one state | [`Profile`], [`Landscape`], [`Admissibility`] |
-//! | have it as JSON, CSV or a table | [`TraceReport`], [`UnloadReport`], [`VerifyReport`], [`json`] |
+//! | have it as JSON, CSV or a table | [`TraceReport`], [`PathReport`], [`VerifyReport`], [`json`] |
 //!
 //! Nothing here reads a disk, a clock or the environment: texts of presets and rows of measured profiles come from the
 //! caller ([`Files`]).
@@ -131,10 +132,12 @@ pub use preset::{
     BasisSpec, Files, Invalid, Material, Mistake, PathSpec, Preset, ReadError, read, read_in, read_with,
 };
 pub use problem::{Control, Groups, Problem, Start, Units};
+pub use progress::Unwatched;
 pub use quasistatic::{
-    Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, PathStop, Profile,
-    Stability, State, Turn, Unloading,
+    Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, Path, PathState,
+    PathStop, Profile, Stability, State, Turn,
 };
-pub use report::{SCHEMA, TraceReport, UnloadReport, VerifyReport, json};
+pub use report::path::Extent;
+pub use report::{PathReport, SCHEMA, TraceReport, VerifyReport, json};
 pub use ritz::Grading;
 pub use units::UnitSystem;

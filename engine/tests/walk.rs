@@ -12,9 +12,9 @@ use pulloff_engine::disc::{Exact, Table};
 use pulloff_engine::gap::formula::TypedGap;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
-use pulloff_engine::problem::{Control, Problem, Reduced};
+use pulloff_engine::problem::{ContactKind, Control, Problem, Reduced};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Areas, EVEN, EventKind, Path, Setting, cycle};
+use pulloff_engine::quasistatic::path::{EventKind, Losses, Path, Setting, cycle};
 use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
 use pulloff_engine::quasistatic::{Curve, Point};
 use std::f64::consts::TAU;
@@ -130,8 +130,8 @@ fn walks(curve: &Curve, control: Control, found: &Path) -> [f64; 4] {
 
 fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Path {
     let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
-    let setting = Setting { control, turn, areas: Areas::No, mobility: EVEN };
-    cycle(&table, gamma, &setting, &pulloff_engine::progress::Unwatched).unwrap()
+    let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+    cycle(&table, gamma, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap()
 }
 
 /// Holds a walk to the events of another program, through the loop, which is held to them.
@@ -184,6 +184,7 @@ fn stability_is_that_of_the_eigenvalues() {
                 let balance = Balance {
                     ground: &ground,
                     work_of_adhesion: gamma,
+                    contact: ContactKind::Rings,
                     control,
                     progress: &Unwatched,
                     lane: None,

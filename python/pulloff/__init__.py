@@ -6,7 +6,7 @@
 >>> curve.force.shape == curve.approach.shape
 True
 >>> problem.unload(control="force").kind[-1]
-'pull-off'
+'last-contact'
 
 Numbers are in the units of the problem: SI, or any consistent units where a problem is in reduced units. Long work lets
 other threads run, shows a bar where tqdm is installed, and ends on Ctrl-C.
@@ -34,7 +34,7 @@ from .errors import (
     InternalError,
     Interrupted,
     MapError,
-    NoLoop,
+    NoPath,
     NoState,
     NotCertified,
     NotConverged,
@@ -45,7 +45,7 @@ from .errors import (
     StartError,
     UnstableStart,
 )
-from .results import Cycle, Fit, Map, Stability, Sweep, Trace, Unloading
+from .results import Fit, Map, Path, Stability, Sweep, Trace
 
 __version__ = _engine.__version__
 
@@ -53,7 +53,6 @@ __all__ = [
     "AfmCurve",
     "Cancelled",
     "ComputationError",
-    "Cycle",
     "DataError",
     "Error",
     "Fit",
@@ -63,12 +62,13 @@ __all__ = [
     "Interrupted",
     "Map",
     "MapError",
-    "NoLoop",
+    "NoPath",
     "NoState",
     "NotCertified",
     "NotConverged",
     "NotDetermined",
     "OutputError",
+    "Path",
     "PresetError",
     "PresetText",
     "Problem",
@@ -79,7 +79,6 @@ __all__ = [
     "Sweep",
     "Table",
     "Trace",
-    "Unloading",
     "UnstableStart",
     "presets",
     "quantities",

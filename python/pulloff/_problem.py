@@ -12,7 +12,7 @@ from ._gap import column, plain, sampled
 from ._points import Range, draws_of, free_part_of, points_of, range_of, skip_of
 from ._progress import Progress, told
 from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError
-from .results import Cycle, Fit, Map, Stability, Trace, Unloading
+from .results import Fit, Map, Path, Stability, Trace
 
 if TYPE_CHECKING:
     import numpy as np
@@ -269,23 +269,26 @@ class Problem:
         self,
         control: Optional[Control] = None,
         *,
+        one_disc: bool = False,
         areas: bool = True,
         admissibility: bool = True,
         progress: Progress = None,
-    ) -> Unloading:
-        """The quasi-static unloading from the start: its snaps and the pull-off, and what each dissipates.
+    ) -> Path:
+        """The quasi-static unloading from the start until the bodies are apart, and what each event dissipates.
 
         Parameters
         ----------
         control : {"displacement", "force"} or float, optional
             What the loading device prescribes; a number is the stiffness of a spring, a force per length.
+        one_disc : bool
+            Whether one disc of contact is followed alone, as by ``path.contact = "one-disc"``.
         areas, admissibility : bool
-            Whether losses are computed in a second way, and whether it is checked that the bodies stay apart outside the
-            disc. Each takes longer than all the rest; without both it costs what a row of a sweep costs.
+            Whether losses are computed in a second way, and whether it is found where one disc alone would let the bodies
+            overlap. Each takes longer than all the rest; without both it costs what a row of a sweep costs.
         """
-        problem = self._under(control)
+        problem = _following(self._under(control), one_disc)
         with told(progress, "unload") as tell:
-            return Unloading(problem.unload(areas, admissibility, tell))
+            return Path(problem.unload(areas, admissibility, tell))
 
     def cycle(
         self,
@@ -295,9 +298,10 @@ class Problem:
         to_force: Optional[float] = None,
         to_radius: Optional[float] = None,
         to_control: Optional[float] = None,
+        one_disc: bool = False,
         areas: bool = True,
         progress: Progress = None,
-    ) -> Cycle:
+    ) -> Path:
         """The whole loop: from apart to the first touch, up to a turn and back until apart, with rings of contact.
 
         Parameters
@@ -308,8 +312,8 @@ class Problem:
             It turns round at the first stable state with at least this much; one of them, or ``to_control``, at most.
         to_control : float, optional
             It turns round at this value of what is controlled: an approach, a force, or the way of the spring's other end.
-        areas : bool
-            Whether losses are computed in a second way.
+        one_disc, areas : bool
+            As of :meth:`unload`.
         """
         turns = {
             "path.turn_approach": to_approach,
@@ -327,8 +331,9 @@ class Problem:
         problem = self._under(control)
         if given:
             problem = problem.replace(given)
+        problem = _following(problem, one_disc)
         with told(progress, "cycle") as tell:
-            return Cycle(problem.cycle(to_control, areas, tell))
+            return Path(problem.cycle(to_control, areas, tell))
 
     def stability(
         self, control: Optional[Control] = None, *, samples: int = 1501, progress: Progress = None
@@ -522,6 +527,10 @@ class Problem:
             raise PresetError(f"control = {control!r} is none: it is 'displacement', 'force' or a stiffness", key="path.control")
         given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
         return self._native.replace({"path.control": given})
+
+
+def _following(problem: _engine.Problem, one_disc: bool) -> _engine.Problem:
+    return problem.replace({"path.contact": "one-disc"}) if one_disc else problem
 
 
 def _of_state(text: str, rows: Any, points: Any) -> _engine.Problem:

@@ -202,7 +202,7 @@ class Result(Table):
         return super()._repr_html_() + warned
 
     def _unit(self, quantity: str, symbol: str) -> str:
-        unit = self._said()["problem"]["units"].get(quantity)
+        unit = self._said()["units"].get(quantity)
         return f"{symbol} ({unit})" if unit else symbol
 
     def _axes(self, ax: Any) -> Any:

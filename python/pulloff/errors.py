@@ -82,8 +82,8 @@ class UnstableStart(ComputationError):
     """The start is unstable and there is no stable state further out."""
 
 
-class NoLoop(ComputationError):
-    """There is no loop of loading and unloading."""
+class NoPath(ComputationError):
+    """There is no path: no unloading, or no loop of loading and unloading."""
 
 
 class MapError(ComputationError, ValueError):

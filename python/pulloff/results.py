@@ -73,80 +73,54 @@ class Trace(Result):
         return ax
 
 
-class Unloading(Result):
-    """A quasi-static unloading: its snaps and the pull-off, in order; each column has the shape (events,)."""
+class Path(Result):
+    """What happens on the way of the device, an unloading or a whole loop: its events in order; each column has the shape
+    (events,)."""
 
+    number: Counts
+    """The number of the event on the path, from 1."""
     kind: Texts
-    """``snap`` or ``pull-off``."""
-    control_value: Floats
+    """``first-touch``, ``touch``, ``merge``, ``snap-in``, ``snap``, ``last-contact``, ``split``, ``vanish`` or ``turn``."""
+    direction: Texts
+    """``loading`` or ``unloading``."""
+    control: Floats
     """δ, P, or Δ = δ + P/k at which it happens."""
+    radius: Floats
+    """Where a crest touches, contacts merge or split or one vanishes, a length; NaN else."""
     before_contact_radius: Floats
+    """The outermost edge, a length; NaN while the bodies are apart, as all that begins with ``before_``."""
     before_approach: Floats
     before_force: Floats
     before_wave: Floats
     """The crest of the edge; NaN for a gap without waves."""
+    before_rings: Floats
+    """How many rings of contact there are, the disc not counted."""
+    before_area: Floats
+    before_energy: Floats
     after_contact_radius: Floats
-    """NaN after a pull-off."""
+    """NaN once the bodies are apart, as all that begins with ``after_``."""
     after_approach: Floats
     after_force: Floats
     after_wave: Floats
+    after_rings: Floats
+    after_area: Floats
+    after_energy: Floats
     dissipated: Floats
     """Energy lost; NaN where a dead load leaves no bound."""
     dissipated_by_area: Floats
     """The same by the area between curve and control line; NaN where it was not asked for."""
-    reason: Texts
     admissible: NDArray[Any]
-    """Whether limit point and landing are admissible; None where it was not asked for."""
+    """With one disc: whether the states before and after are admissible; None where it was not asked for."""
 
     @property
-    def min_force(self) -> float:
-        """The smallest force on the path."""
-        return float(self._said()["min_force"])
+    def largest_pull(self) -> float:
+        """The smallest force on the path, negative where the bodies stick."""
+        return float(self.totals["largest_pull"]["force"])
 
     @property
-    def min_approach(self) -> float:
+    def farthest(self) -> float:
         """The smallest approach on the path."""
-        return float(self._said()["min_approach"])
-
-    @property
-    def total_dissipated(self) -> float:
-        """The sum of the losses that are defined."""
-        return float(self._said()["total_dissipated"])
-
-    def _title(self) -> str:
-        return f"{self.row_count} instabilities, smallest force {self.min_force:.6g}, lost {self.total_dissipated:.6g}"
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draws every jump from limit point to landing over the approach, and returns the axes of matplotlib."""
-        ax = self._axes(ax)
-        ax.plot(self.before_approach, self.before_force, "o", markersize=4, label="limit point")
-        ax.plot(self.after_approach, self.after_force, "o", markersize=4, fillstyle="none", label="landing")
-        for x, y, to_x, to_y in zip(
-            self.before_approach, self.before_force, self.after_approach, self.after_force
-        ):
-            ax.plot([x, to_x], [y, to_y], color="gray", linewidth=0.8)
-        ax.legend()
-        return ax
-
-
-class Cycle(Result):
-    """A whole loop of loading and unloading: its stable states in order, a row for each contact of each state; each column
-    has the shape (contacts,)."""
-
-    state: Counts
-    piece: Counts
-    """The stable stretch between two jumps."""
-    direction: Texts
-    """``loading`` or ``unloading``."""
-    control_value: Floats
-    approach: Floats
-    force: Floats
-    energy: Floats
-    contact_area: Floats
-    contact: Counts
-    """Which contact of its state, from the axis outward."""
-    inner_radius: Floats
-    outer_radius: Floats
+        return float(self.totals["farthest"]["approach"])
 
     @property
     def events(self) -> List[Dict[str, Any]]:
@@ -154,28 +128,46 @@ class Cycle(Result):
         return list(self._said()["events"])
 
     @property
-    def loop(self) -> Dict[str, Any]:
-        """The sums: what was dissipated, the work of loading and of unloading."""
-        return dict(self._said()["loop"])
+    def totals(self) -> Dict[str, Any]:
+        """The sums and the states at the extremes: ``largest_pull``, ``farthest``, ``last_contact``, ``dissipated``,
+        ``work_of_loading`` and so on, as the program's JSON has them."""
+        return dict(self._said()["totals"])
+
+    @property
+    def states(self) -> Table:
+        """The stable states in order; each column has the shape (states,). ``contacts`` is a list of [inner, outer] for each
+        state, from the axis outward; a disc is [0, s]."""
+        states = self._said()["states"]
+        arrays: Dict[str, Any] = {}
+        for name in ("piece", "direction", "control", "approach", "force", "contact_radius", "held_stiffness", "area", "energy"):
+            values = [state[name] for state in states]
+            arrays[name] = np.array(values, dtype=object if name == "direction" else None)
+        contacts = np.empty(len(states), dtype=object)
+        contacts[:] = [state["contacts"] for state in states]
+        return Table({**arrays, "contacts": contacts})
 
     def _title(self) -> str:
-        return f"{len(self.events)} events, lost {self.loop['dissipated']}"
+        return f"{self.row_count} events, largest pull {self.largest_pull:.6g}, lost {self.totals['dissipated']}"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws loading and unloading, the force over the approach, and returns the axes of matplotlib."""
+        """Draws the stable stretches and the jumps, the force over the approach, and returns the axes of matplotlib."""
         ax = self._axes(ax)
-        first = self.contact == 0
+        states = self.states
         colors: Dict[str, Any] = {}
-        for piece in np.unique(self.piece):
-            rows = first & (self.piece == piece)
-            way = str(self.direction[rows][0])
+        for piece in np.unique(states["piece"]):
+            rows = states["piece"] == piece
+            way = str(states["direction"][rows][0])
             (line,) = ax.plot(
-                self.approach[rows],
-                self.force[rows],
+                states["approach"][rows],
+                states["force"][rows],
                 color=colors.get(way),
                 label=None if way in colors else way,
             )
             colors[way] = line.get_color()
+        for x, y, to_x, to_y in zip(
+            self.before_approach, self.before_force, self.after_approach, self.after_force
+        ):
+            ax.plot([x, to_x], [y, to_y], color="gray", linewidth=0.8)
         ax.legend()
         return ax
 

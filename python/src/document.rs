@@ -4,7 +4,7 @@ use crate::arrays::arrays_ready;
 use crate::errors::in_python;
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
-use pulloff_engine::report::{self, CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
+use pulloff_engine::report::{self, MapReport, PathReport, StabilityReport, TraceReport};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -38,7 +38,7 @@ macro_rules! reports {
     };
 }
 
-reports!(TraceReport: warnings, UnloadReport: warnings, CycleReport: warnings, MapReport: notes, StabilityReport: warnings);
+reports!(TraceReport: warnings, PathReport: warnings, MapReport: notes, StabilityReport: warnings);
 
 /// A result, immutable.
 #[pyclass(frozen, module = "pulloff._engine")]
@@ -91,9 +91,9 @@ impl Document {
 /// Columns of true and false.
 const FLAGS: [&str; 5] = ["stable_displacement", "stable_force", "stable_chosen", "admissible", "changes"];
 /// Columns of whole numbers.
-const WHOLE: [&str; 5] = ["step", "newton_iterations", "state", "piece", "contact"];
+const WHOLE: [&str; 3] = ["step", "newton_iterations", "number"];
 /// Columns of texts.
-const TEXTS: [&str; 6] = ["kind", "reason", "direction", "stable", "key", "unit"];
+const TEXTS: [&str; 5] = ["kind", "direction", "stable", "key", "unit"];
 
 /// The cells of a column by its name, whatever rows there are: true or false, whole numbers, texts, else numbers with NaN
 /// for nothing. Texts, and flags that are not known, are a list with None for nothing.

@@ -2,6 +2,7 @@
 
 use pulloff_engine::CaseError;
 use pulloff_engine::preset::{Invalid, Mistake, Origin, ReadError};
+use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::sweep::SpecError;
 use pyo3::prelude::*;
@@ -120,8 +121,10 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
     let name = match error {
         CaseError::Basis(_) | CaseError::Table { .. } => "GapError",
         CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => "StartError",
-        CaseError::Unload { .. } => "UnstableStart",
-        CaseError::Path { .. } => "NoLoop",
+        CaseError::Path { error, .. } if matches!(**error, PathError::UnstableStart { .. }) => {
+            "UnstableStart"
+        }
+        CaseError::Path { .. } => "NoPath",
         CaseError::Cancelled => "Cancelled",
     };
     plain(py, name, &error.to_string())

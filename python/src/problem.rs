@@ -21,9 +21,9 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
-use pulloff_engine::quasistatic::path::Areas;
 use pulloff_engine::report::map::Ordinate;
-use pulloff_engine::report::{CycleReport, MapReport, StabilityReport, TraceReport, UnloadReport};
+use pulloff_engine::report::path::Extent;
+use pulloff_engine::report::{MapReport, PathReport, StabilityReport, TraceReport};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
 use pulloff_engine::text::{closest, quote, show_path};
 use pulloff_engine::theory;
@@ -281,7 +281,7 @@ impl Problem {
     ) -> PyResult<Document> {
         let losses = if areas { Losses::Twice } else { Losses::Once };
         let made = long(py, progress, |progress| {
-            UnloadReport::compute_with(&self.preset, losses, admissibility, progress)
+            PathReport::unload(&self.preset, Extent { losses, admissibility }, progress)
         })?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
@@ -294,10 +294,10 @@ impl Problem {
         areas: bool,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Document> {
-        let areas = if areas { Areas::Yes } else { Areas::No };
+        let losses = if areas { Losses::Twice } else { Losses::Once };
+        let extent = Extent { losses, ..Extent::default() };
         let turn = to_control.map(Turn::Control);
-        let made =
-            long(py, progress, |progress| CycleReport::compute_to(&self.preset, turn, areas, progress))?;
+        let made = long(py, progress, |progress| PathReport::cycle(&self.preset, turn, extent, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 

@@ -102,7 +102,7 @@ def test_arrays_are_a_gap():
     unloading = pulloff.Problem.from_gap(r, r**2 / 2, **of).unload()
     # JKR's smooth sphere under given approach lets go at δ = −¾ (π²γ²R/E*²)^(1/3).
     expected = -0.75 * (np.pi**2 * 0.004**2) ** (1 / 3)
-    assert unloading.kind.tolist() == ["pull-off"]
+    assert unloading.kind.tolist() == ["last-contact"]
     assert unloading.before_approach[0] == pytest.approx(expected, rel=1e-8)
     si = pulloff.Problem.from_gap(
         r * 1e-3, r**2 / 2 * 1e-3, effective_modulus=1e6, work_of_adhesion=0.05, start_contact_radius=1e-4, units="SI"

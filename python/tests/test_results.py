@@ -82,10 +82,12 @@ def test_the_documents_are_those_of_the_program(fig_9, tmp_path):
 
 def test_unloading(fig_9):
     whole = fig_9.unload()
-    assert whole.kind.tolist()[-1] == "pull-off" and set(whole.kind[:-1]) == {"snap"}
+    assert whole.kind.tolist()[-1] == "last-contact" and set(whole.kind[:-1]) == {"snap"}
     assert whole.dissipated == pytest.approx(whole.dissipated_by_area, rel=1e-6)
-    assert whole.total_dissipated == pytest.approx(np.nansum(whole.dissipated), rel=1e-12)
+    assert whole.totals["dissipated"] == pytest.approx(np.nansum(whole.dissipated), rel=1e-12)
     assert np.isnan(whole.after_force[-1]) and whole.admissible.dtype == np.bool_
+    assert whole.largest_pull == whole.states.force.min() and whole.farthest == whole.states.approach.min()
+    assert whole.totals["last_contact"]["force"] == whole.before_force[-1]
     quick = fig_9.unload(areas=False, admissibility=False)
     assert quick.before_force.tolist() == whole.before_force.tolist()
     assert quick.dissipated.tolist() == whole.dissipated.tolist()
@@ -97,11 +99,15 @@ def test_unloading(fig_9):
 
 def test_cycle():
     loop = pulloff.Problem("fig-9-cycle").cycle()
-    sums = loop.loop
+    sums, states = loop.totals, loop.states
     assert sums["dissipated"] == pytest.approx(sums["work_of_loading"] + sums["work_of_unloading"], rel=1e-6)
-    assert [event["kind"] for event in loop.events][0] == "first-touch"
-    assert set(loop.direction) == {"loading", "unloading"} and (loop.outer_radius > loop.inner_radius).all()
-    assert loop.contact.min() == 0 and loop.state.dtype == np.int64
+    assert loop.kind[0] == "first-touch" and loop.number.tolist() == list(range(1, loop.row_count + 1))
+    assert set(states.direction) == {"loading", "unloading"} and len(states.contacts) == states.row_count
+    disc = np.array([len(contacts) == 1 and contacts[0][0] == 0 for contacts in states.contacts])
+    assert states.held_stiffness[disc] == pytest.approx(2 * states.contact_radius[disc], rel=1e-12)
+    assert loop.admissible.tolist() == [None] * loop.row_count
+    alone = pulloff.Problem("fig-9-weak").cycle(one_disc=True, areas=False)
+    assert False in alone.admissible.tolist() and alone.to_dict()["contact"] == "one-disc"
     with pytest.raises(pulloff.PresetError):
         pulloff.Problem("fig-9-cycle").cycle(to_force=1.0, to_radius=0.2)
 
@@ -109,10 +115,10 @@ def test_cycle():
 def test_a_loop_turns_round_at_a_control_value():
     loop = pulloff.Problem("fig-9-cycle")
     turned = loop.cycle(to_control=0.03, areas=False)
-    assert turned.to_dict()["turn"]["asked"] in (0.03, {"control": 0.03}) or turned.control_value.max() == pytest.approx(0.03, rel=1e-6)
-    assert turned.control_value.max() == pytest.approx(loop.cycle(to_approach=0.03, areas=False).control_value.max(), rel=1e-6)
+    assert turned.to_dict()["turn"]["asked"] in (0.03, {"control": 0.03}) or turned.control.max() == pytest.approx(0.03, rel=1e-6)
+    assert turned.control.max() == pytest.approx(loop.cycle(to_approach=0.03, areas=False).control.max(), rel=1e-6)
     force = loop.cycle("force", to_control=0.002, areas=False)
-    assert force.control_value.max() == pytest.approx(0.002, rel=1e-6) and force.to_dict()["control"] == "force"
+    assert force.control.max() == pytest.approx(0.002, rel=1e-6) and force.to_dict()["control"] == "force"
     for turns in ({"to_control": 0.03, "to_force": 1.0}, {"to_control": np.nan}, {"to_control": -np.inf}):
         with pytest.raises(pulloff.PresetError):
             loop.cycle(**turns)

@@ -77,7 +77,7 @@ def test_ctrl_c_leaves_the_rows_that_are_done(out, tmp_path):
             again = pickle.loads(pickle.dumps(stopped))
             assert again.result == rows and str(again) == str(stopped)
             few = [{{"key": "gap.amplitude", "values": rows["gap.amplitude"][:10].tolist()}}]
-            assert pulloff.sweep({{"preset": "fig-9", "axis": few}}).pull_off_force.tolist() == rows.pull_off_force[:10].tolist()
+            assert pulloff.sweep({{"preset": "fig-9", "axis": few}}).last_contact_force.tolist() == rows.last_contact_force[:10].tolist()
             print(rows.row_count, stopped, flush=True)
     """
     call = [sys.executable, "-c", textwrap.dedent(code)]

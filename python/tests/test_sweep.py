@@ -11,18 +11,18 @@ AXIS = {"key": "gap.amplitude", "values": [1e-3, 2e-3, 3e-3]}
 
 def test_rows_are_those_of_single_problems(fig_9):
     swept = pulloff.sweep(
-        {"preset": "fig-9", "quantities": ["pull_off_force", "snaps", "pull_off_force_force"], "axis": [AXIS]}
+        {"preset": "fig-9", "quantities": ["last_contact_force", "snaps", "last_contact_force_force"], "axis": [AXIS]}
     )
-    assert swept.columns == ["row", "gap.amplitude", "pull_off_force", "snaps", "pull_off_force_force", "error"]
+    assert swept.columns == ["row", "gap.amplitude", "last_contact_force", "snaps", "last_contact_force_force", "error"]
     assert swept.axes == ("gap.amplitude",)
     assert swept["gap.amplitude"].tolist() == AXIS["values"] and swept.row.tolist() == [0, 1, 2]
     assert swept.error.tolist() == [None] * 3
     for row, amplitude in enumerate(AXIS["values"]):
         problem = fig_9.replace({"gap.amplitude": amplitude})
         unloading = problem.unload()
-        assert swept.pull_off_force[row] == unloading.before_force[-1]
+        assert swept.last_contact_force[row] == unloading.before_force[-1]
         assert swept.snaps[row] == unloading.row_count - 1
-        assert swept.pull_off_force_force[row] == problem.unload("force").before_force[-1]
+        assert swept.last_contact_force_force[row] == problem.unload("force").before_force[-1]
 
 
 def test_specs_from_everywhere(fig_9, tmp_path):
@@ -81,7 +81,7 @@ def test_refused_specs(spec, words):
 
 def test_quantities_are_listed():
     names = [quantity.name for quantity in pulloff.quantities()]
-    assert {"pull_off_force", "snaps", "cycle_loss"} <= set(names)
+    assert {"last_contact_force", "snaps", "cycle_loss"} <= set(names)
     assert pulloff.quantities()[0].of_control
     with pytest.raises(pulloff.SpecError, match="jobs"):
         pulloff.sweep({"preset": "fig-9", "axis": [AXIS]}, jobs=0)
@@ -89,7 +89,7 @@ def test_quantities_are_listed():
 
 SPEC = {
     "preset": "fig-9",
-    "quantities": ["pull_off_force", "snaps"],
+    "quantities": ["last_contact_force", "snaps"],
     "axis": [
         {"key": "gap.amplitude", "linear": {"from": 1e-3, "to": 3e-3, "count": 5}},
         {"key": "path.end_contact_radius", "values": [0.1, 0.9]},
@@ -114,7 +114,7 @@ def test_rows_go_to_the_file_of_the_program(tmp_path):
     with pytest.raises(pulloff.OutputError, match="resume=True goes on with it, overwrite=True replaces it"):
         pulloff.sweep(SPEC, out=out, resume=False)
     assert out.read_bytes() == before
-    assert pulloff.sweep(other, out=out, overwrite=True).columns == [c for c in wanted if c != "pull_off_force"]
+    assert pulloff.sweep(other, out=out, overwrite=True).columns == [c for c in wanted if c != "last_contact_force"]
     assert pulloff.sweep(SPEC, out=tmp_path / "new.csv", resume=False) == wanted
     for refused in (tmp_path, tmp_path / "none" / "x.csv", "-", "/dev/null", "\x00"):
         with pytest.raises((pulloff.OutputError, ValueError)):
@@ -124,8 +124,8 @@ def test_rows_go_to_the_file_of_the_program(tmp_path):
 def test_shards_make_the_whole(tmp_path):
     whole = pulloff.sweep(SPEC)
     parts = [pulloff.sweep(SPEC, shard=(i, 3)) for i in (1, 2, 3)]
-    rows = sorted((int(row), repr(part["pull_off_force"][at])) for part in parts for at, row in enumerate(part.row))
-    assert rows == [(int(row), repr(force)) for row, force in zip(whole.row, whole.pull_off_force)]
+    rows = sorted((int(row), repr(part["last_contact_force"][at])) for part in parts for at, row in enumerate(part.row))
+    assert rows == [(int(row), repr(force)) for row, force in zip(whole.row, whole.last_contact_force)]
     assert parts[1].row.tolist() == [1, 4, 7] and parts[1]["gap.amplitude"][0] == whole["gap.amplitude"][1]
     for i, part in enumerate(parts, 1):
         assert pulloff.sweep(SPEC, out=tmp_path / f"{i}.csv", shard=f"{i}/3") == part
@@ -152,6 +152,6 @@ def test_a_row_is_given_up_when_its_time_is():
 
 def test_a_sweep_is_a_mapping():
     swept = pulloff.sweep(SPEC)
-    assert list(swept) == ["row", "gap.amplitude", "path.end_contact_radius", "pull_off_force", "snaps", "error"]
+    assert list(swept) == ["row", "gap.amplitude", "path.end_contact_radius", "last_contact_force", "snaps", "error"]
     assert "snaps" in swept and len(swept) == 6 and swept.row_count == 10 and dict(swept)["snaps"] is swept.snaps
     assert swept == pulloff.sweep(SPEC, jobs=2) and swept != pulloff.sweep(SPEC, shard=(1, 2))

@@ -6,7 +6,6 @@
 mod assigned;
 mod completions;
 mod console;
-mod cycle;
 mod explore;
 mod failure;
 mod figures;
@@ -17,6 +16,7 @@ mod man;
 mod map;
 mod measured;
 mod output;
+mod path;
 mod plot;
 mod presets;
 mod problem;
@@ -25,7 +25,6 @@ mod sessions;
 mod sweep;
 mod sweep_status;
 mod trace;
-mod unload;
 mod verify;
 mod watch;
 
@@ -64,9 +63,9 @@ enum Command {
     /// Trace the equilibrium curve and write its points
     Trace(trace::Arguments),
     /// Unload quasi-statically and write every instability
-    Unload(unload::Arguments),
+    Unload(path::UnloadArguments),
     /// Load from the first touch to a turn and back until the bodies are apart, with rings of contact
-    Cycle(cycle::Arguments),
+    Cycle(path::CycleArguments),
     /// Find where snaps begin: lines in two numbers of a preset, or its limit points over one
     Map(map::Arguments),
     /// Fit values of a preset to measured curves
@@ -119,8 +118,8 @@ pub fn run() -> ExitCode {
     let result = match &cli.command {
         None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), &cli.flags),
         Some(Command::Trace(arguments)) => trace::run(arguments),
-        Some(Command::Unload(arguments)) => unload::run(arguments),
-        Some(Command::Cycle(arguments)) => cycle::run(arguments),
+        Some(Command::Unload(arguments)) => path::unload(arguments),
+        Some(Command::Cycle(arguments)) => path::cycle(arguments),
         Some(Command::Map(arguments)) => map::run(arguments),
         Some(Command::Fit(arguments)) => fit::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),

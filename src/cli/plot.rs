@@ -21,9 +21,10 @@ use crate::sweep::Results;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::jump::Run;
-use pulloff_engine::quasistatic::path::Areas;
-use pulloff_engine::report::CycleReport;
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::path::Extent;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
 use std::path::{Path, PathBuf};
@@ -158,8 +159,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     } else {
         None
     };
-    let cycle =
-        if view.is_cycle() { Some(CycleReport::compute(&preset, Areas::No, &Unwatched)?) } else { None };
+    let cycle = if view.is_cycle() {
+        Some(PathReport::cycle(
+            &preset,
+            None,
+            Extent { losses: Losses::Once, admissibility: true },
+            &Unwatched,
+        )?)
+    } else {
+        None
+    };
     console.warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
     let wish = || MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
     let found = (view == View::Map).then(|| wish().run(&Unwatched)).flatten();

@@ -13,11 +13,11 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Control, Groups};
 use pulloff_engine::progress::Progress;
-use pulloff_engine::quasistatic::overlap::{overlaps, passed};
+use pulloff_engine::quasistatic::overlap::overlaps;
 use pulloff_engine::quasistatic::{
-    Admissibility, Curve, Detail, Limit, Losses, Overlap, Sample, Stability, Stiffness, Unloading,
+    Admissibility, Curve, Detail, Limit, Overlap, Path, Sample, Stability, Stiffness,
 };
-use pulloff_engine::report::{OverlapReport, UnloadReport};
+use pulloff_engine::report::{OverlapReport, PathReport};
 use std::sync::Arc;
 
 /// The controls whose limit points are shown under every control.
@@ -82,8 +82,8 @@ pub struct CurveData {
     /// The limit points of the other controls in the user's units, with their control.
     pub other_limits: Vec<(Control, CurvePoint)>,
     /// The quasi-static path, reduced, or why there is none.
-    pub unloading: Result<Unloading, String>,
-    pub report: Option<UnloadReport>,
+    pub unloading: Result<Path, String>,
+    pub report: Option<PathReport>,
 }
 
 impl ProblemCurve {
@@ -168,12 +168,13 @@ impl CurveData {
             })
             .collect();
         progress.enter(Stage::Events(0));
-        let unloading = match case.unload_while(&curve, control, Losses::Twice, progress) {
+        let unloading = match case.unload(&curve, &case.setting_of_unloading(), progress) {
             Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
             unloading => unloading.map_err(|error| error.to_string()),
         };
         // If the path of an unstable start begins further out, the curve is drawn up to there.
-        let start = unloading.as_ref().map_or(0.0, |path| path.start.contact_radius);
+        let start = unloading.as_ref().ok().and_then(|path| path.start()).filter(|start| start.rings() == 0);
+        let start = start.map_or(0.0, |start| start.contact_radius);
         let outward = if start > curve.outermost() * (1.0 + 1e-12) {
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
             Curve::new(
@@ -190,7 +191,7 @@ impl CurveData {
         let outward = outward.map_or_else(Vec::new, |outward| outward.samples);
         let own = outward.len().saturating_sub(1);
         let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
-        let report = unloading.as_ref().ok().map(|u| UnloadReport::new(preset, &case, u));
+        let report = unloading.as_ref().ok().map(|path| PathReport::new(preset, &case, path));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         Ok(Self { base, case, setting, points, limits, other_limits, unloading, report })
     }
@@ -206,7 +207,8 @@ impl CurveData {
 
     /// Whether the admissibility of its states and of its path has been checked.
     pub fn is_checked(&self) -> bool {
-        let path = self.report.as_ref().is_none_or(|report| report.inadmissible.is_some());
+        let needs_none = |report: &PathReport| report.contact == "rings" || report.inadmissible.is_some();
+        let path = self.report.as_ref().is_none_or(needs_none);
         self.base.inadmissible.is_some() && path
     }
 
@@ -222,8 +224,7 @@ impl CurveData {
         }
         let mut report = self.report.clone();
         if let (Ok(unloading), Some(unchecked)) = (&self.unloading, &self.report) {
-            let passed = passed(&base.curve, &unloading.pieces, progress)?;
-            let mut checked = unchecked.clone().checked(&self.case, unloading, &passed);
+            let mut checked = unchecked.clone().checked(&self.case, &base.curve, unloading, progress).ok()?;
             checked.warnings.extend(self.case.unsettled(unloading, progress));
             report = Some(checked);
         }

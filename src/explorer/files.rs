@@ -14,8 +14,8 @@ use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::report::unload::EventReport;
-use pulloff_engine::report::{ProblemReport, SCHEMA, TraceReport, json, rows};
+use pulloff_engine::report::path::{EventReport, events_table};
+use pulloff_engine::report::{Head, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -178,9 +178,8 @@ pub fn target(path: &str) -> PathBuf {
 /// A document of the walk or of its events.
 #[derive(Debug, Serialize)]
 struct Walked<'a, R> {
-    schema: u32,
-    program_version: &'static str,
-    problem: ProblemReport,
+    #[serde(flatten)]
+    head: Head,
     warnings: &'a [String],
     notes: &'a [String],
     #[serde(skip_serializing_if = "<[R]>::is_empty")]
@@ -240,9 +239,7 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
 fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::Error>> {
     let walked = |curve: &CurveData, points: &[WalkRow], events: &[EventReport]| {
         json(&Walked {
-            schema: SCHEMA,
-            program_version: env!("CARGO_PKG_VERSION"),
-            problem: ProblemReport::new(&curve.setting.preset, &curve.case),
+            head: Head::new("walk", &curve.setting.preset, &curve.case),
             warnings: &curve.base.warnings,
             notes: &curve.base.notes,
             points,
@@ -272,7 +269,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
             if as_json {
                 walked(curve, &[], events)?
             } else {
-                rows::csv(pulloff_engine::report::unload::COLUMNS, events)?
+                events_table(events)?.csv()?
             }
         }
         Content::Study(study, _) => study_table::csv(study)?,

@@ -11,7 +11,7 @@ use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
 use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::preset::{Key, Preset};
-use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::report::path::EventReport;
 use std::path::PathBuf;
 use std::sync::Arc;
 

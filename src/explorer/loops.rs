@@ -10,10 +10,8 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::admissible::falls;
-use pulloff_engine::quasistatic::path::Areas;
-use pulloff_engine::report::CycleReport;
-use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
-use pulloff_engine::report::unload::{EventReport, StateReport};
+use pulloff_engine::quasistatic::path::{Losses, Setting};
+use pulloff_engine::report::PathReport;
 use std::sync::Arc;
 
 /// A loop that is wanted.
@@ -34,7 +32,7 @@ pub struct LoopData {
     /// The number it was asked for under.
     pub id: u64,
     pub preset: Preset,
-    pub report: Result<CycleReport, Reason>,
+    pub report: Result<PathReport, Reason>,
 }
 
 impl LoopWish {
@@ -46,10 +44,11 @@ impl LoopWish {
         let turn = self.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
-        let report = match case.cycle(case.control, None, Areas::No, progress) {
+        let setting = Setting { losses: Losses::Once, ..case.setting() };
+        let report = match case.cycle(None, &setting, progress) {
             Err(CaseError::Cancelled) => return None,
             Err(error) => Err(Reason::of("", &error)),
-            Ok(cycle) => Ok(CycleReport::new(&self.preset, &case, &cycle)),
+            Ok(cycle) => Ok(PathReport::new(&self.preset, &case, &cycle)),
         };
         Some(LoopData { id: self.id, preset: self.preset.clone(), report })
     }
@@ -64,7 +63,7 @@ impl LoopData {
 
     /// The loop.
     #[must_use]
-    pub fn report(&self) -> Option<&CycleReport> {
+    pub fn report(&self) -> Option<&PathReport> {
         self.report.as_ref().ok()
     }
 }
@@ -79,33 +78,4 @@ pub(super) fn same_loop(a: &Preset, b: &Preset) -> bool {
 pub fn has_crests(curve: &CurveData) -> bool {
     let reduced = &curve.case.reduced;
     reduced.gap.wavelength().is_some() || falls(&reduced.gap, curve.case.start)
-}
-
-/// An event of a loop as a line of the list of events.
-#[must_use]
-pub fn event(event: &CycleEventReport) -> EventReport {
-    let state = |state: &CycleStateReport| StateReport {
-        contact_radius: state.contact_radius,
-        approach: state.approach,
-        force: state.force,
-        wave: state.wave,
-    };
-    let after = event.after.as_ref().map(state);
-    // Apart the bodies bear nothing; the approach is that of the touch.
-    let apart = StateReport {
-        contact_radius: 0.0,
-        approach: after.map_or(0.0, |after| after.approach),
-        force: 0.0,
-        wave: after.and_then(|after| after.wave.map(|_| 0)),
-    };
-    EventReport {
-        kind: event.kind,
-        control_value: event.control_value,
-        before: event.before.as_ref().map_or(apart, state),
-        after,
-        dissipated: event.dissipated,
-        dissipated_by_area: event.dissipated_by_area,
-        reason: String::new(),
-        admissible: None,
-    }
 }

@@ -6,7 +6,7 @@ use super::data::Folder;
 use super::fitting::{Distances, FitWish, Fitting};
 use super::history::{History, Mark};
 use super::journal::Journal;
-use super::loops::{self, LoopData, LoopWish};
+use super::loops::{LoopData, LoopWish};
 use super::maps::{MapAxes, MapData, MapWish};
 use super::node::{Node, NodeKind};
 use super::onset::SnapsFrom;
@@ -24,7 +24,7 @@ use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Key, Preset, Row, Value, data};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::At;
-use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::report::path::EventReport;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Column, QUANTITIES};
 use std::collections::VecDeque;
@@ -475,9 +475,11 @@ impl Model {
 
     /// The jumps of the walk that led to the walker, with the number of their node.
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
+        let mut made = 0;
         let event = |(number, node): (usize, &Node)| match &node.kind {
             NodeKind::Jump(event) => {
-                let mut report = EventReport::new(&node.setting.reduced, node.control, event);
+                made += 1;
+                let mut report = EventReport::new(&node.setting.reduced, node.control, made, event);
                 let before = node.parent.and_then(|parent| self.history.node(parent));
                 let landed = node.is_apart() || node.admissibility.holds;
                 report.admissible = before.map(|before| before.admissibility.holds && landed);
@@ -500,7 +502,7 @@ impl Model {
             EventSource::Walked => self.walked_events().into_iter().map(|(_, event)| event).collect(),
             EventSource::Cycle => {
                 let report = self.cycle.as_ref().and_then(|cycle| cycle.report());
-                report.map_or_else(Vec::new, |report| report.events.iter().map(loops::event).collect())
+                report.map_or_else(Vec::new, |report| report.events.clone())
             }
             EventSource::Curve | EventSource::Folded => self
                 .curve

@@ -3,10 +3,11 @@
 use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
+use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, short, significant, with_unit};
-use pulloff_engine::report::unload::{StateReport, control_name};
+use pulloff_engine::report::problem::control_name;
 use pulloff_engine::units::Quantity;
 
 /// The ways out of a state from which no walk goes on.
@@ -104,10 +105,10 @@ fn next(model: &Model) -> String {
             )
         });
         return match event.kind {
-            EventKind::PullOff => {
+            EventKind::LastContact => {
                 format!("Pulled off: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
             }
-            EventKind::Snap => {
+            _ => {
                 format!(
                     "Landed, stable again{}. {} runs to the next limit point, {} undoes",
                     lost.unwrap_or_default(),
@@ -174,8 +175,10 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let Some(ahead) = node.ahead else {
         return format!("{name}: {jump} lets the edge run, {step} goes on along the curve");
     };
-    let after = ahead.after.map(|after| StateReport::new(&node.setting.reduced, &after));
-    let lands = match (after, after.and_then(|after| after.wave)) {
+    let reduced = &node.setting.reduced;
+    let wave = ahead.after.and_then(|after| wave_index(after.contact_radius, reduced.gap.wavelength()));
+    let after = ahead.after.map(|after| after.in_units(&reduced.units));
+    let lands = match (after, wave) {
         (None, _) => "pulls off".to_owned(),
         (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
         (Some(after), None) => format!(

@@ -286,7 +286,7 @@ mod tests {
     fn a_study_is_a_row_each_whatever_the_threads_and_ends_when_told() {
         let preset = preset(&[]);
         let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
-        let column = Column::named("pull_off_force").unwrap();
+        let column = Column::named("largest_pull").unwrap();
         let wish = StudyWish { id: 1, preset: preset.clone(), key: key.clone(), column, values };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         assert_eq!(one.outcomes, three.outcomes);

@@ -12,7 +12,7 @@ use pulloff_engine::problem::Control;
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{Ahead, Arrival, At, Reached, Walk, WalkEnd, WalkFailure, edges};
 use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
-use pulloff_engine::report::unload::control_name;
+use pulloff_engine::report::problem::control_name;
 use pulloff_engine::theory::Exact;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;

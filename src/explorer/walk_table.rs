@@ -1,10 +1,10 @@
 //! The walk as a table: one row per state, for CSV and JSON.
 
 use super::node::{Node, NodeKind};
+use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::preset::{Key, Preset, Row};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::trace::StableReport;
-use pulloff_engine::report::unload::{EventReport, StateReport};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -94,10 +94,8 @@ impl WalkRow {
         let setting = &node.setting;
         let state = node.state.in_units(setting.units());
         let stability = node.stability;
-        let event = match &node.kind {
-            NodeKind::Jump(event) => Some(EventReport::new(&setting.reduced, node.control, event)),
-            _ => None,
-        };
+        let event = if let NodeKind::Jump(event) = &node.kind { Some(event) } else { None };
+        let energy = |x: f64| x * setting.units().energy;
         let wave = setting.preset.gap.wave();
         let apart = node.is_apart();
         Self {
@@ -108,15 +106,19 @@ impl WalkRow {
             approach: state.approach,
             force: if apart { 0.0 } else { state.force },
             energy: if apart { 0.0 } else { state.energy },
-            wave: if apart { None } else { StateReport::new(&setting.reduced, &node.state).wave },
+            wave: if apart {
+                None
+            } else {
+                wave_index(node.state.contact_radius, setting.reduced.gap.wavelength())
+            },
             newton_iterations: node.point.rounds,
             stable: StableReport {
                 displacement: stability.under(Control::Displacement),
                 force: stability.under(Control::Force),
                 chosen: stability.under(node.control),
             },
-            dissipated: event.as_ref().and_then(|e| e.dissipated),
-            dissipated_by_area: event.as_ref().and_then(|e| e.dissipated_by_area),
+            dissipated: event.and_then(|e| e.dissipated).map(energy),
+            dissipated_by_area: event.and_then(|e| e.dissipated_by_area).map(energy),
             work_of_adhesion: setting.preset.material.work_of_adhesion,
             radius_of_curvature: setting.preset.gap.radius_of_curvature(),
             amplitude: wave.map(|(a, _)| a),
@@ -144,7 +146,7 @@ pub fn kind_name(kind: &NodeKind) -> &'static str {
         NodeKind::Step => "step",
         NodeKind::Limit => "limit",
         NodeKind::Touch(_) => "touch",
-        NodeKind::Jump(event) => pulloff_engine::report::unload::kind_name(event.kind),
+        NodeKind::Jump(event) => event.kind.name(),
         NodeKind::Moved => "moved",
         NodeKind::Solved => "solved",
         NodeKind::Stale(_) => "unsolved",

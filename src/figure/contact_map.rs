@@ -9,7 +9,7 @@ use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, CycleStateReport, PathStateReport};
+use pulloff_engine::report::path::{EventReport, PathReport, PathStateReport, StateReport};
 
 /// Builds the view.
 pub fn figure(subject: &Subject<'_>) -> Figure {
@@ -31,7 +31,7 @@ fn blank(control: Control, scale: Scale<'_>) -> Figure {
 }
 
 /// The contacts of the loop of `report` over these divisors.
-pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
+pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
     let mut figure = blank(report.control, scale);
     let way = Way::of(report, scale);
     let same = |a: &PathStateReport, b: &PathStateReport| {
@@ -41,7 +41,7 @@ pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
         for contact in 0..stretch[0].state.contacts.len() {
             let edge = |side: usize| {
                 let at = move |at: &PathStateReport| {
-                    (way.at(at.direction, at.control_value), scale.radius(at.state.contacts[contact][side]))
+                    (way.at(at.direction, at.control), scale.radius(at.state.contacts[contact][side]))
                 };
                 stretch.iter().map(at).collect::<Vec<_>>()
             };
@@ -61,7 +61,7 @@ pub fn contact_map(report: &CycleReport, scale: Scale<'_>) -> Figure {
     figure.lines.extend(jumps.map(|event| jump(event, way, scale)));
     figure.marks.extend(report.events.iter().filter_map(|event| mark(event, way, scale)));
     if let Some(turn) = report.events.iter().find(|event| event.kind == "turn") {
-        let at = way.at("loading", turn.control_value);
+        let at = way.at("loading", turn.control);
         figure.lines.insert(0, Line::new(Role::Level, "", vec![(at, 0.0), (at, figure.bounds.y[1])]));
     }
     figure
@@ -77,10 +77,10 @@ struct Way<'a> {
 }
 
 impl<'a> Way<'a> {
-    fn of(report: &CycleReport, scale: Scale<'a>) -> Self {
+    fn of(report: &PathReport, scale: Scale<'a>) -> Self {
         let value = |kind: &str| report.events.iter().find(|event| event.kind == kind);
-        let first = value("first-touch").or(report.events.first()).map_or(0.0, |event| event.control_value);
-        let turn = value("turn").map_or(first, |event| event.control_value);
+        let first = value("first-touch").or(report.events.first()).map_or(0.0, |event| event.control);
+        let turn = value("turn").map_or(first, |event| event.control);
         Self { scale, is_force: report.control == Control::Force, first, turn }
     }
 
@@ -95,20 +95,20 @@ impl<'a> Way<'a> {
 }
 
 /// The outermost edge on a jump, upright: the control is held.
-fn jump(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
-    let x = way.at(event.direction, event.control_value);
-    let edge = |state: &Option<CycleStateReport>| {
+fn jump(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
+    let x = way.at(event.direction, event.control);
+    let edge = |state: &Option<StateReport>| {
         (x, scale.radius(state.as_ref().map_or(0.0, |state| state.contact_radius)))
     };
     Line::new(Role::Jump, "jump", vec![edge(&event.before), edge(&event.after)])
 }
 
 /// Where a crest touches, contacts merge or split, and the bodies come apart.
-fn mark(event: &CycleEventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Mark> {
+fn mark(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Mark> {
     let (sign, radius) = match event.kind {
-        "pull-off" => (Sign::PullOff, event.before.as_ref().map(|state| state.contact_radius)),
-        "turn" | "advance" | "recede" => return None,
+        "last-contact" => (Sign::PullOff, event.before.as_ref().map(|state| state.contact_radius)),
+        "turn" | "snap-in" | "snap" => return None,
         _ => (Sign::Touch, event.radius),
     };
-    Some(Mark { sign, at: (way.at(event.direction, event.control_value), scale.radius(radius?)) })
+    Some(Mark { sign, at: (way.at(event.direction, event.control), scale.radius(radius?)) })
 }

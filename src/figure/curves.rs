@@ -8,8 +8,8 @@ use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::pins::Pin;
-use pulloff_engine::report::cycle::PathStateReport;
 use pulloff_engine::report::number::{fixed, significant};
+use pulloff_engine::report::path::PathStateReport;
 
 /// Builds a view of the curve.
 pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
@@ -123,7 +123,8 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
         }
         // The estimate is of the force under a dead load, over P_c; the path's own least force stands beside it.
         let critical = subject.curve.base.critical_force;
-        let ours = subject.curve.report.as_ref().map(|report| -report.min_force / critical);
+        let ours = subject.curve.report.as_ref().and_then(|report| report.totals.largest_pull.as_ref());
+        let ours = ours.map(|state| -state.force / critical);
         figure.notes.push(format!(
             "Kesari-Lew peak {}, here {}, n = s/λ = {}",
             significant(envelope.peak, 4),

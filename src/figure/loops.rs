@@ -13,8 +13,8 @@ use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::cycle::{CycleEventReport, CycleReport, CycleStateReport, PathStateReport};
 use pulloff_engine::report::number::{loss, with_unit};
+use pulloff_engine::report::path::{EventReport, PathReport, PathStateReport, StateReport};
 use pulloff_engine::units::Quantity;
 
 const VIEW: View = View::Cycle;
@@ -41,7 +41,7 @@ fn blank(scale: Scale<'_>) -> Figure {
 
 /// The loop of `report` over these divisors; `curve` is the equilibrium curve of one disc, whose points bound the losses of
 /// discs.
-pub fn cycle_figure(report: &CycleReport, curve: &[CurvePoint], scale: Scale<'_>) -> Figure {
+pub fn cycle_figure(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>) -> Figure {
     let mut figure = blank(scale);
     figure.lines = lines(report, scale, VIEW);
     let kept = figure.lines.iter().filter(|line| line.role != Role::Jump);
@@ -52,18 +52,18 @@ pub fn cycle_figure(report: &CycleReport, curve: &[CurvePoint], scale: Scale<'_>
     let shown = |lost| with_unit(scale.units, Quantity::Energy, lost, false, loss);
     figure.notes.push(match report.totals.dissipated {
         Some(lost) => format!("lost {}", shown(lost)),
-        None => format!("lost {} and the fall", shown(report.totals.dissipated_before_pull_off)),
+        None => format!("lost {} and the fall", shown(report.totals.dissipated_before_last_contact)),
     });
     figure
 }
 
 /// δ, P and the outermost edge.
-fn quantities(state: &CycleStateReport) -> [f64; 3] {
+fn quantities(state: &StateReport) -> [f64; 3] {
     [state.approach, state.force, state.contact_radius]
 }
 
 /// The stable stretches and the jumps of a loop in a view of the curve.
-pub fn lines(report: &CycleReport, scale: Scale<'_>, view: View) -> Vec<Line> {
+pub fn lines(report: &PathReport, scale: Scale<'_>, view: View) -> Vec<Line> {
     let mut lines: Vec<Line> = report
         .states
         .chunk_by(|a, b| a.piece == b.piece && a.direction == b.direction)
@@ -87,7 +87,7 @@ fn role(at: &PathStateReport) -> Role {
 }
 
 /// δ, P and s before and after; bodies that are apart are where the device holds them.
-fn ends(control: Control, event: &CycleEventReport) -> Option<[[f64; 3]; 2]> {
+fn ends(control: Control, event: &EventReport) -> Option<[[f64; 3]; 2]> {
     /// Under a dead load the bodies fall apart for ever: a line to the left, out of the figure.
     const FAR: f64 = -1e3;
     let held = event.before.as_ref().or(event.after.as_ref())?;
@@ -95,28 +95,28 @@ fn ends(control: Control, event: &CycleEventReport) -> Option<[[f64; 3]; 2]> {
         // A load brings them together from the first touch on.
         Control::Force if event.before.is_none() => [0.0, held.force, 0.0],
         Control::Force => [FAR * held.approach.abs(), held.force, 0.0],
-        Control::Displacement | Control::Stiffness(_) => [event.control_value, 0.0, 0.0],
+        Control::Displacement | Control::Stiffness(_) => [event.control, 0.0, 0.0],
     };
     Some([&event.before, &event.after].map(|state| state.as_ref().map_or(apart, quantities)))
 }
 
 /// The signs of an event in a view of the curve: where it begins, and where it lands.
-fn marks(event: &CycleEventReport, scale: Scale<'_>, view: View) -> Vec<Mark> {
+fn marks(event: &EventReport, scale: Scale<'_>, view: View) -> Vec<Mark> {
     let sign = match event.kind {
         "first-touch" | "touch" | "merge" | "split" | "vanish" => Sign::Touch,
         "turn" => Sign::Turn,
-        "pull-off" => Sign::PullOff,
+        "last-contact" => Sign::PullOff,
         _ => Sign::Limit,
     };
-    let at = |state: &CycleStateReport| scale.place(view, quantities(state));
+    let at = |state: &StateReport| scale.place(view, quantities(state));
     let begins = event.before.as_ref().map(|state| Mark { sign, at: at(state) });
     let lands = event.after.as_ref().filter(|_| event.before != event.after);
     begins.into_iter().chain(lands.map(|state| Mark { sign: Sign::Landing, at: at(state) })).collect()
 }
 
 /// The losses as areas.
-fn areas(report: &CycleReport, curve: &[CurvePoint], scale: Scale<'_>) -> Vec<Area> {
-    let jumps: Vec<&CycleEventReport> =
+fn areas(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>) -> Vec<Area> {
+    let jumps: Vec<&EventReport> =
         report.events.iter().filter(|event| event.dissipated.is_some_and(|lost| lost > 0.0)).collect();
     let outlines: Vec<_> = jumps.iter().map(|event| of_disc(report.control, event, curve)).collect();
     let shown = |outline: Vec<[f64; 2]>, lost| {
@@ -137,8 +137,8 @@ fn areas(report: &CycleReport, curve: &[CurvePoint], scale: Scale<'_>) -> Vec<Ar
 }
 
 /// The outline δ, P of what the jump of one disc loses; `None` where the curve of one disc does not go along it.
-fn of_disc(control: Control, event: &CycleEventReport, curve: &[CurvePoint]) -> Option<Vec<[f64; 2]>> {
-    let is_disc = |state: &Option<CycleStateReport>| {
+fn of_disc(control: Control, event: &EventReport, curve: &[CurvePoint]) -> Option<Vec<[f64; 2]>> {
+    let is_disc = |state: &Option<StateReport>| {
         state.as_ref().is_none_or(|state| matches!(state.contacts[..], [[0.0, _]]))
     };
     if !(is_disc(&event.before) && is_disc(&event.after)) {

@@ -12,7 +12,7 @@ use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::{AxisReport, RowReport};
-use pulloff_engine::report::unload::EventReport;
+use pulloff_engine::report::path::EventReport;
 use pulloff_engine::stability::COMPLIANCE;
 
 /// What a row is drawn as.
@@ -95,17 +95,14 @@ fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> 
     let Some(x) = standing(&curve.setting.preset, &report.x, x) else { return Vec::new() };
     let events = curve.report.iter().flat_map(|report| &report.events);
     let place = |event: &EventReport| match report.y.key.as_str() {
-        "approach" => event.before.approach,
-        "force" => event.before.force,
-        _ => event.control_value,
+        "approach" => event.before.as_ref().map(|before| before.approach),
+        "force" => event.before.as_ref().map(|before| before.force),
+        _ => Some(event.control),
     };
     let sign = |event: &EventReport, number| {
         if event.after.is_some() { Sign::Event(number) } else { Sign::PullOff }
     };
-    events
-        .zip(1..)
-        .map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(Some(place(event)))) })
-        .collect()
+    events.zip(1..).map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(place(event))) }).collect()
 }
 
 /// Of the curves of limit points the one that passes the mark of an event.

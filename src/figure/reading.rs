@@ -8,7 +8,8 @@ use super::subject::Subject;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{significant, with_unit};
-use pulloff_engine::report::unload::{EventReport, control_name};
+use pulloff_engine::report::path::EventReport;
+use pulloff_engine::report::problem::control_name;
 use pulloff_engine::units::{Quantity, UnitSystem};
 
 /// Within this share of the window a mark is preferred to a nearer state of the curve.
@@ -112,7 +113,9 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
 fn marks(curve: &CurveData) -> Vec<([f64; 3], What)> {
     let events = curve.report.as_ref().map_or(&[][..], |report| &report.events);
     let event_at = |s: f64| {
-        let begins = |event: &EventReport| (event.before.contact_radius - s).abs() <= SAME * s;
+        let begins = |event: &EventReport| {
+            event.before.as_ref().is_some_and(|before| (before.contact_radius - s).abs() <= SAME * s)
+        };
         events.iter().position(begins).map(|at| at + 1)
     };
     let own = curve.shown_limits();
@@ -131,7 +134,7 @@ fn marks(curve: &CurveData) -> Vec<([f64; 3], What)> {
         }));
     }
     let landings = events.iter().enumerate().filter_map(|(i, event)| {
-        let after = event.after?;
+        let after = event.after.as_ref()?;
         Some(([after.approach, after.force, after.contact_radius], What::Landing(i + 1)))
     });
     marks.extend(landings);

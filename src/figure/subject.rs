@@ -12,7 +12,7 @@ use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{BasisSpec, Preset};
-use pulloff_engine::report::{CycleReport, MapReport};
+use pulloff_engine::report::{MapReport, PathReport};
 
 /// What figures are built from.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub struct Subject<'a> {
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
     /// The loop of loading and unloading, where there is one.
-    pub cycle: Option<&'a CycleReport>,
+    pub cycle: Option<&'a PathReport>,
     /// The map of two numbers, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
     /// The number of the selected event, from 1, where those of the curve are listed.

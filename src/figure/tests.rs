@@ -8,8 +8,9 @@ use crate::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::Areas;
-use pulloff_engine::report::CycleReport;
+use pulloff_engine::quasistatic::Losses;
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::path::Extent;
 use pulloff_engine::units::UnitSystem;
 
 /// A session with every effect done inline, and room for every view.
@@ -89,8 +90,13 @@ fn radii_are_counted_in_waves_only_where_the_gap_has_one_alone() {
         let session = Session::new(preset);
         let curve = session.model.curve.as_ref().unwrap();
         assert_eq!(session.figure(View::RadiusForce).title, title);
-        let has_crests =
-            curve.report.as_ref().unwrap().events.iter().any(|event| event.before.wave.is_some());
+        let has_crests = curve
+            .report
+            .as_ref()
+            .unwrap()
+            .events
+            .iter()
+            .any(|event| event.before.as_ref().unwrap().wave.is_some());
         assert_eq!(has_crests, title.starts_with("s/λ"), "{preset}");
     }
 }
@@ -201,10 +207,12 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
 }
 
 /// The loop of a shipped preset with these changes, and its curve.
-fn looped(preset: &str, changes: &[&str]) -> (CycleReport, CurveData) {
+fn looped(preset: &str, changes: &[&str]) -> (PathReport, CurveData) {
     let store = Store::at("/nowhere", &[]);
     let preset = store.load(&store.resolve(preset).unwrap(), changes).unwrap().preset;
-    let report = CycleReport::compute(&preset, Areas::No, &Unwatched).unwrap();
+    let report =
+        PathReport::cycle(&preset, None, Extent { losses: Losses::Once, admissibility: false }, &Unwatched)
+            .unwrap();
     (report, CurveData::compute(&preset, &Staged::unwatched()).unwrap())
 }
 
@@ -235,7 +243,7 @@ fn the_areas_of_a_loop_are_its_losses() {
         let jumps = report.events.iter().filter(|event| event.before != event.after).count();
         assert_eq!((figure.areas.len() + unbounded, count(&figure, Role::Jump)), (jumps, jumps), "{control}");
         assert_eq!((signs(&figure, Sign::PullOff), signs(&figure, Sign::Turn)), (1, 1));
-        let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_pull_off);
+        let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_last_contact);
         assert!((lost / all - 1.0).abs() < 1e-9, "{control}: {lost} {all}");
     }
     // Rings jump along no curve: one area for all.
@@ -259,7 +267,7 @@ fn a_contact_map_shows_every_state_once() {
         assert_eq!(corners, 2 * contacts, "{preset}");
         // Loading to the left of the turn, unloading to the right, and the first contact of the crater off the axis.
         let turn = report.events.iter().find(|event| event.kind == "turn").unwrap();
-        let turn = turn.control_value - report.events[0].control_value;
+        let turn = turn.control - report.events[0].control;
         let way: Vec<f64> = figure.areas.iter().map(|area| area.outline[0].0).collect();
         let last = figure.areas.last().unwrap().outline.iter().map(|at| at.0).fold(0.0, f64::max);
         assert!(way.is_sorted() && way[0] >= 0.0 && last > 1.01 * turn, "{preset}");
@@ -338,9 +346,13 @@ fn near_a_limit_point_a_landing_or_a_pin_the_cross_hair_says_so() {
         };
         assert_eq!((number, of), (i + 1, limits.len()));
     }
-    let first = [events[0].before.approach, events[0].before.force, events[0].before.contact_radius];
+    let first = [
+        events[0].before.as_ref().unwrap().approach,
+        events[0].before.as_ref().unwrap().force,
+        events[0].before.as_ref().unwrap().contact_radius,
+    ];
     assert!(at(first).text().ends_with(&format!("of {}, event 1", limits.len())), "{}", at(first).text());
-    let after = events[1].after.unwrap();
+    let after = events[1].after.clone().unwrap();
     assert_eq!(at([after.approach, after.force, after.contact_radius]), What::Landing(2));
     let (control, other) = &subject.curve.other_limits[0];
     let quantities = [other.approach, other.force, other.contact_radius];

@@ -13,7 +13,7 @@ use super::walk::{apart, events_before, quantities};
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::{Control, Units};
-use pulloff_engine::quasistatic::{Event, State};
+use pulloff_engine::quasistatic::{Event, PathState, State};
 use pulloff_engine::report::number::{loss, with_unit};
 use pulloff_engine::units::Quantity;
 
@@ -35,20 +35,28 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         }
     };
     figure.lines.push(Line::new(Role::Unstable, "passed by", points));
-    let path = Path { curve: subject.curve, scale, units: *subject.curve.case.units() };
-    let mut from = unloading.start;
-    for event in &unloading.events {
-        figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, Some(&event.before))));
-        let after = event.after.unwrap_or_else(|| apart(unloading.control, event));
-        figure.lines.push(Line::new(Role::Jump, "jump", vec![path.shown(&event.before), path.shown(&after)]));
-        figure.areas.extend(path.area(unloading.control, event));
-        if event.after.is_some() {
-            figure.marks.push(Mark { sign: Sign::Landing, at: path.shown(&after) });
-        }
-        from = after;
+    let path = OnCurve { curve: subject.curve, scale, units: *subject.curve.case.units() };
+    for stretch in unloading.states.chunk_by(|a, b| a.piece == b.piece) {
+        let [Some(first), Some(last)] = [stretch.first(), stretch.last()] else { continue };
+        let is_disc = stretch.iter().all(|state| state.rings() == 0);
+        let points = if is_disc {
+            path.between(&first.state(), Some(&last.state()))
+        } else {
+            stretch.iter().map(|state| path.shown(&state.state())).collect()
+        };
+        figure.lines.push(Line::new(Role::Stable, "path", points));
     }
-    if unloading.events.last().is_none_or(|event| event.after.is_some()) {
-        figure.lines.push(Line::new(Role::Stable, "path", path.between(&from, None)));
+    for event in &unloading.events {
+        let Some(before) = event.before.as_ref().map(PathState::state) else { continue };
+        let after = event.after.as_ref().map(PathState::state);
+        let to = after.unwrap_or_else(|| apart(unloading.control, &before, event.control_value));
+        figure.lines.push(Line::new(Role::Jump, "jump", vec![path.shown(&before), path.shown(&to)]));
+        if event.before.iter().chain(&event.after).all(|state| state.rings() == 0) {
+            figure.areas.extend(path.area(unloading.control, event, &before, after.as_ref()));
+        }
+        if event.after.is_some() {
+            figure.marks.push(Mark { sign: Sign::Landing, at: path.shown(&to) });
+        }
     }
     // The path may begin or land beyond the curve; where the bodies come apart may be far away.
     let kept = figure.lines.iter().filter(|line| line.role != Role::Jump);
@@ -67,13 +75,13 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 }
 
 /// What is needed to follow the curve between two of its states.
-struct Path<'a> {
+struct OnCurve<'a> {
     curve: &'a CurveData,
     scale: Scale<'a>,
     units: Units,
 }
 
-impl Path<'_> {
+impl OnCurve<'_> {
     fn shown(&self, state: &State) -> (f64, f64) {
         self.scale.place(VIEW, quantities(&state.in_units(&self.units)))
     }
@@ -91,14 +99,14 @@ impl Path<'_> {
     }
 
     /// The area of a jump; none where it has no bound.
-    fn area(&self, control: Control, event: &Event) -> Option<Area> {
-        let mut outline = self.between(&event.before, event.after.as_ref());
-        if event.after.is_none() {
+    fn area(&self, control: Control, event: &Event, before: &State, after: Option<&State>) -> Option<Area> {
+        let mut outline = self.between(before, after);
+        if after.is_none() {
             if control == Control::Force {
                 return None;
             }
             outline.push(self.scale.place(VIEW, [0.0; 3]));
-            outline.push(self.shown(&apart(control, event)));
+            outline.push(self.shown(&apart(control, before, event.control_value)));
         }
         Some(Area {
             meaning: Meaning::Lost,

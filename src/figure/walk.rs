@@ -6,16 +6,16 @@ use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;
-use pulloff_engine::quasistatic::{Event, EventKind, State};
+use pulloff_engine::quasistatic::{EventKind, PathState, State};
 
 /// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
-pub fn apart(control: Control, event: &Event) -> State {
+pub fn apart(control: Control, before: &State, control_value: f64) -> State {
     /// Under a dead load the bodies fall apart for ever: a line to the left, out of the figure.
     const FAR: f64 = -1e3;
     let (approach, force) = match control {
-        Control::Displacement => (event.before.approach, 0.0),
-        Control::Force => (FAR * event.before.approach.abs(), event.before.force),
-        Control::Stiffness(_) => (event.control_value, 0.0),
+        Control::Displacement => (before.approach, 0.0),
+        Control::Force => (FAR * before.approach.abs(), before.force),
+        Control::Stiffness(_) => (control_value, 0.0),
     };
     State { contact_radius: 0.0, approach, force, energy: 0.0 }
 }
@@ -33,9 +33,10 @@ pub fn events_before<'a>(
 ) -> impl Iterator<Item = Mark> + 'a {
     let units = *subject.curve.case.units();
     let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
-    (1..).zip(events).map(move |(number, event)| {
-        let sign = if event.kind == EventKind::PullOff { Sign::PullOff } else { Sign::Event(number) };
-        Mark { sign, at: scale.place(view, quantities(&event.before.in_units(&units))) }
+    (1..).zip(events).filter_map(move |(number, event)| {
+        let sign = if event.kind == EventKind::LastContact { Sign::PullOff } else { Sign::Event(number) };
+        let before = event.before.as_ref()?.state().in_units(&units);
+        Some(Mark { sign, at: scale.place(view, quantities(&before)) })
     })
 }
 
@@ -87,9 +88,11 @@ pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Fi
         match &node.kind {
             NodeKind::Jump(event) => {
                 finish(&mut steps);
-                let after = event.after.unwrap_or_else(|| apart(node.control, event));
+                let Some(before) = event.before.as_ref().map(PathState::state) else { continue };
+                let after = event.after.as_ref().map(PathState::state);
+                let after = after.unwrap_or_else(|| apart(node.control, &before, event.control_value));
                 let after = place(node, &after);
-                jumps.push(Line::new(Role::Jump, "jump", vec![place(node, &event.before), after]));
+                jumps.push(Line::new(Role::Jump, "jump", vec![place(node, &before), after]));
                 if event.after.is_some() {
                     landings.push(Mark { sign: Sign::Landing, at: after });
                     steps.push(after);

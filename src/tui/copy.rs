@@ -11,8 +11,7 @@ use crate::explorer::{Model, Node};
 use pulloff_engine::case::critical_force;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{significant, with_unit};
-use pulloff_engine::report::rows;
-use pulloff_engine::report::unload::COLUMNS;
+use pulloff_engine::report::path::events_table;
 use pulloff_engine::text::sanitize;
 use pulloff_engine::units::Quantity;
 use ratatui::Terminal;
@@ -40,7 +39,9 @@ pub fn text(app: &App, content: Content) -> String {
     let text = match content {
         Content::State => app.theme.text(&state(&app.model)),
         // The columns are this program's, and a row always fits them.
-        Content::Events => rows::tsv(COLUMNS, &app.model.shown_events()).unwrap_or_default(),
+        Content::Events => {
+            events_table(&app.model.shown_events()).and_then(|table| table.tsv()).unwrap_or_default()
+        }
         Content::Chart | Content::Screen => drawn(app, content),
     };
     let cell = |cell: &str| sanitize(cell, LINE);

@@ -8,7 +8,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::problem::Turn;
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Areas, Direction, PathState};
+use crate::quasistatic::path::{Direction, PathState, Setting};
 
 const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
 
@@ -29,9 +29,9 @@ fn a_wavy_sphere_is_found_through_its_snaps() {
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, Control::Displacement).unwrap();
+    let unloading = case.unload(&curve, &Setting::new(Control::Displacement), &Unwatched).unwrap();
     let stable = |delta: f64| {
-        unloading.pieces.iter().find_map(|[outer, inner]| {
+        unloading.pieces().iter().find_map(|[outer, inner]| {
             let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
             let (mut lo, mut hi) = (*inner, *outer);
             if !(state(lo).approach..=state(hi).approach).contains(&delta) {
@@ -44,7 +44,7 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
             Some(state(0.5 * (lo + hi)).force)
         })
     };
-    let (top, bottom) = (curve.samples[0].approach, unloading.min_approach.approach);
+    let (top, bottom) = (curve.samples[0].approach, unloading.farthest().unwrap().approach);
     let bottom = bottom - 0.3 * (top - bottom);
     let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
     let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
@@ -56,7 +56,7 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
 fn looped(preset: &Preset, top: f64, n: usize) -> Points {
     let control = preset.path.control;
     let case = Case::new(preset).unwrap();
-    let cycle = case.cycle(control, Some(Turn::Control(top)), Areas::No, &Unwatched).unwrap();
+    let cycle = case.cycle(Some(Turn::Control(top)), &Setting::new(control), &Unwatched).unwrap();
     assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
     let radii = |same: &[PathState]| {
         let of = same.iter().map(|state| state.contact_radius);
@@ -139,7 +139,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     let truth = preset(WAVES, 1.0, 1e-4, "");
     let case = Case::new(&truth).unwrap();
     let turn = Some(Turn::Approach(0.105));
-    let cycle = case.cycle(Control::Displacement, turn, Areas::No, &Unwatched).unwrap();
+    let cycle = case.cycle(turn, &Setting::new(Control::Displacement), &Unwatched).unwrap();
     assert!(cycle.states.iter().any(|state| state.contacts.len() > 1));
     let mut points = Points {
         abscissa: Abscissa::Approach,

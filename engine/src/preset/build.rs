@@ -12,7 +12,7 @@ use super::shape;
 use super::values::Values;
 use crate::gap::Gap;
 use crate::problem::Turn;
-use crate::problem::{Begin, Start};
+use crate::problem::{Begin, ContactKind, Start};
 use crate::units::Quantity;
 
 /// The preset these values make.
@@ -70,6 +70,11 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             start,
             end_contact_radius: values.contains_key(end).then(|| given.number(end)),
             begin: if given.text("path.begin") == Begin::Touch.name() { Begin::Touch } else { Begin::Disc },
+            contact: if given.text("path.contact") == ContactKind::OneDisc.name() {
+                ContactKind::OneDisc
+            } else {
+                ContactKind::Rings
+            },
             turn,
         },
         data,

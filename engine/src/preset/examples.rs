@@ -10,7 +10,7 @@ use crate::gap::{
     shapes::RandomWaves, shapes::Smoothing,
 };
 use crate::preset::data::DataSpec;
-use crate::problem::{Begin, Control, Start};
+use crate::problem::{Begin, ContactKind, Control, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use proptest::prelude::*;
@@ -29,6 +29,7 @@ pub fn wavy() -> Preset {
             start: Start::ContactRadius(0.5),
             end_contact_radius: Some(0.002),
             begin: Begin::Disc,
+            contact: ContactKind::Rings,
             turn: None,
         },
         data: DataSpec::default(),
@@ -79,6 +80,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                     start,
                     end_contact_radius: end.map(|f| f * over * radius),
                     begin: Begin::Disc,
+                    contact: ContactKind::Rings,
                     turn: None,
                 },
                 data: DataSpec::default(),

@@ -18,7 +18,7 @@ use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
 use crate::gap::shapes::Measured;
 use crate::problem::Turn;
-use crate::problem::{Begin, Control, Problem, Reduced, Start};
+use crate::problem::{Begin, ContactKind, Control, Problem, Reduced, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use std::path::Path;
@@ -85,6 +85,8 @@ pub struct PathSpec {
     pub end_contact_radius: Option<f64>,
     /// Where a walk by hand begins.
     pub begin: Begin,
+    /// Which contacts a path follows.
+    pub contact: ContactKind,
     /// Where a loop turns round; `None` leaves it to the contact radius at the start of the unloading.
     pub turn: Option<Turn>,
 }
@@ -126,6 +128,7 @@ impl Preset {
                 control: Control::Displacement,
                 end_contact_radius: None,
                 begin: Begin::Disc,
+                contact: ContactKind::Rings,
                 turn: None,
             },
             data: DataSpec::default(),

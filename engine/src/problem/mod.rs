@@ -6,7 +6,7 @@
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`control`] | what the loading device prescribes |
 //! | [`start`] | how the start of a path is given |
-//! | [`turn`] | where a loop turns round |
+//! | [`turn`] | where a path turns round, which contacts it follows |
 
 pub mod control;
 pub mod groups;
@@ -18,4 +18,4 @@ pub use control::Control;
 pub use groups::Groups;
 pub use reduced::{Problem, Reduced, Units};
 pub use start::{Begin, Start};
-pub use turn::Turn;
+pub use turn::{ContactKind, Turn};

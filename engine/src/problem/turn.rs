@@ -34,3 +34,24 @@ impl Turn {
         }
     }
 }
+
+/// Which contacts a path follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactKind {
+    /// A disc and rings, wherever they appear.
+    #[default]
+    Rings,
+    /// One disc alone, through states in which the bodies would overlap.
+    OneDisc,
+}
+
+impl ContactKind {
+    /// Its words, in the order of the variants.
+    pub const NAMES: [&'static str; 2] = ["rings", "one-disc"];
+
+    /// Its word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[usize::from(self == Self::OneDisc)]
+    }
+}

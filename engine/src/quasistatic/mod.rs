@@ -11,11 +11,10 @@
 //! | [`ascent`] | the way up at a rising control, one disc alone |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
-//! | [`path`] | the whole loop of loading and unloading, with rings of contact |
+//! | [`path`] | what happens on the way of a device: an unloading, a whole loop, with rings of contact |
 //! | [`profile`] | one state across the radius: pressure inside, deformed gap outside |
 //! | [`admissible`] | whether the bodies stay apart outside the contact |
 //! | [`overlap`] | where a curve or a path passes states that are not admissible |
-//! | [`unload`] | the whole unloading: snaps, pull-off, losses |
 //! | [`walk`] | steps, runs and jumps along the curve, one request at a time |
 //!
 //! All numbers are in reduced units.
@@ -33,7 +32,6 @@ pub mod overlap;
 pub mod path;
 pub mod profile;
 pub mod start;
-pub mod unload;
 pub mod walk;
 
 pub use admissible::Admissibility;
@@ -42,6 +40,6 @@ pub use equilibrium::{Equilibrium, Point, Scales, Stability, State, Stiffness};
 pub use landscape::Landscape;
 pub use monotone::{Limit, Monotone, Turn};
 pub use overlap::Overlap;
+pub use path::{Event, EventKind, Losses, Path, PathState, PathStop};
 pub use profile::Profile;
 pub use start::StartError;
-pub use unload::{Event, EventKind, Losses, PathStop, Unloading};

@@ -43,7 +43,7 @@ pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Option<Vec<Overlap>> 
 }
 
 /// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
-/// what a path passes, see [`Unloading::pieces`](super::Unloading::pieces).
+/// what a path passes, see [`Path::pieces`](super::Path::pieces).
 ///
 /// `progress` is asked before each state, `None` when it said stop.
 pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Option<Vec<Overlap>> {
@@ -192,7 +192,7 @@ mod tests {
     use crate::problem::{Problem, Reduced};
     use crate::progress::{Unwatched, until};
     use crate::quasistatic::Detail;
-    use crate::quasistatic::unload::unload;
+    use crate::quasistatic::path::{Setting, unload};
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
@@ -238,22 +238,23 @@ mod tests {
         let whole = curve(&problem, 0.04);
         let on_curve = overlaps(&whole, &Unwatched).unwrap();
         for control in [Control::Displacement, Control::Force] {
-            let path = unload(&whole, control).unwrap();
-            let met = passed(&whole, &path.pieces, &Unwatched).unwrap();
-            let on_path = |s: f64| path.pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);
+            let setting = Setting::one_disc(control);
+            let pieces = unload(&whole, &setting, &Unwatched).unwrap().pieces();
+            let met = passed(&whole, &pieces, &Unwatched).unwrap();
+            let on_path = |s: f64| pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
             for overlap in &met {
                 assert!(on_path(overlap.from) && on_path(overlap.to), "{overlap:?}");
                 // An end is one of the curve's, or that of a piece: a limit point or a landing.
                 for s in [overlap.from, overlap.to] {
                     let of_curve = on_curve.iter().any(|o| near(o.from, s) || near(o.to, s));
-                    assert!(of_curve || path.pieces.as_flattened().contains(&s), "{s} {path:?}");
+                    assert!(of_curve || pieces.as_flattened().contains(&s), "{s} {pieces:?}");
                 }
             }
             let unseen = on_curve.iter().filter(|o| on_path(0.5 * (o.from + o.to)));
             assert!(unseen.clone().all(|o| met.iter().any(|p| p.contains(0.5 * (o.from + o.to)))));
             // No more than asked for is looked at.
-            assert_eq!(passed(&whole, &path.pieces, &until(3)), None);
+            assert_eq!(passed(&whole, &pieces, &until(3)), None);
         }
         assert_eq!(overlaps(&whole, &|| true), None);
     }

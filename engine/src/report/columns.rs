@@ -10,13 +10,24 @@ use crate::units::{Quantity, UnitSystem};
 fn quantity(column: &str, control: Control) -> Option<Quantity> {
     let of_state = ["before_", "after_", "exact_"].iter().find_map(|prefix| column.strip_prefix(prefix));
     match of_state.unwrap_or(column) {
-        "contact_radius" | "approach" | "area_slope" => Some(Quantity::Length),
+        "contact_radius" | "approach" | "area_slope" | "radius" | "inner_radius" | "outer_radius" => {
+            Some(Quantity::Length)
+        }
         "force" => Some(Quantity::Force),
         "energy" | "dissipated" | "dissipated_by_area" => Some(Quantity::Energy),
-        "contact_stiffness" | "tangent_stiffness" => Some(Quantity::ForcePerLength),
+        "contact_stiffness" | "tangent_stiffness" | "held_stiffness" => Some(Quantity::ForcePerLength),
+
         // What the grips hold: a spring's other end is moved.
-        "control_value" => Some(if control == Control::Force { Quantity::Force } else { Quantity::Length }),
+        "control" => Some(if control == Control::Force { Quantity::Force } else { Quantity::Length }),
         _ => None,
+    }
+}
+
+/// The SI unit of a column; nobody types an area, so it is no quantity of ours.
+fn unit(column: &str, control: Control) -> Option<&'static str> {
+    match column {
+        "area" | "before_area" | "after_area" => Some("m^2"),
+        column => quantity(column, control).and_then(Quantity::si),
     }
 }
 
@@ -27,7 +38,7 @@ pub fn units(columns: &[&str], control: Control, units: &UnitSystem) -> Option<S
     }
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
     for column in columns {
-        let Some(unit) = quantity(column, control).and_then(Quantity::si) else { continue };
+        let Some(unit) = unit(column, control) else { continue };
         match groups.iter_mut().find(|(known, _)| *known == unit) {
             Some((_, names)) => names.push(column),
             None => groups.push((unit, vec![column])),
@@ -41,7 +52,7 @@ pub fn units(columns: &[&str], control: Control, units: &UnitSystem) -> Option<S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{trace, unload};
+    use crate::report::{path, trace};
     use crate::units::DisplayUnits;
 
     #[test]
@@ -55,13 +66,20 @@ mod tests {
             "admissible",
             "exact_relative_difference",
             "kind",
+            "number",
+            "direction",
             "before_wave",
             "after_wave",
-            "reason",
+            "before_rings",
+            "after_rings",
+            "state",
+            "piece",
+            "contact",
         ];
-        let all = trace::COLUMNS.iter().chain(trace::EXACT_COLUMNS).chain(unload::COLUMNS);
+        let all =
+            trace::COLUMNS.iter().chain(trace::EXACT_COLUMNS).chain(path::COLUMNS).chain(path::STATE_COLUMNS);
         for column in all {
-            assert_eq!(quantity(column, Control::Force).is_none(), pure.contains(column), "{column}");
+            assert_eq!(unit(column, Control::Force).is_none(), pure.contains(column), "{column}");
         }
         let si = UnitSystem::Si(DisplayUnits::default());
         assert_eq!(
@@ -69,7 +87,7 @@ mod tests {
             "units of the CSV: contact_radius, approach, area_slope in m; force in N; energy in J; \
              contact_stiffness, tangent_stiffness in N/m"
         );
-        let value = |control| units(&["control_value"], control, &si).unwrap();
+        let value = |control| units(&["control"], control, &si).unwrap();
         assert!(
             value(Control::Force).ends_with(" in N") && value(Control::Stiffness(1.0)).ends_with(" in m")
         );

@@ -1,7 +1,6 @@
 //! Maps of two numbers, and limit points over one, as a document.
 
-use super::SCHEMA;
-use super::problem::ProblemReport;
+use super::problem::Head;
 use super::rows::{RowsError, Table};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
@@ -113,12 +112,9 @@ pub struct OnsetReport {
 /// A map or fold curves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MapReport {
-    /// The version of the document.
-    pub schema: u32,
-    /// The version of the program.
-    pub program_version: &'static str,
-    /// The preset whose numbers are held.
-    pub problem: ProblemReport,
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// What is controlled.
     pub control: Control,
     /// The axes.
@@ -167,9 +163,7 @@ impl MapReport {
     ) -> Result<Self, MapError> {
         let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
         let mut report = Self {
-            schema: SCHEMA,
-            program_version: env!("CARGO_PKG_VERSION"),
-            problem: ProblemReport::new(preset, &case),
+            head: Head::new("map", preset, &case),
             control: preset.path.control,
             x: AxisReport::of(&x),
             y: AxisReport {

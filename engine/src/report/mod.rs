@@ -1,47 +1,44 @@
-//! What is reported: the one serializable form of a trace, of an unloading and of a verification.
+//! What is reported: the one serializable form of what is computed.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`number`] | how numbers are written for people, from [`units`](crate::units) |
-//! | [`problem`] | the problem that a trace and an unloading carry |
+//! | [`problem`] | what documents begin with |
 //! | [`overlap`] | the states that are not admissible, as part of a document |
 //! | [`trace`] | the equilibrium curve as a document |
-//! | [`unload`] | the unloading as a document |
-//! | [`cycle`] | the loop of loading and unloading as a document |
+//! | [`path`] | an unloading, or a loop of loading and unloading, as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
-//! | [`cycle_table`] | a loop as text for a terminal |
-//! | [`table`] | an unloading and a verification as text for a terminal |
+//! | [`path_table`] | a path as text for a terminal |
+//! | [`table`] | cells in columns, a verification as text for a terminal |
 //!
 //! All numbers are in the user's units, in full precision. The command line, the explorer's export and tests
 //! read the same documents.
 
 pub mod columns;
-pub mod cycle;
-pub mod cycle_table;
 pub mod fit;
 pub mod map;
 pub mod overlap;
+pub mod path;
+pub mod path_table;
 pub mod problem;
 pub mod rows;
 pub mod stability;
 pub mod table;
 pub mod trace;
-pub mod unload;
 pub mod verify;
 
 pub use crate::units::number;
-pub use cycle::CycleReport;
 pub use fit::FitReport;
 pub use map::MapReport;
 pub use overlap::OverlapReport;
-pub use problem::ProblemReport;
+pub use path::PathReport;
+pub use problem::{Head, ProblemReport};
 pub use stability::StabilityReport;
 pub use trace::TraceReport;
-pub use unload::UnloadReport;
 pub use verify::VerifyReport;
 
 /// The version of all documents.

@@ -1,5 +1,6 @@
-//! The problem both documents carry: the resolved preset, its dimensionless groups, the smooth sphere's force.
+//! What documents begin with: the version, the resolved preset, its dimensionless groups, the smooth sphere's force.
 
+use super::SCHEMA;
 use crate::case::Case;
 use crate::preset::Preset;
 use crate::preset::family::is_parameter;
@@ -49,13 +50,39 @@ impl UnitsReport {
     }
 }
 
+/// What every document begins with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Head {
+    /// The version of all documents.
+    pub schema: u32,
+    /// Which document it is.
+    pub document: &'static str,
+    /// The version of the program.
+    pub program_version: &'static str,
+    /// What was computed.
+    pub problem: ProblemReport,
+    /// The units of every number in the document.
+    pub units: UnitsReport,
+}
+
+impl Head {
+    /// The head of a document of `preset`, made ready as `case`.
+    pub fn new(document: &'static str, preset: &Preset, case: &Case) -> Self {
+        Self {
+            schema: SCHEMA,
+            document,
+            program_version: env!("CARGO_PKG_VERSION"),
+            problem: ProblemReport::new(preset, case),
+            units: UnitsReport::new(&preset.units),
+        }
+    }
+}
+
 /// The problem of a document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ProblemReport {
     /// Every key of the preset with its value, defaults filled in.
     pub preset: Map<String, Value>,
-    /// The units of every number in the document.
-    pub units: UnitsReport,
     /// The contact radius at the start, resolved.
     pub start_contact_radius: f64,
     /// The contact radius at the end, resolved.
@@ -71,12 +98,20 @@ impl ProblemReport {
     pub fn new(preset: &Preset, case: &Case) -> Self {
         Self {
             preset: document(preset),
-            units: UnitsReport::new(&preset.units),
             start_contact_radius: case.start * case.units().length,
             end_contact_radius: case.end * case.units().length,
             groups: Groups::of(&case.problem, preset.range_of_action()),
             critical_force: case.smooth().map(|jkr| jkr.pull_off_force()),
         }
+    }
+}
+
+/// The word for a control.
+pub fn control_name(control: Control) -> &'static str {
+    match control {
+        Control::Displacement => "displacement",
+        Control::Force => "force",
+        Control::Stiffness(_) => "stiffness",
     }
 }
 

@@ -51,6 +51,14 @@ impl Table {
         self.separated(b',')
     }
 
+    /// The same with tabs between the cells, as spreadsheets take it from a clipboard.
+    ///
+    /// # Errors
+    /// As [`Table::csv`].
+    pub fn tsv(&self) -> Result<String, RowsError> {
+        self.separated(b'\t')
+    }
+
     fn separated(&self, separator: u8) -> Result<String, RowsError> {
         let mut writer = csv::WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
         writer.write_record(&self.columns)?;

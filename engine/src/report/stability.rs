@@ -1,8 +1,7 @@
 //! The law of stability over the contact radius as a document.
 
-use super::SCHEMA;
 use super::map::EXACT;
-use super::problem::ProblemReport;
+use super::problem::Head;
 use super::rows::{RowsError, Table};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset};
@@ -42,12 +41,9 @@ pub const COLUMNS: &[&str] =
 /// The law of stability of one disc between the end and the start of a preset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StabilityReport {
-    /// The version of the document.
-    pub schema: u32,
-    /// The version of the program.
-    pub program_version: &'static str,
-    /// The preset.
-    pub problem: ProblemReport,
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// What to be careful about.
     pub warnings: Vec<String>,
     /// What is controlled.
@@ -101,9 +97,7 @@ impl StabilityReport {
             warnings.push(EXACT.to_owned());
         }
         Ok(Self {
-            schema: SCHEMA,
-            program_version: env!("CARGO_PKG_VERSION"),
-            problem: ProblemReport::new(preset, &case),
+            head: Head::new("stability", preset, &case),
             warnings,
             control: preset.path.control,
             work_of_adhesion: preset.material.work_of_adhesion,

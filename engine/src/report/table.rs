@@ -1,8 +1,7 @@
-//! An unloading and a verification as text for a terminal.
+//! Cells in columns, numbers with their units, and a verification as text for a terminal.
 
-use super::number::{difference, loss, short, significant, with_unit};
+use super::number::{difference, short, significant, with_unit};
 use super::rows::Table;
-use super::unload::{EventReport, UnloadReport};
 use super::verify::{RowReport, VerifyReport};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
@@ -45,99 +44,6 @@ pub fn rows(table: &Table) -> String {
     aligned(&std::iter::once(table.columns.clone()).chain(cells).collect::<Vec<_>>(), 0)
 }
 
-/// The unloading as lines of text.
-pub fn unload(report: &UnloadReport) -> String {
-    let mut text = opening(report);
-    text.push('\n');
-    if report.events.is_empty() {
-        text.push_str("no instabilities\n");
-    } else {
-        text.push_str(&events(report));
-    }
-    text.push('\n');
-    text.push_str(&outcome(report));
-    text
-}
-
-/// The case, its control, its start, and what is to be known of them.
-fn opening(report: &UnloadReport) -> String {
-    let title = report.problem.preset.get("title").and_then(|t| t.as_str()).unwrap_or("");
-    let units = &report.problem.units.shown;
-    let control = control(units, report.control);
-    let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 6));
-    let start = &report.start;
-    let title = if title.is_empty() { String::new() } else { format!("{title}\n") };
-    let mut text = format!(
-        "{title}control: {control}\nstart: delta {}  P {}  s {}\n",
-        shown(Quantity::Length, start.approach),
-        shown(Quantity::Force, start.force),
-        shown(Quantity::Length, start.contact_radius)
-    );
-    for note in start.note.iter().chain(&report.notes) {
-        let _ = writeln!(text, "note: {note}");
-    }
-    text
-}
-
-/// The events as a table, and what is wrong with those that cannot be.
-fn events(report: &UnloadReport) -> String {
-    let units = &report.problem.units.shown;
-    let head = |name, quantity| head(units, name, quantity);
-    let mut rows = vec![vec![
-        "#".to_owned(),
-        "event".to_owned(),
-        head("delta", Quantity::Length),
-        "> delta".to_owned(),
-        head("P", Quantity::Force),
-        "> P".to_owned(),
-        head("s", Quantity::Length),
-        "> s".to_owned(),
-        "crest".to_owned(),
-        head("lost", Quantity::Energy),
-        "by area".to_owned(),
-    ]];
-    rows.extend(report.events.iter().enumerate().map(|(i, event)| row(units, i + 1, event)));
-    let mut text = aligned(&rows, 2);
-    if report.events.iter().any(|event| event.admissible == Some(false)) {
-        let found = report.inadmissible.as_deref().unwrap_or_default();
-        let crest = found.iter().any(|part| part.crest_radius.is_some());
-        let pull = found.iter().any(|part| part.crest_radius.is_none());
-        let faults = [(crest, "the next crest would touch"), (pull, "the disc would have to pull")];
-        let faults: Vec<&str> = faults.iter().filter(|(is, _)| *is).map(|(_, fault)| *fault).collect();
-        let _ = writeln!(text, "! limit point or landing inadmissible: {}", faults.join(", or "));
-    }
-    text
-}
-
-/// What the path comes to: extreme values, losses, its end.
-fn outcome(report: &UnloadReport) -> String {
-    let units = &report.problem.units.shown;
-    let least = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
-    let mut text = format!(
-        "smallest force on the path: {}{}\nsmallest approach on the path: {}\n",
-        least(Quantity::Force, report.min_force),
-        ratio(report.min_force, report.problem.critical_force),
-        least(Quantity::Length, report.min_approach)
-    );
-    let unbounded = report.events.iter().any(|event| event.dissipated.is_none());
-    let bounded = report.events.iter().any(|event| event.dissipated.is_some());
-    let lost = ascii_unit(units, Quantity::Energy, report.total_dissipated, loss);
-    let _ = match (unbounded, bounded) {
-        (false, _) => writeln!(text, "energy lost: {lost}"),
-        (true, true) => {
-            writeln!(text, "energy lost before the pull-off: {lost}; the pull-off loses without bound")
-        }
-        (true, false) => {
-            writeln!(text, "energy lost: the pull-off, the only instability, loses without bound")
-        }
-    };
-    let _ = writeln!(text, "end: {}", report.stop);
-    for event in report.events.iter().filter(|event| event.dissipated.is_none()) {
-        let _ = writeln!(text, "{}: {}", event.kind, event.reason);
-    }
-    text
-}
-
 /// The head of a column, with the unit of its numbers.
 pub(super) fn head(units: &UnitSystem, name: &str, quantity: Quantity) -> String {
     match units.unit(quantity) {
@@ -156,7 +62,7 @@ pub(super) fn control(units: &UnitSystem, control: Control) -> String {
     }
 }
 
-fn ratio(force: f64, critical: Option<f64>) -> String {
+pub(super) fn ratio(force: f64, critical: Option<f64>) -> String {
     let critical = critical.filter(|critical| *critical > 0.0);
     critical.map_or_else(String::new, |critical| format!(" = {} P_c", short(force / critical, 6)))
 }
@@ -169,34 +75,6 @@ pub(super) fn ascii_unit(
     number: impl Fn(f64) -> String,
 ) -> String {
     with_unit(units, quantity, x, true, number)
-}
-
-fn row(units: &UnitSystem, number: usize, event: &EventReport) -> Vec<String> {
-    let (before, after) = (&event.before, event.after.as_ref());
-    let dash = || "-".to_owned();
-    let number_in = |quantity, x| significant(units.shown(quantity, x).number, 5);
-    let lost = |x| loss(units.shown(Quantity::Energy, x).number);
-    let landed = |quantity, of: fn(&super::unload::StateReport) -> f64| {
-        after.map_or_else(dash, |a| number_in(quantity, of(a)))
-    };
-    let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
-    let agreement = match event.losses_agree() {
-        Some(true) => "agrees".to_owned(),
-        _ => event.dissipated_by_area.map_or_else(dash, lost),
-    };
-    vec![
-        number.to_string(),
-        if event.admissible == Some(false) { format!("{} !", event.kind) } else { event.kind.to_owned() },
-        number_in(Quantity::Length, before.approach),
-        landed(Quantity::Length, |a| a.approach),
-        number_in(Quantity::Force, before.force),
-        landed(Quantity::Force, |a| a.force),
-        number_in(Quantity::Length, before.contact_radius),
-        landed(Quantity::Length, |a| a.contact_radius),
-        format!("{}>{}", crest(before.wave), crest(after.and_then(|a| a.wave))),
-        event.dissipated.map_or_else(dash, lost),
-        agreement,
-    ]
 }
 
 /// The verification as lines of text, its rows under the headings of their groups; the last line counts them.

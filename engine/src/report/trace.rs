@@ -1,11 +1,10 @@
 //! The equilibrium curve as a document.
 
-use super::SCHEMA;
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
-use super::problem::ProblemReport;
+use super::problem::Head;
+use super::problem::control_name;
 use super::rows::{RowsError, Table};
-use super::unload::control_name;
 use crate::case::{Case, CaseError};
 use crate::preset::Preset;
 use crate::problem::Control;
@@ -19,12 +18,9 @@ use serde::Serialize;
 /// The equilibrium curve with its limit points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TraceReport {
-    /// The version of the document.
-    pub schema: u32,
-    /// The version of the program.
-    pub program_version: &'static str,
-    /// What was computed.
-    pub problem: ProblemReport,
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// What to be careful about.
     pub warnings: Vec<String>,
     /// What else is worth knowing.
@@ -277,9 +273,7 @@ impl TraceReport {
             points.chain(limits).map(of).min_by(f64::total_cmp)
         };
         Ok(Self {
-            schema: SCHEMA,
-            program_version: env!("CARGO_PKG_VERSION"),
-            problem: ProblemReport::new(preset, case),
+            head: Head::new("trace", preset, case),
             warnings: case
                 .warnings(curve.outermost())
                 .into_iter()
@@ -320,7 +314,8 @@ impl TraceReport {
 mod tests {
     use super::*;
     use crate::progress::until;
-    use crate::report::UnloadReport;
+    use crate::report::PathReport;
+    use crate::report::path::Extent;
     use crate::{Material, Shape, Start};
     use std::cell::Cell;
 
@@ -333,8 +328,10 @@ mod tests {
         let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None };
         let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
         let trace = |progress: &dyn Progress| TraceReport::compute_while(&preset, progress).err();
-        let unload = |progress: &dyn Progress| UnloadReport::compute_while(&preset, progress).err();
-        let ways: [Way<'_>; 2] = [&trace, &unload];
+        let of = Extent::default();
+        let unload = |progress: &dyn Progress| PathReport::unload(&preset, of, progress).err();
+        let cycle = |progress: &dyn Progress| PathReport::cycle(&preset, None, of, progress).err();
+        let ways: [Way<'_>; 3] = [&trace, &unload, &cycle];
         for compute in ways {
             let asked = Cell::new(0_usize);
             let count = || {

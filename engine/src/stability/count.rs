@@ -6,7 +6,7 @@ use super::law::Cusp;
 use crate::disc::Basis;
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::descent::{descend, stable_start};
-use crate::quasistatic::unload::{UnloadError, unload_while};
+use crate::quasistatic::path::{Setting, unload};
 use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
 use std::sync::Arc;
 
@@ -75,13 +75,16 @@ impl Family {
             let curve =
                 Curve::new(problem, Arc::new(basis), table, [start, end], Detail::Borders, &Unwatched);
             let Some(curve) = curve else { return Ok(None) };
-            match unload_while(&curve, member.control, Losses::Once, &Unwatched) {
+            let (losses, detail) = (Losses::Once, Detail::Borders);
+            let setting = Setting { losses, detail, ..Setting::one_disc(member.control) };
+            match unload(&curve, &setting, &Unwatched) {
                 Ok(path) => {
                     let snaps = path.events.iter().filter(|event| event.kind == EventKind::Snap);
-                    let jumps: Vec<f64> = snaps.map(|event| event.before.contact_radius).collect();
+                    let jumps: Vec<f64> =
+                        snaps.filter_map(|event| Some(event.before.as_ref()?.contact_radius)).collect();
                     (jumps.len(), jumps)
                 }
-                Err(UnloadError::UnstableStart { .. } | UnloadError::Cancelled) => return Ok(None),
+                Err(_) => return Ok(None),
             }
         };
         let within = |s: f64| end <= s && s <= start;

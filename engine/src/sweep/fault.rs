@@ -3,6 +3,7 @@
 use crate::case::CaseError;
 use crate::fit::FitError;
 use crate::preset::Invalid;
+use crate::quasistatic::path::PathError;
 use crate::text::sanitize;
 use std::any::Any;
 use std::fmt;
@@ -49,7 +50,7 @@ impl Fault {
         let reason = match error {
             CaseError::Basis(_) | CaseError::Table { .. } => REASONS[1],
             CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
-            CaseError::Unload { .. } => REASONS[3],
+            CaseError::Path { error, .. } if matches!(**error, PathError::UnstableStart { .. }) => REASONS[3],
             CaseError::Path { .. } => REASONS[7],
             CaseError::Cancelled => REASONS[4],
         };

@@ -3,14 +3,14 @@
 
 use super::fault::Fault;
 use super::quantity::{Column, Quantity, Stage};
-use super::stage::{Cell, CurveMinima, Fitting, Loop, PresetValues, StartState, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues, StartState};
 use crate::case::Case;
 use crate::preset::Preset;
-use crate::problem::Control;
+use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
+use crate::quasistatic::Detail;
 use crate::quasistatic::overlap::passed;
-use crate::quasistatic::path::Areas;
-use crate::quasistatic::{Losses, PathStop};
+use crate::quasistatic::path::{Losses, PathStop, Setting};
 use crate::units::Quantity as Unit;
 
 /// The quantities of a preset.
@@ -28,8 +28,8 @@ struct Work<'a> {
     ground: PresetValues,
     start: Option<Result<StartState, Fault>>,
     line: Option<Result<CurveMinima, Fault>>,
-    paths: Vec<(Control, Result<UnloadingPath, Fault>)>,
-    loops: Vec<(Control, Result<Loop, Fault>)>,
+    paths: Vec<(Control, ContactKind, Result<OnPath, Fault>)>,
+    loops: Vec<(Control, Result<OnPath, Fault>)>,
     fitting: Option<Result<Fitting, Fault>>,
     progress: &'a dyn Progress,
 }
@@ -66,8 +66,8 @@ impl Work<'_> {
             }
             Stage::Unloading(of) => {
                 let control = self.reduced(column.under.control(own))?;
-                let path = self.path(control)?;
-                match (of(path), path.unloading.stop) {
+                let path = self.path(control, None)?;
+                match (of(path), path.path.stop) {
                     // A path that stopped early has no answer.
                     (_, PathStop::Curve(stop)) => {
                         let case = &self.start()?.case;
@@ -117,29 +117,36 @@ impl Work<'_> {
         }
     }
 
-    fn path(&mut self, control: Control) -> Result<&UnloadingPath, Fault> {
-        let known = self.paths.iter().position(|(known, _)| *known == control);
+    /// The unloading under a control; of the contacts of the preset where none are named.
+    fn path(&mut self, control: Control, contact: Option<ContactKind>) -> Result<&OnPath, Fault> {
+        let own = self.start()?.case.setting_of_unloading();
+        let contact = contact.unwrap_or(own.contact);
+        let known = self.paths.iter().position(|(of, with, _)| (*of, *with) == (control, contact));
         let at = known.unwrap_or_else(|| {
             let made = self.line().map(|_| ()).and_then(|()| {
                 let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
                     return Err(Fault::incomplete("no curve"));
                 };
-                let unloading = start.case.unload_while(&line.curve, control, Losses::Once, self.progress);
-                Ok(UnloadingPath { unloading: unloading.map_err(|e| Fault::of_case(&e))? })
+                let (losses, detail) = (Losses::Once, Detail::Borders);
+                let setting = Setting { control, contact, losses, detail, ..own };
+                let path = start.case.unload(&line.curve, &setting, self.progress);
+                Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
             });
-            self.paths.push((control, made));
+            self.paths.push((control, contact, made));
             self.paths.len() - 1
         });
-        self.paths[at].1.as_ref().map_err(Clone::clone)
+        self.paths[at].2.as_ref().map_err(Clone::clone)
     }
 
-    fn whole(&mut self, control: Control) -> Result<&Loop, Fault> {
+    fn whole(&mut self, control: Control) -> Result<&OnPath, Fault> {
         let known = self.loops.iter().position(|(known, _)| *known == control);
         let at = known.unwrap_or_else(|| {
             let progress = self.progress;
             let made = self.start().and_then(|start| {
-                let cycle = start.case.cycle(control, None, Areas::No, progress);
-                Ok(Loop { cycle: cycle.map_err(|e| Fault::of_case(&e))? })
+                let (losses, detail) = (Losses::Once, Detail::Borders);
+                let setting = Setting { control, losses, detail, ..start.case.setting() };
+                let path = start.case.cycle(None, &setting, progress);
+                Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
             });
             self.loops.push((control, made));
             self.loops.len() - 1
@@ -153,7 +160,7 @@ impl Work<'_> {
     }
 
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {
-        let pieces = self.path(control)?.unloading.pieces.clone();
+        let pieces = self.path(control, Some(ContactKind::OneDisc))?.path.pieces();
         let progress = self.progress;
         let passed = passed(&self.line()?.curve, &pieces, progress);
         let length = |sum: f64, [from, to]: [f64; 2]| sum + (from - to);

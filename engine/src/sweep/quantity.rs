@@ -1,7 +1,7 @@
 //! What a sweep can compute of a problem: the table of quantities, one row each.
 
 use super::fault::Fault;
-use super::stage::{Cell, CurveMinima, Fitting, Loop, PresetValues, UnloadingPath};
+use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues};
 use crate::problem::Control;
 use crate::text::{closest, quote};
 use crate::units::Quantity as Unit;
@@ -28,11 +28,11 @@ pub(super) enum Stage {
     Curve(fn(&CurveMinima) -> Result<Option<Cell>, Fault>),
     /// The limit points of a control on the curve.
     Limits,
-    Unloading(fn(&UnloadingPath) -> Option<Cell>),
+    Unloading(fn(&OnPath) -> Option<Cell>),
     /// The states it passes that are not admissible: to find them takes longer than all the rest.
     Passed,
     /// The whole loop of loading and unloading, by energies alone.
-    Loop(fn(&Loop) -> Option<Cell>),
+    Loop(fn(&OnPath) -> Option<Cell>),
     /// The fit to the measured curve of the preset.
     Fit(fn(&Fitting) -> Option<Cell>),
 }
@@ -47,19 +47,21 @@ macro_rules! quantities {
 }
 
 quantities! {
-    "pull_off_force" "P" Force "force at the pull-off, negative: a pull":
-        Stage::Unloading(|path| path.pull_off(|state| state.force));
-    "pull_off_approach" "δ" Length "approach at the pull-off":
-        Stage::Unloading(|path| path.pull_off(|state| state.approach));
-    "pull_off_radius" "s" Length "contact radius at the pull-off":
-        Stage::Unloading(|path| path.pull_off(|state| state.contact_radius));
-    "snaps" "" Number "jumps before the pull-off": Stage::Unloading(|path| Some(path.snaps()));
+    "largest_pull" "P" Force "smallest force of the unloading, negative: the largest pull": Stage::Unloading(OnPath::largest_pull);
+    "farthest" "δ" Length "smallest approach of the unloading": Stage::Unloading(OnPath::farthest);
+    "last_contact_force" "P" Force "force at the last contact of the unloading":
+        Stage::Unloading(|path| path.last_contact(|state| state.force));
+    "last_contact_approach" "δ" Length "approach at the last contact":
+        Stage::Unloading(|path| path.last_contact(|state| state.approach));
+    "last_contact_radius" "s" Length "contact radius at the last contact":
+        Stage::Unloading(|path| path.last_contact(|state| state.contact_radius));
+    "snaps" "" Number "jumps inward before the last contact": Stage::Unloading(|path| Some(path.snaps()));
     "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
-    "pull_off_loss" "" Energy "energy lost at the pull-off; none under a dead load":
-        Stage::Unloading(UnloadingPath::pull_off_loss);
-    "inadmissible_share" "" Number "share of the path, by contact radius, on which the next crest would already touch":
+    "last_contact_loss" "" Energy "energy lost at the last contact; none under a dead load":
+        Stage::Unloading(OnPath::last_contact_loss);
+    "inadmissible_share" "" Number "share of the unloading of one disc, by contact radius, on which the next crest would already touch":
         Stage::Passed;
-    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(Loop::loss);
+    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(OnPath::loss);
     "first_touch_force" "P" Force "force after the jump into contact at the first touch":
         Stage::Loop(|whole| whole.first_touch(|state| state.force));
     "first_touch_radius" "s" Length "outermost edge of the contact after that jump":
@@ -69,7 +71,7 @@ quantities! {
     "rings_at_most" "" Number "rings of contact at most at a time in the stable states of the loop, a disc not counted":
         Stage::Loop(|whole| Some(whole.rings_at_most()));
     "contact_share" "" Number "contact area at the turn over that of the circle in its outermost edge":
-        Stage::Loop(Loop::contact_share);
+        Stage::Loop(OnPath::contact_share);
     "limit_points" "" Number "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));
@@ -135,7 +137,7 @@ quantities! {
 
 /// The quantities of a spec that names none.
 pub const USUAL: [&str; 6] =
-    ["pull_off_force", "pull_off_approach", "snaps", "enhancement", "waves", "kesari_lew"];
+    ["last_contact_force", "last_contact_approach", "snaps", "enhancement", "waves", "kesari_lew"];
 
 /// Under which control a quantity is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -191,6 +193,14 @@ impl Quantity {
     }
 }
 
+/// What people call the last contact, said of several things: the force there, and the largest pull.
+fn renamed(name: &str) -> Option<String> {
+    name.strip_prefix("pull_off_").map(|rest| format!("last_contact_{rest}")).filter(|now| {
+        let all = QUANTITIES.iter().flat_map(Quantity::columns);
+        all.into_iter().any(|column| column.name() == *now)
+    })
+}
+
 impl Column {
     /// The column of a name.
     pub fn named(name: &str) -> Result<Self, String> {
@@ -198,7 +208,11 @@ impl Column {
         all().find(|column| column.name() == name).ok_or_else(|| {
             let names: Vec<String> = all().map(|column| column.name()).collect();
             let meant = closest(name, names.iter().map(String::as_str));
-            let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+            let hint = match (renamed(name), meant) {
+                (Some(now), _) => format!("; it is {now}"),
+                (None, Some(meant)) => format!("; did you mean {meant}?"),
+                (None, None) => String::new(),
+            };
             format!("no quantity is called \"{}\"{hint}", quote(name))
         })
     }
@@ -224,7 +238,12 @@ mod tests {
         assert!(USUAL.iter().all(|name| Column::named(name).is_ok()));
         assert_eq!(Column::named("snaps_force").unwrap().under, Under::Force);
         for (wrong, message) in [
-            ("pull_of_force", "no quantity is called \"pull_of_force\"; did you mean pull_off_force?"),
+            ("largest_pul", "no quantity is called \"largest_pul\"; did you mean largest_pull?"),
+            ("pull_off_force", "no quantity is called \"pull_off_force\"; it is last_contact_force"),
+            (
+                "pull_off_loss_force",
+                "no quantity is called \"pull_off_loss_force\"; it is last_contact_loss_force",
+            ),
             ("snap", "no quantity is called \"snap\"; did you mean snaps?"),
             ("enhancement_force", "no quantity is called \"enhancement_force\"; did you mean enhancement?"),
             ("x\u{1b}", "no quantity is called \"x\u{fffd}\""),

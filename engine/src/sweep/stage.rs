@@ -11,8 +11,7 @@ use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
 use crate::progress::Progress;
 use crate::quasistatic::monotone::weighted;
-use crate::quasistatic::path::{self, Path, PathState};
-use crate::quasistatic::{Curve, Detail, Equilibrium, EventKind, Monotone, State, Unloading};
+use crate::quasistatic::{Curve, Detail, Equilibrium, Event, EventKind, Monotone, Path, PathState, State};
 use crate::report::number::exact;
 use crate::theory::guduru::Guduru;
 use crate::theory::kesari_lew::KesariLew;
@@ -70,14 +69,9 @@ const WAVES: f64 = 2.0;
 /// Differences below this share do not count.
 const SMALLER: f64 = 1e-3;
 
-/// The unloading under one control, reduced.
-pub(super) struct UnloadingPath {
-    pub(super) unloading: Unloading,
-}
-
-/// The loop under one control, reduced.
-pub(super) struct Loop {
-    pub(super) cycle: Path,
+/// An unloading or a loop under one control, reduced.
+pub(super) struct OnPath {
+    pub(super) path: Path,
 }
 
 /// The fit of `data.free` to the measured curve of the preset, in the user's units.
@@ -129,32 +123,59 @@ impl Fitting {
     }
 }
 
-impl Loop {
-    fn event(&self, kind: path::EventKind) -> Option<&path::Event> {
-        self.cycle.events.iter().find(|event| event.kind == kind)
+impl OnPath {
+    fn event(&self, kind: EventKind) -> Option<&Event> {
+        self.path.events.iter().find(|event| event.kind == kind)
     }
 
     pub(super) fn loss(&self) -> Option<Cell> {
-        self.cycle.totals.dissipated.map(Cell::Number)
+        self.path.totals.dissipated.map(Cell::Number)
+    }
+
+    pub(super) fn largest_pull(&self) -> Option<Cell> {
+        self.path.largest_pull().map(|state| Cell::Number(state.force))
+    }
+
+    pub(super) fn farthest(&self) -> Option<Cell> {
+        self.path.farthest().map(|state| Cell::Number(state.approach))
+    }
+
+    pub(super) fn last_contact(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
+        let last = self.path.last_contact()?.before.as_ref()?;
+        Some(Cell::Number(of(last)))
+    }
+
+    pub(super) fn last_contact_loss(&self) -> Option<Cell> {
+        self.path.last_contact()?.dissipated.map(Cell::Number)
+    }
+
+    fn snapping(&self) -> impl Iterator<Item = &Event> {
+        self.path.events.iter().filter(|event| event.kind == EventKind::Snap)
+    }
+
+    pub(super) fn snaps(&self) -> Cell {
+        Cell::Count(self.snapping().count())
+    }
+
+    pub(super) fn snap_loss(&self) -> Cell {
+        Cell::Number(self.snapping().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss))
     }
 
     pub(super) fn first_touch(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
-        let after = self.event(path::EventKind::FirstTouch)?.after.as_ref()?;
+        let after = self.event(EventKind::FirstTouch)?.after.as_ref()?;
         Some(Cell::Number(of(after)))
     }
 
     pub(super) fn touches(&self) -> Cell {
-        let touches = self.cycle.events.iter().filter(|event| event.kind == path::EventKind::Touch);
-        Cell::Count(touches.count())
+        Cell::Count(self.path.events.iter().filter(|event| event.kind == EventKind::Touch).count())
     }
 
     pub(super) fn rings_at_most(&self) -> Cell {
-        let rings = |state: &PathState| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
-        Cell::Count(self.cycle.states.iter().map(rings).max().unwrap_or(0))
+        Cell::Count(self.path.states.iter().map(PathState::rings).max().unwrap_or(0))
     }
 
     pub(super) fn contact_share(&self) -> Option<Cell> {
-        let at = self.event(path::EventKind::Turn)?.before.as_ref()?;
+        let at = self.event(EventKind::Turn)?.before.as_ref()?;
         let circle = std::f64::consts::PI * at.contact_radius * at.contact_radius;
         (circle > 0.0).then_some(Cell::Number(at.contact_area / circle))
     }
@@ -267,28 +288,4 @@ fn least(curve: &Curve, control: Control) -> State {
     let [contact_radius, approach, force] = found.unwrap_or([f64::NAN; 3]);
     // No energy is asked for here.
     State { contact_radius, approach, force, energy: f64::NAN }
-}
-
-impl UnloadingPath {
-    pub(super) fn pull_off(&self, of: fn(&State) -> f64) -> Option<Cell> {
-        let last = self.unloading.events.last().filter(|event| event.kind == EventKind::PullOff)?;
-        Some(Cell::Number(of(&last.before)))
-    }
-
-    fn snapping(&self) -> impl Iterator<Item = &crate::quasistatic::Event> {
-        self.unloading.events.iter().filter(|event| event.kind == EventKind::Snap)
-    }
-
-    pub(super) fn snaps(&self) -> Cell {
-        Cell::Count(self.snapping().count())
-    }
-
-    pub(super) fn snap_loss(&self) -> Cell {
-        Cell::Number(self.snapping().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss))
-    }
-
-    pub(super) fn pull_off_loss(&self) -> Option<Cell> {
-        let last = self.unloading.events.last().filter(|event| event.kind == EventKind::PullOff)?;
-        last.dissipated.map(Cell::Number)
-    }
 }

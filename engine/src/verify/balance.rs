@@ -16,7 +16,7 @@ use super::row::Row;
 use crate::gap::Gap;
 use crate::problem::Control;
 use crate::quasistatic::curve::radii;
-use crate::quasistatic::{Curve, Equilibrium, State, Unloading};
+use crate::quasistatic::{Curve, Equilibrium, Path, PathState};
 use gauss_quad::GaussLegendre;
 
 /// Steps per wave of the Gauss rule, eight nodes each, and the largest relative to the radius: far finer than the bound needs.
@@ -33,15 +33,18 @@ const BOUND: f64 = 1e-9;
 pub const OWN_MEASURE: &str = "relative";
 
 /// Work against storage and loss along `ours`, the unloading of `curve`.
-pub fn row(curve: &Curve, ours: &Unloading) -> Row {
+pub fn row(curve: &Curve, ours: &Path) -> Row {
     const WHAT: &str = "device's work against stored and lost";
     let Some(work) = work(&curve.equilibrium, ours) else {
         return Row::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND);
     };
-    let lost = ours.total_dissipated();
-    let at_start = stored(ours.control, &ours.start);
+    let lost = ours.losses();
+    let Some(start) = ours.start() else { return Row::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND) };
+    let at_start = stored(ours.control, start);
     let at_end = match ours.events.last() {
-        Some(last) if last.dissipated.is_none() => stored(ours.control, &last.before),
+        Some(last) if last.dissipated.is_none() => {
+            last.before.as_ref().map_or(f64::NAN, |before| stored(ours.control, before))
+        }
         Some(last) => last.after.as_ref().map_or(0.0, |after| stored(ours.control, after)),
         None => at_start,
     };
@@ -50,7 +53,7 @@ pub fn row(curve: &Curve, ours: &Unloading) -> Row {
 }
 
 /// The energy of the bodies and of the spring.
-fn stored(control: Control, state: &State) -> f64 {
+fn stored(control: Control, state: &PathState) -> f64 {
     match control {
         Control::Displacement | Control::Force => state.energy,
         Control::Stiffness(k) => state.energy + 0.5 * state.force * state.force / k,
@@ -58,14 +61,15 @@ fn stored(control: Control, state: &State) -> f64 {
 }
 
 /// The work of the device from the start to the last event.
-fn work(equilibrium: &Equilibrium, ours: &Unloading) -> Option<f64> {
+fn work(equilibrium: &Equilibrium, ours: &Path) -> Option<f64> {
     let mut work = 0.0;
-    let mut from = ours.start;
+    let mut from = ours.start()?;
     for event in &ours.events {
-        work += along(equilibrium, ours.control, from.contact_radius, event.before.contact_radius)?;
-        let Some(after) = event.after else { break };
+        let before = event.before.as_ref()?;
+        work += along(equilibrium, ours.control, from.contact_radius, before.contact_radius)?;
+        let Some(after) = &event.after else { break };
         if ours.control == Control::Force {
-            work += event.control_value * (after.approach - event.before.approach);
+            work += event.control_value * (after.approach - before.approach);
         }
         from = after;
     }

@@ -19,7 +19,7 @@ use crate::gap::shapes::{Harmonic, Harmonics};
 use crate::problem::Turn;
 use crate::problem::{Control, Problem};
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Areas, EVEN, Event, EventKind, Path, Setting, cycle};
+use crate::quasistatic::path::{Event, EventKind, Path, Setting, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -45,11 +45,11 @@ struct Known {
     work_of_adhesion: f64,
     /// The approach of every event in order.
     approaches: &'static [f64],
-    /// The outermost edge after every event but the pull-off.
+    /// The outermost edge after every event but the last contact.
     landings: &'static [f64],
     lost: f64,
     first_touch: [f64; 2],
-    pull_off: [f64; 2],
+    last_contact: [f64; 2],
 }
 
 /// Without rings that last.
@@ -92,7 +92,7 @@ fn strong() -> Known {
         ],
         lost: 2.112_003_387_295_31e-3,
         first_touch: [0.261_057_637_821_063_2, -0.012_934_170_552_290_24],
-        pull_off: [0.143_650_617_504_202_8, -0.017_090_567_155_220_04],
+        last_contact: [0.143_650_617_504_202_8, -0.017_090_567_155_220_04],
     }
 }
 
@@ -148,7 +148,7 @@ fn weak() -> Known {
         ],
         lost: 1.297_949_009_458_416e-4,
         first_touch: [0.007_794_041_435_951_271, -1.200_135_018_168_304e-5],
-        pull_off: [0.044_369_618_571_360_78, -0.001_001_787_873_017_846],
+        last_contact: [0.044_369_618_571_360_78, -0.001_001_787_873_017_846],
     }
 }
 
@@ -209,8 +209,7 @@ fn run(work_of_adhesion: f64) -> Result<Option<Path>, VerifyError> {
     let reduced = Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced();
     let table = Arc::new(Table::new(reduced.gap, fig_9().start, &Unwatched)?);
     let (control, turn) = (Control::Displacement, Turn::Approach(TURN));
-    let setting = Setting { control, turn, areas: Areas::Yes, mobility: EVEN };
-    Ok(cycle(&table, work_of_adhesion, &setting, &Unwatched).ok())
+    Ok(cycle(&table, work_of_adhesion, turn, &Setting::new(control), &Unwatched).ok())
 }
 
 fn of_loop(known: &Known, found: Option<&Path>) -> Group {
@@ -234,18 +233,20 @@ fn of_loop(known: &Known, found: Option<&Path>) -> Group {
     let landings = pairs(&|event| event.after.as_ref().map(|state| state.contact_radius), known.landings);
     let of = |kind: EventKind| events.iter().find(|event| event.kind == kind);
     let first = of(EventKind::FirstTouch).and_then(|event| event.after.as_ref());
-    let last = of(EventKind::PullOff).and_then(|event| event.before.as_ref());
+    let last = of(EventKind::LastContact).and_then(|event| event.before.as_ref());
     let mut rows = vec![
         Row::new("number of events", events.len() as f64, known.approaches.len() as f64, 1.0, 0.0),
         Row::worst("approach of the events, the worst", approaches, range(known.approaches), STATES),
         Row::worst("outermost edge after them, the worst", landings, range(known.landings), STATES),
     ];
-    let ends =
-        [("after the first touch", first, known.first_touch), ("at the pull-off", last, known.pull_off)];
+    let ends = [
+        ("after the first touch", first, known.first_touch),
+        ("at the last contact", last, known.last_contact),
+    ];
     for (what, state, [radius, force]) in ends {
         let [ours_radius, ours_force] =
             state.map_or([f64::NAN; 2], |state| [state.contact_radius, state.force]);
-        let scale = known.pull_off[1].abs();
+        let scale = known.last_contact[1].abs();
         rows.push(Row::new(
             format!("contact radius {what}"),
             ours_radius,
@@ -266,7 +267,7 @@ fn balance(known: &Known, found: Option<&Path>) -> Row {
     let what = format!("{}: work against loss", known.name);
     let sums = found.and_then(|found| {
         let Path { totals, .. } = found;
-        Some((totals.work_of_loading + totals.work_of_unloading?, totals.dissipated?))
+        Some((totals.work_of_loading? + totals.work_of_unloading?, totals.dissipated?))
     });
     let (work, lost) = sums.unwrap_or((f64::NAN, f64::NAN));
     Row::own(what, work, lost, known.lost, BOUND)

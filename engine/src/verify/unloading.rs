@@ -11,8 +11,9 @@ use super::row::{Group, Row};
 use super::settings::Candidate;
 use crate::disc::Basis;
 use crate::problem::Control;
-use crate::quasistatic::unload::unload;
-use crate::quasistatic::{Curve, Event, State, Unloading};
+use crate::progress::Unwatched;
+use crate::quasistatic::path::{Setting, unload};
+use crate::quasistatic::{Curve, Event, Path, PathState};
 use crate::theory::unloading::{self, INWARD_REACH, Jump, limit_points};
 use crate::theory::{Disc, Equilibrium, Exact};
 use std::sync::Arc;
@@ -31,7 +32,7 @@ pub fn swept(figure: &Figure, basis: &Arc<dyn Basis>) -> Option<Curve> {
 /// s, δ and P as they are compared.
 const QUANTITIES: [&str; 3] = ["contact radius", "approach", "force"];
 
-fn of_ours(state: &State) -> [f64; 3] {
+fn of_ours(state: &PathState) -> [f64; 3] {
     [state.contact_radius, state.approach, state.force]
 }
 
@@ -64,7 +65,7 @@ fn rows(
     };
     let ranges = ranges(exact, figure);
     let mut rows = limits(exact, figure, candidate, curve, control, ranges);
-    match unload(curve, control) {
+    match unload(curve, &Setting::one_disc(control), &Unwatched) {
         Ok(ours) => {
             rows.extend(states(&ours, &path.jumps, candidate, ranges));
             rows.extend(losses(&ours, &path.jumps, candidate));
@@ -111,16 +112,18 @@ fn limits(
 }
 
 /// The states that the instabilities leave, and those they reach.
-fn states(ours: &Unloading, exact: &[Jump], candidate: &Candidate, ranges: [f64; 3]) -> Vec<Row> {
+fn states(ours: &Path, exact: &[Jump], candidate: &Candidate, ranges: [f64; 3]) -> Vec<Row> {
     let count = |snap: bool| exact.iter().filter(|jump| jump.after.is_some() == snap).count() as f64;
     let ours_count = |snap: bool| ours.events.iter().filter(|e| e.after.is_some() == snap).count() as f64;
     let mut rows = vec![
         Row::new("snaps", ours_count(true), count(true), 1.0, 0.0),
-        Row::new("pull-offs", ours_count(false), count(false), 1.0, 0.0),
+        Row::new("last contacts", ours_count(false), count(false), 1.0, 0.0),
     ];
     let pairs: Vec<(&Event, &Jump)> = ours.events.iter().zip(exact).collect();
     for (k, quantity) in QUANTITIES.into_iter().enumerate() {
-        let left = pairs.iter().map(|(event, jump)| (of_ours(&event.before)[k], of_exact(&jump.before)[k]));
+        let left = pairs.iter().filter_map(|(event, jump)| {
+            Some((of_ours(event.before.as_ref()?)[k], of_exact(&jump.before)[k]))
+        });
         let what = format!("{quantity} before, worst of {}", exact.len());
         rows.push(Row::worst(what, left, ranges[k], candidate.bounds.state));
     }
@@ -134,14 +137,14 @@ fn states(ours: &Unloading, exact: &[Jump], candidate: &Candidate, ranges: [f64;
     rows
 }
 
-/// What each instability loses, in both ways; a pull-off under a dead load has no loss.
-fn losses(ours: &Unloading, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
+/// What each instability loses, in both ways; a last contact under a dead load has no loss.
+fn losses(ours: &Path, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
     let mut rows = Vec::new();
     for (number, (event, jump)) in ours.events.iter().zip(exact).enumerate() {
         let Some(exact) = jump.dissipated else { continue };
         let drop = event.dissipated.unwrap_or(f64::NAN);
         let area = event.dissipated_by_area.unwrap_or(f64::NAN);
-        let kind = if jump.after.is_some() { "snap" } else { "pull-off" };
+        let kind = if jump.after.is_some() { "snap" } else { "last contact" };
         let number = number + 1;
         rows.push(Row::relative(format!("{number} {kind}: loss"), drop, exact, candidate.bounds.loss));
         rows.push(Row::own(

@@ -120,7 +120,7 @@ mod tests {
             ("ste", "step", 2),
             ("step-", "step-length ", 1),
             ("set gap.am", "set gap.amplitude=", 1),
-            ("set gap.amplitude=1 path.c", "set gap.amplitude=1 path.control", 2),
+            ("set gap.amplitude=1 path.contr", "set gap.amplitude=1 path.control", 2),
             ("set gap.shape=po", "set gap.shape=power-law ", 1),
             ("open l", "open lab-", 2),
             ("open lab-3 basis.k", "open lab-3 basis.kind=", 1),

@@ -10,8 +10,11 @@ use crate::explorer::setting::Setting;
 use pulloff_engine::annuli::MOST_CONTACTS;
 use pulloff_engine::continuation::{Column, Columns};
 use pulloff_engine::quasistatic::admissible::Crest;
+use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::{Ahead, edges};
-use pulloff_engine::quasistatic::{Admissibility, Event, EventKind, Point, Stability, State, Stiffness};
+use pulloff_engine::quasistatic::{
+    Admissibility, Event, EventKind, PathState, Point, Stability, State, Stiffness,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -73,14 +76,58 @@ enum Kind {
     Stale(String),
 }
 
-/// A jump; without a landing a pull-off.
+/// A jump.
 #[derive(Debug, Serialize, Deserialize)]
 struct Leap {
+    kind: String,
+    loading: bool,
     control_value: Real,
-    before: [Real; 4],
-    after: Option<[Real; 4]>,
+    radius: Option<Real>,
+    before: Option<LeapEnd>,
+    after: Option<LeapEnd>,
     dissipated: Option<Real>,
     by_area: Option<Real>,
+}
+
+/// A state at which a jump begins or ends.
+#[derive(Debug, Serialize, Deserialize)]
+struct LeapEnd {
+    state: [Real; 4],
+    contacts: Vec<[Real; 2]>,
+    area: Real,
+    held_stiffness: Real,
+    stable: bool,
+    control_value: Real,
+}
+
+impl LeapEnd {
+    fn of(state: &PathState) -> Self {
+        Self {
+            state: state_out(&state.state()),
+            contacts: state.contacts.iter().map(|edges| edges.map(Real)).collect(),
+            area: Real(state.contact_area),
+            held_stiffness: Real(state.held_stiffness),
+            stable: state.stable,
+            control_value: Real(state.control_value),
+        }
+    }
+
+    fn back(self, direction: Direction) -> PathState {
+        let State { contact_radius, approach, force, energy } = state_in(self.state);
+        PathState {
+            contact_radius,
+            approach,
+            force,
+            energy,
+            contacts: self.contacts.into_iter().map(|edges| edges.map(|r| r.0)).collect(),
+            contact_area: self.area.0,
+            held_stiffness: self.held_stiffness.0,
+            stable: self.stable,
+            control_value: self.control_value.0,
+            direction,
+            piece: 0,
+        }
+    }
 }
 
 /// Where a jump would lead.
@@ -107,9 +154,12 @@ impl Kind {
             NodeKind::Limit => Self::Limit,
             NodeKind::Touch(radius) => Self::Touch(Real(*radius)),
             NodeKind::Jump(event) => Self::Jump(Box::new(Leap {
+                kind: event.kind.name().to_owned(),
+                loading: event.direction == Direction::Loading,
                 control_value: Real(event.control_value),
-                before: state_out(&event.before),
-                after: event.after.as_ref().map(state_out),
+                radius: event.radius.map(Real),
+                before: event.before.as_ref().map(LeapEnd::of),
+                after: event.after.as_ref().map(LeapEnd::of),
                 dissipated: event.dissipated.map(Real),
                 by_area: event.dissipated_by_area.map(Real),
             })),
@@ -125,14 +175,21 @@ impl Kind {
             Self::Step => NodeKind::Step,
             Self::Limit => NodeKind::Limit,
             Self::Touch(radius) => NodeKind::Touch(radius.0),
-            Self::Jump(leap) => NodeKind::Jump(Box::new(Event {
-                kind: if leap.after.is_some() { EventKind::Snap } else { EventKind::PullOff },
-                control_value: leap.control_value.0,
-                before: state_in(leap.before),
-                after: leap.after.map(state_in),
-                dissipated: leap.dissipated.map(|x| x.0),
-                dissipated_by_area: leap.by_area.map(|x| x.0),
-            })),
+            Self::Jump(leap) => {
+                let direction = if leap.loading { Direction::Loading } else { Direction::Unloading };
+                let kind = EventKind::ALL.into_iter().find(|kind| kind.name() == leap.kind);
+                NodeKind::Jump(Box::new(Event {
+                    kind: kind.unwrap_or(EventKind::Snap),
+                    direction,
+                    control_value: leap.control_value.0,
+                    radius: leap.radius.map(|r| r.0),
+                    before: leap.before.map(|end| end.back(direction)),
+                    after: leap.after.map(|end| end.back(direction)),
+                    dissipated: leap.dissipated.map(|x| x.0),
+                    dissipated_by_area: leap.by_area.map(|x| x.0),
+                    passed: Vec::new(),
+                }))
+            }
             Self::Moved => NodeKind::Moved,
             Self::Solved => NodeKind::Solved,
             Self::Stale(reason) => NodeKind::Stale(reason),

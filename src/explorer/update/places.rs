@@ -10,6 +10,9 @@ use pulloff_engine::quasistatic::Event;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::units::Quantity;
 
+/// Why the walker does not go to some events.
+const WITH_RINGS: &str = "that state has rings of contact, and the walker is on the curve of one disc";
+
 /// The walker goes to the state of this contact radius, in the user's units.
 pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
@@ -35,9 +38,13 @@ pub(super) fn to_least_force(model: &mut Model) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
     match &curve.unloading {
         Ok(path) => {
-            let radius = path.min_force.contact_radius;
+            let Some(least) = path.largest_pull() else { return Vec::new() };
+            let radius = least.contact_radius;
             // Under a dead load it is where an event begins, and is reached as that.
-            let begins = |event: &Event| (event.before.contact_radius - radius).abs() <= SAME * radius;
+            let begins = |event: &Event| {
+                let before = event.before.as_ref().map(|before| before.contact_radius);
+                before.is_some_and(|before| (before - radius).abs() <= SAME * radius)
+            };
             match path.events.iter().position(begins) {
                 Some(event) => {
                     (model.events, model.event) = (EventSource::Curve, event);
@@ -85,7 +92,11 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
         }
         return Vec::new();
     };
-    let away = |s: f64| (s - event.before.contact_radius).abs();
+    let Some(before) = event.before.as_ref().filter(|before| before.rings() == 0) else {
+        model.tell(Level::Info, WITH_RINGS);
+        return Vec::new();
+    };
+    let away = |s: f64| (s - before.contact_radius).abs();
     let radius = |i: &usize| curve.limits[*i].contact_radius;
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
     model.inward = true;
@@ -102,8 +113,7 @@ fn go_to_loop_event(model: &mut Model) -> Vec<Effect> {
     match before {
         Some((contacts, radius)) if contacts.len() == 1 && contacts[0][0] == 0.0 => move_to(model, radius),
         Some(_) => {
-            let text = "that state has rings of contact, and the walker is on the curve of one disc";
-            model.tell(Level::Info, text);
+            model.tell(Level::Info, WITH_RINGS);
             Vec::new()
         }
         None => Vec::new(),

@@ -5,10 +5,9 @@ use crate::explorer::{Axes, EventSource, Id, Inadmissible, Model, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::cycle::{CycleEventReport, CycleStateReport};
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
-use pulloff_engine::report::unload::{EventReport, StateReport};
-use pulloff_engine::report::{OverlapReport, cycle_table};
+use pulloff_engine::report::path::{EventReport, StateReport};
+use pulloff_engine::report::{OverlapReport, path_table};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -106,11 +105,11 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
 }
 
 /// The contacts before and after an event of the loop.
-fn contacts(event: &CycleEventReport, units: &UnitSystem) -> String {
-    let of = |state: &Option<CycleStateReport>| {
+fn contacts(event: &EventReport, units: &UnitSystem) -> String {
+    let of = |state: &Option<StateReport>| {
         state
             .as_ref()
-            .map_or_else(|| "apart".to_owned(), |state| cycle_table::contacts(units, &state.contacts))
+            .map_or_else(|| "apart".to_owned(), |state| path_table::contacts(units, &state.contacts))
     };
     format!("contact {} -> {}", of(&event.before), of(&event.after))
 }
@@ -127,7 +126,8 @@ fn here(model: &Model, events: &[EventReport]) -> Option<usize> {
     model.limit_number()?;
     let node = model.walker()?;
     let s = node.state.in_units(node.setting.units()).contact_radius;
-    events.iter().position(|event| (event.before.contact_radius - s).abs() <= 1e-6 * s)
+    let near = |before: &StateReport| (before.contact_radius - s).abs() <= 1e-6 * s;
+    events.iter().position(|event| event.before.as_ref().is_some_and(near))
 }
 
 fn title(model: &Model, keymap: &Keymap) -> String {
@@ -188,13 +188,17 @@ fn headline(model: &Model, keymap: &Keymap, room: usize) -> String {
     }
     if model.events == EventSource::Cycle {
         let report = model.cycle.as_ref().and_then(|cycle| cycle.report());
-        let total = report.map(|report| (report.totals.dissipated, report.totals.dissipated_before_pull_off));
+        let total =
+            report.map(|report| (report.totals.dissipated, report.totals.dissipated_before_last_contact));
         return total.map_or_else(String::new, |(all, before)| lost(all.unwrap_or(before), all.is_some()));
     }
     let Some(report) = &curve.report else { return String::new() };
-    let least = shown(Quantity::Force, report.min_force);
+    let totals = &report.totals;
+    let [pull, far] = [&totals.largest_pull, &totals.farthest].map(Option::as_ref);
+    let [pull, far] = [pull.map_or(f64::NAN, |at| at.force), far.map_or(f64::NAN, |at| at.approach)];
+    let least = shown(Quantity::Force, pull);
     let share = (curve.base.critical_force > 0.0)
-        .then(|| format!("{} Pc", significant(report.min_force / curve.base.critical_force, 4)));
+        .then(|| format!("{} Pc", significant(pull / curve.base.critical_force, 4)));
     let force = share.clone().filter(|_| model.axes == Axes::Reduced).unwrap_or_else(|| least.clone());
     // Both, where the one has a unit and there is room.
     let both =
@@ -202,8 +206,8 @@ fn headline(model: &Model, keymap: &Keymap, room: usize) -> String {
     let bounded = report.events.iter().all(|e| e.dissipated.is_some());
     let parts = [
         format!("least P {force}"),
-        format!("least δ {}", shown(Quantity::Length, report.min_approach)),
-        lost(report.total_dissipated, bounded),
+        format!("least δ {}", shown(Quantity::Length, far)),
+        lost(totals.dissipated.unwrap_or(totals.dissipated_before_last_contact), bounded),
     ];
     let [force, approach, lost] = &parts;
     let key = keymap.first(Id::LeastForce);
@@ -294,12 +298,12 @@ fn table(
         (false, true) => SHORT_HELD,
         (false, false) => SHORT,
     };
-    let cells = |(i, event)| match (wide, held) {
-        (true, _) => long(units, i, event, critical),
-        (false, true) => held_row(units, i, event, critical),
-        (false, false) => row(units, i, event, critical),
+    let cells = |event| match (wide, held) {
+        (true, _) => long(units, event, critical),
+        (false, true) => held_row(units, event, critical),
+        (false, false) => row(units, event, critical),
     };
-    let rows: Vec<Vec<String>> = (1..).zip(events).map(cells).collect();
+    let rows: Vec<Vec<String>> = events.iter().map(cells).collect();
     let heads: Vec<String> = columns
         .iter()
         .map(|(head, ..)| if *head == "P/Pc" && critical <= 0.0 { "P" } else { head }.to_owned())
@@ -334,10 +338,11 @@ fn table(
 /// The crests before and after.
 fn crests(event: &EventReport) -> String {
     let crest = |wave: Option<u64>| wave.map_or_else(dash, |m| m.to_string());
-    if event.before.wave.is_none() {
+    let [before, after] = [&event.before, &event.after].map(|state| state.as_ref().and_then(|at| at.wave));
+    if before.or(after).is_none() {
         return dash();
     }
-    format!("{}>{}", crest(event.before.wave), crest(event.after.as_ref().and_then(|after| after.wave)))
+    format!("{}>{}", crest(before), crest(after))
 }
 
 fn dash() -> String {
@@ -358,19 +363,26 @@ fn forces(units: &UnitSystem, event: &EventReport, critical: f64) -> [String; 2]
             significant(units.shown(Quantity::Force, p).number, 3)
         }
     };
-    [force(event.before.force), event.after.as_ref().map_or_else(dash, |after| force(after.force))]
+    [&event.before, &event.after].map(|state| state.as_ref().map_or_else(dash, |at| force(at.force)))
 }
 
-fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+/// A number of the states before and after.
+fn ends(event: &EventReport, shown: impl Fn(&StateReport) -> String) -> [String; 2] {
+    [&event.before, &event.after].map(|state| state.as_ref().map_or_else(dash, &shown))
+}
+
+fn row(units: &UnitSystem, event: &EventReport, critical: f64) -> Vec<String> {
     let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
     let [before, after] = forces(units, event, critical);
+    let [radius, radius_after] = ends(event, |at| length(at.contact_radius));
+    let [approach, approach_after] = ends(event, |at| length(at.approach));
     vec![
-        number.to_string(),
-        length(event.before.approach),
+        event.number.to_string(),
+        if event.before.is_some() { approach } else { approach_after },
         before,
         after,
-        length(event.before.contact_radius),
-        event.after.as_ref().map_or_else(dash, |after| length(after.contact_radius)),
+        radius,
+        radius_after,
         crests(event),
         lost(units, event),
         event.kind.to_owned(),
@@ -378,27 +390,29 @@ fn row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) ->
 }
 
 /// Under a dead load.
-fn held_row(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+fn held_row(units: &UnitSystem, event: &EventReport, critical: f64) -> Vec<String> {
     let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
-    let after =
-        |of: fn(&StateReport) -> f64| event.after.as_ref().map_or_else(dash, |after| length(of(after)));
-    let [force, _] = forces(units, event, critical);
+    let [force, force_after] = forces(units, event, critical);
+    let [approach, approach_after] = ends(event, |at| length(at.approach));
+    let [radius, radius_after] = ends(event, |at| length(at.contact_radius));
     vec![
-        number.to_string(),
-        force,
-        length(event.before.approach),
-        after(|state| state.approach),
-        length(event.before.contact_radius),
-        after(|state| state.contact_radius),
+        event.number.to_string(),
+        if event.before.is_some() { force } else { force_after },
+        approach,
+        approach_after,
+        radius,
+        radius_after,
         crests(event),
         lost(units, event),
         event.kind.to_owned(),
     ]
 }
 
-fn long(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -> Vec<String> {
+fn long(units: &UnitSystem, event: &EventReport, critical: f64) -> Vec<String> {
     let shown = |quantity, x, digits| significant(units.shown(quantity, x).number, digits);
-    let (before, after) = (&event.before, event.after.as_ref());
+    let [approach, approach_after] = ends(event, |at| shown(Quantity::Length, at.approach, 4));
+    let [force, force_after] = ends(event, |at| shown(Quantity::Force, at.force, 4));
+    let [radius, radius_after] = ends(event, |at| shown(Quantity::Length, at.contact_radius, 5));
     let [share, share_after] = forces(units, event, critical);
     let agreement = match event.losses_agree() {
         Some(true) => "agrees".to_owned(),
@@ -408,16 +422,16 @@ fn long(units: &UnitSystem, number: usize, event: &EventReport, critical: f64) -
         ),
     };
     vec![
-        number.to_string(),
+        event.number.to_string(),
         event.kind.to_owned(),
-        shown(Quantity::Length, before.approach, 4),
-        after.map_or_else(dash, |a| shown(Quantity::Length, a.approach, 4)),
-        shown(Quantity::Force, before.force, 4),
-        after.map_or_else(dash, |a| shown(Quantity::Force, a.force, 4)),
+        approach,
+        approach_after,
+        force,
+        force_after,
         share,
         share_after,
-        shown(Quantity::Length, before.contact_radius, 5),
-        after.map_or_else(dash, |a| shown(Quantity::Length, a.contact_radius, 5)),
+        radius,
+        radius_after,
         crests(event),
         lost(units, event),
         agreement,

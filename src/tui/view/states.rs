@@ -9,7 +9,6 @@ use crate::explorer::{Model, View};
 use crate::tui::app::App;
 use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
-use pulloff_engine::report::unload::EventReport;
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -103,7 +102,7 @@ fn row(model: &Model, node: &Node, before: Option<&Node>) -> String {
     };
     let mut said: Vec<String> = Vec::new();
     if let NodeKind::Jump(event) = &node.kind {
-        let lost = EventReport::new(&setting.reduced, node.control, event).dissipated;
+        let lost = event.dissipated.map(|lost| lost * setting.units().energy);
         let energy = |x| with_unit(units, Quantity::Energy, x, false, loss);
         said.push(lost.map_or_else(|| "no bound".to_owned(), energy));
     }

@@ -272,7 +272,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
         "limit points under displacement",
         "snaps",
         "ΔP/Pc over s/λ",
-        "pull off force over A",
+        "largest pull over A",
     ] {
         let text = screen.text(80, 24);
         assert!(text.contains(title), "{title}: {text}");

@@ -58,6 +58,7 @@ impl Preset {
                 Control::Displacement | Control::Force => return None,
             },
             "path.begin" => path.begin.name().into(),
+            "path.contact" => path.contact.name().into(),
             "path.end_contact_radius" => path.end_contact_radius?.into(),
             data::FILE => Value::Points(std::sync::Arc::clone(data.source.as_ref()?)),
             data::COLUMNS => Some(&*data.columns).filter(|columns| !columns.is_empty())?.into(),

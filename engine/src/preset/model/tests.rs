@@ -25,6 +25,7 @@ fn another(key: &str) -> Value {
         "basis.grading" => "edge".into(),
         "path.control" => Control::Force.into(),
         "path.begin" => "touch".into(),
+        "path.contact" => "one-disc".into(),
         "path.end_contact_radius" => 0.003.into(),
         "path.turn_approach" => 0.1.into(),
         "path.turn_force" => 0.05.into(),
@@ -89,6 +90,7 @@ const FIELDS: &[&str] = &[
     "path.start_force",
     "path.end_contact_radius",
     "path.begin",
+    "path.contact",
     "path.turn_approach",
     "path.turn_force",
     "path.turn_contact_radius",
@@ -135,7 +137,7 @@ fn the_table_is_total() {
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
     }
-    let PathSpec { control: _, start: _, end_contact_radius: _, begin: _, turn: _ } = path;
+    let PathSpec { control: _, start: _, end_contact_radius: _, begin: _, contact: _, turn: _ } = path;
     match gap {
         Shape::Sphere { radius_of_curvature: _ }
         | Shape::WavySphere { radius_of_curvature: _, amplitude: _, wavelength: _ }

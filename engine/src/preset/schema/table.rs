@@ -5,7 +5,7 @@ use super::{
     SYSTEMS, TURN_KEYS,
 };
 use crate::preset::data;
-use crate::problem::Begin;
+use crate::problem::{Begin, ContactKind};
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
 
@@ -237,6 +237,13 @@ pub static PARAMETERS: &[Parameter] = &[
         Kind::Choice(&Begin::NAMES),
     )
     .or(Fallback::Text(Begin::NAMES[0])),
+    row(
+        "path.contact",
+        "contact",
+        "which contacts a path follows: a disc and rings wherever they appear, or one disc alone",
+        Kind::Choice(&ContactKind::NAMES),
+    )
+    .or(Fallback::Text(ContactKind::NAMES[0])),
     length(
         TURN_KEYS[0],
         "delta turn",

@@ -12,7 +12,7 @@
 use super::lane::Lane;
 use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground, Resolution, State, Wanted, points};
 use crate::disc::outside;
-use crate::problem::Control;
+use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{PI, TAU};
@@ -40,6 +40,8 @@ pub struct Balance<'a> {
     pub work_of_adhesion: f64,
     /// The device.
     pub control: Control,
+    /// Whether crests outside may touch.
+    pub contact: ContactKind,
     /// Asked while the edges run.
     pub progress: &'a dyn Progress,
     /// The equilibria of one disc alone, where they are known: edges run on them at once.
@@ -189,8 +191,12 @@ impl Balance<'_> {
         }
     }
 
-    /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near.
+    /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near, or nothing else is
+    /// followed.
     pub fn least_gap(&self, held: &Held) -> Option<Crest> {
+        if self.contact == ContactKind::OneDisc {
+            return None;
+        }
         let to = self.ground.can_touch_up_to(held.approach);
         let contacts = &held.state.contacts;
         if contacts.is_disc() {

@@ -1,4 +1,4 @@
-//! Errors and warnings of a loop in the user's units and in words.
+//! Errors and warnings of a path in the user's units and in words.
 
 use super::error::{PathError, Warning};
 use crate::annuli::{AnnuliError, ContactsError};
@@ -38,6 +38,9 @@ impl PathError {
                 Self::TurnBeforeTouch { turn: turn * value, touch: touch * value }
             }
             Self::NoTension { load } => Self::NoTension { load: load * units.force },
+            Self::UnstableStart { contact_radius, searched } => {
+                Self::UnstableStart { contact_radius: contact_radius * length, searched: searched * length }
+            }
             Self::BeyondGap { radius, approach, force } => Self::BeyondGap {
                 radius: radius * length,
                 approach: approach * length,
@@ -79,6 +82,20 @@ impl PathError {
                 force(load),
                 force(0.0)
             ),
+            Self::UnstableStart { contact_radius, searched } => {
+                let control = match control {
+                    Control::Stiffness(k) => {
+                        format!("stiffness={}", said(shown, Quantity::ForcePerLength, k))
+                    }
+                    other => other.to_string(),
+                };
+                format!(
+                    "the start state (contact radius {}) is unstable under {control} control and no stable state lies outward \
+                     up to the contact radius {}",
+                    length(contact_radius),
+                    length(searched)
+                )
+            }
             Self::BeyondGap { radius, approach, force: load } => format!(
                 "the contact grew to r = {}, up to where the gap is known, at the approach {} and the force {}: turn before",
                 length(radius),

@@ -1,10 +1,10 @@
-//! Why there is no loop.
+//! Why there is no path.
 
 use crate::annuli::AnnuliError;
 use crate::disc::TableError;
 use crate::problem::Control;
 
-/// Why there is no loop. All numbers are in reduced units.
+/// Why there is no path. All numbers are in reduced units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PathError {
     /// The control turns before the bodies touch.
@@ -20,6 +20,16 @@ pub enum PathError {
     NoTension {
         /// The load.
         load: f64,
+    },
+    /// The start is unstable and nothing outward is stable.
+    #[error(
+        "the start state (contact radius {contact_radius}) is unstable and no stable state lies outward up to {searched}"
+    )]
+    UnstableStart {
+        /// s of the start, a length.
+        contact_radius: f64,
+        /// The largest radius searched, a length.
+        searched: f64,
     },
     /// The turn lies beyond what is known of the gap.
     #[error(
@@ -100,7 +110,7 @@ impl From<TableError> for PathError {
     }
 }
 
-/// What is to be known about a loop beyond its numbers.
+/// What is to be known about a path beyond its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
     /// Some state had fewer digits than nine: breaks of the gap lie inside a ring, or it takes more points than there may be.

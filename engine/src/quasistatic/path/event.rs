@@ -1,8 +1,12 @@
-//! What happens on a loop, and its states.
+//! What happens on a path, and its states.
 
 use super::balance::Held;
+use super::setting::Losses;
+use crate::disc::{Local, Place, Solution};
 use crate::problem::Control;
-use crate::quasistatic::{energy, equilibrium};
+use crate::quasistatic::State;
+use crate::quasistatic::energy;
+use std::f64::consts::PI;
 
 /// Which way the control goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +35,7 @@ impl Direction {
     }
 }
 
-/// One state of a loop, in reduced units.
+/// One state of a path, in reduced units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathState {
     /// The outermost edge, a length.
@@ -46,6 +50,10 @@ pub struct PathState {
     pub contacts: Vec<[f64; 2]>,
     /// The contact area, a length squared.
     pub contact_area: f64,
+    /// dP/dδ while all edges are held, a force over a length: 2E*s for a disc.
+    pub held_stiffness: f64,
+    /// Whether the device holds it: not at a limit point, from which edges run.
+    pub stable: bool,
     /// c: δ, P or Δ.
     pub control_value: f64,
     /// Which way the control goes.
@@ -65,24 +73,50 @@ impl PathState {
             energy: held.state.energy(held.approach, gamma),
             contacts: contacts.intervals(),
             contact_area: contacts.area(),
+            held_stiffness: held.state.force[1],
+            stable: true,
             control_value: held.control_value,
             direction,
             piece,
         }
     }
 
+    /// The state of one disc at a place of its equilibria, under a device.
+    pub fn of_disc(solution: &dyn Solution, place: Place, control: Control, direction: Direction) -> Self {
+        let Local { contact_radius: s, approach, force, .. } = solution.at(place);
+        Self {
+            contact_radius: s,
+            approach,
+            force,
+            energy: solution.energy(place),
+            contacts: vec![[0.0, s]],
+            contact_area: PI * s * s,
+            held_stiffness: 2.0 * s,
+            stable: true,
+            control_value: control.value(approach, force),
+            direction,
+            piece: 0,
+        }
+    }
+
     /// The potential of bodies and device, that of bodies apart being 0 at the same control value; of a dead load U − Pδ.
     pub fn potential(&self, control: Control) -> f64 {
-        energy::potential(control, self.force, &self.plain())
+        energy::potential(control, self.force, &self.state())
     }
 
-    /// What a jump from here to `after` dissipates; `None` for a pull-off under a dead load.
+    /// What a jump from here to `after` dissipates; `None` for a last contact under a dead load.
     pub fn loss(&self, control: Control, after: Option<&Self>) -> Option<f64> {
-        energy::loss(control, &self.plain(), after.map(Self::plain).as_ref())
+        energy::loss(control, &self.state(), after.map(Self::state).as_ref())
     }
 
-    fn plain(&self) -> equilibrium::State {
-        equilibrium::State {
+    /// The number of rings of contact.
+    pub fn rings(&self) -> usize {
+        self.contacts.iter().filter(|[inner, _]| *inner > 0.0).count()
+    }
+
+    /// Its outermost edge, δ, P and U.
+    pub fn state(&self) -> State {
+        State {
             contact_radius: self.contact_radius,
             approach: self.approach,
             force: self.force,
@@ -96,38 +130,56 @@ impl PathState {
 pub enum EventKind {
     /// The bodies, apart before, touch and jump into contact.
     FirstTouch,
-    /// A crest outside the contacts touches.
+    /// A crest outside the contacts touches; with adhesion edges run then.
     Touch,
-    /// Edges ran outward from a limit point of loading.
-    Advance,
-    /// The control turned round.
-    Turn,
-    /// Edges ran inward from a limit point of unloading.
-    Recede,
-    /// The bodies came apart.
-    PullOff,
-    /// Two contacts became one without a jump.
+    /// Two contacts become one without a jump.
     Merge,
-    /// One contact became two without a jump.
+    /// Edges run outward from a limit point of the control.
+    SnapIn,
+    /// Edges run inward from a limit point of the control.
+    Snap,
+    /// The bodies come apart.
+    LastContact,
+    /// One contact becomes two without a jump.
     Split,
-    /// A contact shrank to nothing without a jump.
+    /// A contact shrinks to nothing without a jump.
     Vanish,
+    /// The control turns round.
+    Turn,
 }
 
 impl EventKind {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::FirstTouch,
+        Self::Touch,
+        Self::Merge,
+        Self::SnapIn,
+        Self::Snap,
+        Self::LastContact,
+        Self::Split,
+        Self::Vanish,
+        Self::Turn,
+    ];
+
     /// Its name in results.
     pub fn name(self) -> &'static str {
         match self {
             Self::FirstTouch => "first-touch",
             Self::Touch => "touch",
-            Self::Advance => "advance",
-            Self::Turn => "turn",
-            Self::Recede => "recede",
-            Self::PullOff => "pull-off",
             Self::Merge => "merge",
+            Self::SnapIn => "snap-in",
+            Self::Snap => "snap",
+            Self::LastContact => "last-contact",
             Self::Split => "split",
             Self::Vanish => "vanish",
+            Self::Turn => "turn",
         }
+    }
+
+    /// Whether it begins at a limit point of the control, from which edges run.
+    pub fn begins_at_limit(self) -> bool {
+        matches!(self, Self::SnapIn | Self::Snap | Self::LastContact)
     }
 }
 
@@ -162,7 +214,7 @@ pub struct Passed {
     pub radius: f64,
 }
 
-/// One event of a loop.
+/// One event of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
     /// What happened.
@@ -177,10 +229,44 @@ pub struct Event {
     pub before: Option<PathState>,
     /// The state after; `None` where they came apart.
     pub after: Option<PathState>,
-    /// The energy lost, by the drop of the potential; `None` for a pull-off under a dead load.
+    /// The energy lost, by the drop of the potential; `None` for a last contact under a dead load.
     pub dissipated: Option<f64>,
     /// The same by the work that the edges leave over on their way; `None` where it was not asked for.
     pub dissipated_by_area: Option<f64>,
     /// What the jump passed.
     pub passed: Vec<Passed>,
+}
+
+impl Event {
+    /// The jump of one disc at a limit point, at a held control, to where its edge lands; the last contact where it lands nowhere.
+    pub fn of_disc(
+        solution: &dyn Solution,
+        control: Control,
+        before: Place,
+        landing: Option<Place>,
+        losses: Losses,
+    ) -> Self {
+        let outward = landing.is_some_and(|to| (to.panel, to.x) > (before.panel, before.x));
+        let direction = if outward { Direction::Loading } else { Direction::Unloading };
+        let state = |place| PathState::of_disc(solution, place, control, direction);
+        let (old, after) = (PathState { stable: false, ..state(before) }, landing.map(state));
+        Self {
+            kind: match (&after, outward) {
+                (None, _) => EventKind::LastContact,
+                (Some(_), true) => EventKind::SnapIn,
+                (Some(_), false) => EventKind::Snap,
+            },
+            direction,
+            control_value: old.control_value,
+            radius: None,
+            dissipated: old.loss(control, after.as_ref()),
+            dissipated_by_area: match losses {
+                Losses::Once => None,
+                Losses::Twice => energy::area(solution, control, before, landing),
+            },
+            before: Some(old),
+            after,
+            passed: Vec::new(),
+        }
+    }
 }

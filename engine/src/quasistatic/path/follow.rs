@@ -5,12 +5,12 @@ use super::course::{Course, End};
 use super::error::PathError;
 use super::event::Direction;
 use super::point::{Point, Step};
-use super::setting::Areas;
+use super::setting::Losses;
 use crate::annuli::ground::gauss;
 use crate::annuli::{AnnuliError, Around, Crest, MOST_POINTS_IN_ALL, points};
-use crate::problem::Control;
+use crate::problem::{ContactKind, Control};
 
-/// Steps of a loop at most.
+/// Steps of a path at most.
 const STEPS: usize = 200_000;
 
 /// The first step of a stretch, the longest and the shortest, in the units of the arc length.
@@ -39,7 +39,7 @@ enum Side {
 impl Course<'_, '_> {
     /// Follows stable states from `held` to what ends them.
     pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), PathError> {
-        let sense = self.direction.sense();
+        let sense = self.record.direction.sense();
         let lost = PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
         let mut length = FIRST;
@@ -70,8 +70,11 @@ impl Course<'_, '_> {
                 continue;
             }
             let (length_taken, next, end) = self.ended(&step, &point, length, next)?;
-            if self.setting.areas == Areas::Yes {
-                self.area += self.area_of(&step, length_taken, &next, Side::Smooth);
+            for extreme in self.extremes(&step, &point, (length_taken, &next)) {
+                self.record(&extreme.held);
+            }
+            if self.setting.losses == Losses::Twice {
+                self.record.area += self.area_of(&step, length_taken, &next, Side::Smooth);
             }
             self.record(&next.held);
             if let Some(end) = end {
@@ -80,6 +83,24 @@ impl Course<'_, '_> {
             point = next.rescaled(self.balance);
             length = (1.5 * length).min(LONGEST);
         }
+    }
+
+    /// Where δ or P has an extreme on a step: the smallest force of a path is that of a state of it.
+    fn extremes(&self, step: &Step<'_, '_>, from: &Point, (length, to): (f64, &Point)) -> Vec<Point> {
+        let slopes = |point: &Point| self.balance.slopes(point);
+        let [start, end] = [slopes(from), slopes(to)];
+        // What is held has its extremes at the ends of stretches.
+        let held = match self.balance.control {
+            Control::Displacement => Some(0),
+            Control::Force => Some(1),
+            Control::Stiffness(_) => None,
+        };
+        let mut found: Vec<(f64, Point)> = (0..2)
+            .filter(|of| Some(*of) != held && start[*of] * end[*of] < 0.0)
+            .filter_map(|of| step.located((length, to), start[of], &mut |point| Some(slopes(point)[of])))
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().map(|(_, point)| point).collect()
     }
 
     /// Whether an edge meets a corner of the gap between two points, one that it has not just left.
@@ -129,7 +150,7 @@ impl Course<'_, '_> {
         /// How far beyond, in waves.
         const BEYOND_CORNER: f64 = 1e-3;
         let lost = || PathError::Lost { control_value: from.held.control_value };
-        let sense = self.direction.sense();
+        let sense = self.record.direction.sense();
         let step = Step::of_edge(self.balance, from, edge);
         let (mut at, mut target) = (None, way);
         for _ in 0..20 {
@@ -141,8 +162,8 @@ impl Course<'_, '_> {
         }
         let (next, _) = at.ok_or_else(lost)?;
         let (length, corner, end) = self.ended(&step, from, target, next)?;
-        if self.setting.areas == Areas::Yes {
-            self.area += self.area_of(&step, length, &corner, Side::Towards);
+        if self.setting.losses == Losses::Twice {
+            self.record.area += self.area_of(&step, length, &corner, Side::Towards);
         }
         self.record(&corner.held);
         if end.is_some() || target < way {
@@ -167,8 +188,8 @@ impl Course<'_, '_> {
             return Ok((Some(End::Limit(null)), corner));
         }
         let (length, next, end) = self.ended(&step, &corner, length, next)?;
-        if self.setting.areas == Areas::Yes {
-            self.area += self.area_of(&step, length, &next, Side::From);
+        if self.setting.losses == Losses::Twice {
+            self.record.area += self.area_of(&step, length, &next, Side::From);
         }
         self.record(&next.held);
         Ok((end, next))
@@ -180,19 +201,22 @@ impl Course<'_, '_> {
         if self.steps > STEPS {
             return Err(PathError::TooLong { steps: STEPS, control_value: held.control_value });
         }
-        // What could touch may lie beyond the table, where the gap goes on.
+        self.within_reach(held.approach, held.force)?;
+        self.balance.progress.report(self.share(held));
+        if self.balance.progress.stop() { Err(PathError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Whether all that could touch at an approach lies within the table, where the gap goes on.
+    pub(super) fn within_reach(&self, approach: f64, force: f64) -> Result<(), PathError> {
         let ground = self.balance.ground;
-        if ground.reach() < ground.table.end() * (1.0 - 1e-9)
-            && ground.can_touch_up_to(held.approach) >= ground.reach()
+        let ends = ground.reach() >= ground.table.end() * (1.0 - 1e-9);
+        if ends
+            || self.balance.contact == ContactKind::OneDisc
+            || ground.can_touch_up_to(approach) < ground.reach()
         {
-            return Err(PathError::BeyondGap {
-                radius: ground.reach(),
-                approach: held.approach,
-                force: held.force,
-            });
+            return Ok(());
         }
-        self.progress.report(self.share(held));
-        if self.progress.stop() { Err(PathError::Cancelled) } else { Ok(()) }
+        Err(PathError::BeyondGap { radius: ground.reach(), approach, force })
     }
 
     /// Why no further step could be taken.
@@ -209,12 +233,11 @@ impl Course<'_, '_> {
         }
     }
 
-    /// How much of the loop is done, roughly.
+    /// How much of the path is done, roughly.
     fn share(&self, held: &Held) -> f64 {
-        let turn = self.setting.turn;
-        let share = self.measure(held) / turn.value();
+        let share = self.turn.map_or(0.0, |turn| self.measure(held) / turn.value());
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
-        match self.direction {
+        match self.record.direction {
             Direction::Loading => 0.5 * share,
             Direction::Unloading => 1.0 - 0.5 * share,
         }
@@ -228,7 +251,7 @@ impl Course<'_, '_> {
         mut length: f64,
         mut next: Point,
     ) -> Result<(f64, Point, Option<End>), PathError> {
-        let sense = self.direction.sense();
+        let sense = self.record.direction.sense();
         let lost = || PathError::Lost { control_value: from.held.control_value };
         let mut end = None;
         if next.along_control() * sense <= 0.0 {
@@ -238,14 +261,13 @@ impl Course<'_, '_> {
             let edges = next.held.excess.len();
             end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
         }
-        if self.direction == Direction::Unloading {
+        if self.record.direction == Direction::Unloading {
             return Ok((length, next, end));
         }
         let crest;
         (length, next, crest) = self.touching(step, from, length, next)?;
         end = crest.map(End::Touch).or(end);
-        let turn = self.setting.turn;
-        if self.measure(&next.held) >= turn.value() {
+        if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
             let mut left = |point: &Point| Some(self.measure(&point.held) - turn.value());
             let at_start = self.measure(&from.held) - turn.value();
             (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;

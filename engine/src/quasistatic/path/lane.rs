@@ -9,6 +9,7 @@ use crate::annuli::Ground;
 use crate::disc::solution::ExactSolution;
 use crate::disc::{Place, Solution};
 use crate::problem::{Control, Turn};
+use crate::quasistatic::curve::Curve;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{self, Run};
 use crate::quasistatic::monotone::Monotone;
@@ -20,8 +21,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The equilibria of one disc as far out as a ground reaches.
 #[derive(Debug, Clone)]
 pub struct Lane {
-    pub(super) solution: ExactSolution,
-    pub(super) monotone: Monotone,
+    pub(super) solution: Arc<dyn Solution>,
+    pub(super) monotone: Arc<Monotone>,
     /// Where δ or P has an extreme.
     pub(super) extremes: Vec<Place>,
 }
@@ -29,12 +30,25 @@ pub struct Lane {
 impl Lane {
     /// Those under the adhesion `gamma` (E* = 1), which is positive, and a device.
     pub fn new(ground: &Ground, gamma: f64, control: Control) -> Self {
-        let solution = ExactSolution::new(Arc::clone(&ground.panels), gamma);
-        let monotone = Monotone::of(&solution, control);
+        let solution: Arc<dyn Solution> = Arc::new(ExactSolution::new(Arc::clone(&ground.panels), gamma));
+        Self::on(&solution, control, &|of| Arc::new(Monotone::of(&*solution, of)))
+    }
+
+    /// Those of a curve, as far out as its solution goes.
+    pub fn of(curve: &Curve, control: Control) -> Self {
+        Self::on(&curve.solution, control, &|of| curve.monotone(of))
+    }
+
+    fn on(
+        solution: &Arc<dyn Solution>,
+        control: Control,
+        monotone: &dyn Fn(Control) -> Arc<Monotone>,
+    ) -> Self {
+        let held = monotone(control);
         let extremes = [Control::Displacement, Control::Force]
-            .map(|of| if of == control { monotone.clone() } else { Monotone::of(&solution, of) })
+            .map(|of| if of == control { Arc::clone(&held) } else { monotone(of) })
             .map(|monotone| monotone.limits.iter().map(|limit| limit.place).collect::<Vec<_>>());
-        Self { solution, monotone, extremes: extremes.concat() }
+        Self { solution: Arc::clone(solution), monotone: held, extremes: extremes.concat() }
     }
 
     /// The weighted control of the control value `c`.
@@ -57,9 +71,9 @@ impl Lane {
                 Run::Inward => here >= value - slack && stretch.values[0] <= value + slack,
             };
         let place = if lands_here {
-            self.monotone.solve(&self.solution, stretch, value)
+            self.monotone.solve(&*self.solution, stretch, value)
         } else {
-            jump::run(&self.solution, &self.monotone, at, value, run).ok().flatten()?.place
+            jump::run(&*self.solution, &self.monotone, at, value, run).ok().flatten()?.place
         };
         Some(self.solution.at(place).contact_radius)
     }
@@ -73,11 +87,11 @@ impl Lane {
         };
         let from = place(before)?;
         if let Some(after) = after {
-            return energy::area(&self.solution, self.monotone.control, from, Some(place(after)?));
+            return energy::area(&*self.solution, self.monotone.control, from, Some(place(after)?));
         }
         let held = self.monotone.control;
         let control = if held == Control::Force { Control::Displacement } else { held };
-        energy::area(&self.solution, control, from, None)
+        energy::area(&*self.solution, control, from, None)
     }
 
     /// The first place between two on a stable stretch at which `turn` is reached; `None` where it is not.
@@ -95,7 +109,7 @@ impl Lane {
         let monotone = if measure == self.monotone.control {
             &self.monotone
         } else {
-            other = Monotone::on(&self.solution, measure, from.panel..to.panel + 1);
+            other = Monotone::on(&*self.solution, measure, from.panel..to.panel + 1);
             &other
         };
         let value = match turn {
@@ -113,7 +127,7 @@ impl Lane {
                 return Some(first);
             }
             if of(last) >= value {
-                return Some(monotone.solve(&self.solution, stretch, value));
+                return Some(monotone.solve(&*self.solution, stretch, value));
             }
         }
         None

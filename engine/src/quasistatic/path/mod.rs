@@ -18,11 +18,13 @@
 //! | [`jump`] | where edges land that run at held control |
 //! | [`event`] | events and states |
 //! | [`error`] | why there is none, and what is to be known about one |
-//! | [`setting`] | what a loop is asked for, and what it answers |
+//! | [`setting`] | what a path is asked for, and what it answers |
+//! | `record` | what has happened so far |
 //! | `describe` | both in the user's units, in words |
 //! | [`lane`] | the equilibria of one disc, exactly |
-//! | `one_disc` | a loop on them |
+//! | `one_disc` | a path on them |
 //! | [`course`] | the loop |
+//! | [`unload`] | the way down from a disc |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
 //! | `zero` | the loop without adhesion |
@@ -38,7 +40,9 @@ pub mod jump;
 pub mod lane;
 mod one_disc;
 pub mod point;
+mod record;
 pub mod setting;
+pub mod unload;
 mod zero;
 
 pub use balance::{Balance, Held, NotFound};
@@ -48,4 +52,5 @@ pub use event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
 pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
 pub use point::{Point, Step};
-pub use setting::{Areas, Path, Setting, Totals, TurnReached};
+pub use setting::{Asked, Losses, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
+pub use unload::unload;

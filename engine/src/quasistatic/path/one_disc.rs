@@ -1,17 +1,16 @@
-//! A loop on the [`Lane`]: up to a touch, the turn or a limit point, and down until the bodies are apart.
+//! A path on the [`Lane`]: up to a touch, the turn or a limit point, and down until the bodies are apart.
 
 use super::balance::{Balance, Held};
 use super::course::{Course, End, beyond};
 use super::error::PathError;
-use super::event::{EventKind, Passed, PassedKind};
+use super::event::EventKind;
 use super::lane::Lane;
-use super::setting::Areas;
+use super::record::stop_of;
+use super::setting::PathStop;
 use crate::annuli::{Around, Contacts, Crest, points};
-use crate::disc::{Local, Place, Solution};
-use crate::quasistatic::curve::{Detail, places};
-use crate::quasistatic::descent::{descend, stable_start};
-use crate::quasistatic::jump::{self, Landing, Run};
-use crate::quasistatic::{descent, energy};
+use crate::disc::{Local, Place};
+use crate::quasistatic::descent::stable_start;
+use crate::quasistatic::jump::{self, Run};
 
 /// A gap that is nothing, in waves.
 const TOUCHES: f64 = 1e-11;
@@ -30,9 +29,11 @@ impl Course<'_, '_> {
     /// Follows the disc `held` while the control goes up, to what ends its stable stretch; `None` where it is not on one.
     pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, PathError> {
         let Lane { solution, monotone, .. } = lane;
-        let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(None) };
+        let Some(from) = stable_start(&**solution, monotone, held.state.contacts.disc) else {
+            return Ok(None);
+        };
         let stretch = &monotone.stretches[from.stretch];
-        let turn = lane.turns(self.setting.turn, [from.place, stretch.outer]);
+        let turn = self.turn.and_then(|turn| lane.turns(turn, [from.place, stretch.outer]));
         let mut to = turn.unwrap_or(stretch.outer);
         let mut end = if turn.is_some() { End::Turn } else { End::Fold(from.stretch) };
         let at_end = self.disc(&solution.at(to))?;
@@ -42,7 +43,12 @@ impl Course<'_, '_> {
             let (place, crest) = self.touch_between(lane, [from.place, to], crest)?;
             (to, end) = (place, End::Touch(crest));
         }
-        let last = self.passed(lane, [from.place, to])?;
+        let last = self.disc(&solution.at(to))?;
+        self.counted(&last)?;
+        self.record.along(lane, [from.place, to])?;
+        if let Some(highest) = self.record.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)) {
+            self.within_reach(highest.approach, highest.force)?;
+        }
         if matches!(end, End::Fold(at) if at + 1 == monotone.stretches.len()) {
             // No limit point: the table ends.
             return Err(PathError::BeyondGap {
@@ -52,35 +58,6 @@ impl Course<'_, '_> {
             });
         }
         Ok(Some((end, last)))
-    }
-
-    /// Records the stable states between two places, in the order of the way, with their area; the last of them.
-    fn passed(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<Held, PathError> {
-        let solution = &lane.solution;
-        let [begin, end] = [from, to].map(|place| solution.at(place).contact_radius);
-        let radius = |place: Place| solution.at(place).contact_radius;
-        let [inner, outer] = [begin.min(end), begin.max(end)];
-        // The smallest force of a loop is that of a state of it.
-        let all =
-            places(solution, outer, inner, Detail::Drawn).into_iter().chain(lane.extremes.iter().copied());
-        let mut between: Vec<(f64, Place)> = all.map(|place| (radius(place), place)).collect();
-        between.retain(|(s, _)| inner < *s && *s < outer);
-        between.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if begin > end {
-            between.reverse();
-        }
-        for (_, place) in between {
-            let held = self.disc(&solution.at(place))?;
-            self.counted(&held)?;
-            self.record(&held);
-        }
-        let last = self.disc(&solution.at(to))?;
-        self.counted(&last)?;
-        if self.setting.areas == Areas::Yes {
-            self.area += energy::work(solution, self.setting.control, from, to).unwrap_or(f64::NAN);
-        }
-        self.record(&last);
-        Ok(last)
     }
 
     /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps. Each crest is brought to its own
@@ -120,7 +97,7 @@ impl Course<'_, '_> {
         let (mut below, mut above, mut best) = (f64::NAN, crest.gap, crest);
         let mut side = 0;
         for k in 0..LOCATED {
-            if self.progress.stop() {
+            if self.balance.progress.stop() {
                 return Err(PathError::Cancelled);
             }
             let secant = (lo * above - hi * below) / (above - below);
@@ -149,7 +126,7 @@ impl Course<'_, '_> {
     /// Runs from the limit point at the outer end of a stretch to where the edge lands, with what touches on the way.
     pub(super) fn advance(&mut self, lane: &Lane, before: &Held, stretch: usize) -> Result<Held, PathError> {
         let value = lane.monotone.stretches[stretch].values[1];
-        let landing = jump::run(&lane.solution, &lane.monotone, stretch, value, Run::Outward).ok().flatten();
+        let landing = jump::run(&*lane.solution, &lane.monotone, stretch, value, Run::Outward).ok().flatten();
         let ends = PathError::BeyondGap {
             radius: lane.solution.reach(),
             approach: before.approach,
@@ -167,38 +144,16 @@ impl Course<'_, '_> {
             None => Some(landed),
         };
         let landed = landed.ok_or(PathError::Lost { control_value: value })?;
-        self.jumped(EventKind::Advance, before, Some(&landed), None, passed);
+        self.jumped(EventKind::SnapIn, Some(before), Some(&landed), None, passed);
         Ok(landed)
     }
 
-    /// The way down of the disc `held`, until the bodies are apart; false where it is on no stable stretch.
-    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<bool, PathError> {
-        let Lane { solution, monotone, .. } = lane;
-        let Some(from) = stable_start(solution, monotone, held.state.contacts.disc) else { return Ok(false) };
-        let descent = descend(solution, monotone, from, 0.0);
-        for (piece, jump) in descent.pieces.iter().zip(&descent.jumps) {
-            self.passed(lane, *piece)?;
-            self.receded(lane, jump)?;
-        }
-        if descent.pulls_off() {
-            return Ok(true);
-        }
-        let last = descent.pieces.last().map(|[_, end]| solution.at(*end));
-        let value = last.map_or(f64::NAN, |at| self.balance.control.value(at.approach, at.force));
-        Err(PathError::Lost { control_value: value })
-    }
-
-    /// One jump of the way down as an event.
-    fn receded(&mut self, lane: &Lane, jump: &descent::Jump) -> Result<(), PathError> {
-        let solution = &lane.solution;
-        let before = self.disc(&solution.at(jump.before))?;
-        let landed = jump.landing.map(|Landing { place, .. }| self.disc(&solution.at(place))).transpose()?;
-        let passed = match &landed {
-            Some(_) => Vec::new(),
-            None => vec![Passed { kind: PassedKind::Vanish, radius: 0.0 }],
-        };
-        self.jumped(EventKind::Recede, &before, landed.as_ref(), None, passed);
-        Ok(())
+    /// The way down of the disc `held`; `None` where it is on no stable stretch.
+    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<Option<PathStop>, PathError> {
+        let from = stable_start(&*lane.solution, &lane.monotone, held.state.contacts.disc);
+        let Some(from) = from else { return Ok(None) };
+        let descent = self.record.descend(lane, from, self.end)?;
+        Ok(Some(stop_of(&descent)))
     }
 }
 

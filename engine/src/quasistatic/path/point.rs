@@ -4,6 +4,7 @@ use super::balance::{Balance, Held, keeps_widths, moved};
 use crate::annuli::{Contacts, Resolution, points};
 use crate::problem::Control;
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
 
 /// Newton's steps of one correction at most.
 const ITERATIONS: usize = 10;
@@ -78,6 +79,26 @@ impl Balance<'_> {
         along[n] = sense;
         let tangent = Self::direction(&held, &along, &scales)?;
         Some(Point { held, tangent, scales })
+    }
+
+    /// dδ and dP along the tangent of a point, in the units of the arc length.
+    pub(super) fn slopes(&self, point: &Point) -> [f64; 2] {
+        let Held { state, excess, .. } = &point.held;
+        let root = self.work_of_adhesion.sqrt();
+        let by_edges: f64 = (state.contacts.edges().iter().enumerate())
+            .map(|(i, edge)| {
+                let rate = point.tangent[i] * point.scales.edges[i];
+                4.0 * PI * edge.radius * (excess[i] + root) * state.intensity[i][1] * rate
+            })
+            .sum();
+        let held = state.force[1];
+        let by_control = point.along_control() * point.scales.control;
+        let approach = match self.control {
+            Control::Displacement => by_control,
+            Control::Force => (by_control - by_edges) / held,
+            Control::Stiffness(k) => (k * by_control - by_edges) / (k + held),
+        };
+        [approach, by_edges + held * approach]
     }
 
     /// The unit tangent at `held` on the side of `along`.

@@ -1,10 +1,14 @@
-//! What a loop is asked for, and what it answers.
+//! What a path is asked for, and what it answers.
 
 use super::balance::Held;
 use super::error::Warning;
-use super::event::{Event, PathState};
-use super::jump::Mobility;
-use crate::problem::{Control, Turn};
+use super::event::{Event, EventKind, PathState};
+use super::jump::{EVEN, Mobility};
+use crate::problem::{ContactKind, Control, Turn, Units};
+use crate::quasistatic::State;
+use crate::quasistatic::curve::{CurveStop, Detail};
+use crate::units::UnitSystem;
+use std::fmt;
 
 /// What the turn is measured by, of edges at a control value.
 pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
@@ -16,26 +20,43 @@ pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
     }
 }
 
-/// Whether losses are computed by area as well.
+/// How often the loss of a jump is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Areas {
-    /// By energy alone.
-    No,
-    /// Twice; the balance is checked.
-    Yes,
+pub enum Losses {
+    /// Once, by the drop of the potential.
+    Once,
+    /// By the area between the curve and the control line as well, which costs far more: two independent numbers that must agree.
+    Twice,
 }
 
-/// What a loop is asked for.
+/// What a path is asked for.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
     /// The device.
     pub control: Control,
-    /// Where it turns round.
-    pub turn: Turn,
+    /// Which contacts are followed.
+    pub contact: ContactKind,
     /// Whether losses are computed twice.
-    pub areas: Areas,
+    pub losses: Losses,
+    /// How many states of one disc there are.
+    pub detail: Detail,
     /// How fast edges move at a radius: nothing that lasts depends on it.
     pub mobility: Mobility<'a>,
+}
+
+impl Setting<'static> {
+    /// Contact in rings wherever it appears, losses twice, states to draw.
+    #[must_use]
+    pub fn new(control: Control) -> Self {
+        let (contact, losses, detail) = (ContactKind::Rings, Losses::Twice, Detail::Drawn);
+        Self { control, contact, losses, detail, mobility: EVEN }
+    }
+
+    /// The same of one disc alone.
+    #[must_use]
+    pub fn one_disc(control: Control) -> Self {
+        Self { contact: ContactKind::OneDisc, ..Self::new(control) }
+    }
 }
 
 /// Where the control turned round.
@@ -47,37 +68,137 @@ pub struct TurnReached {
     pub reached: f64,
 }
 
-/// The sums of a loop; `None` where a dead load leaves no bound, or what was not asked for.
+/// A state asked for from which the edge first ran outward.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// The state.
+    pub state: State,
+    /// Why it ran.
+    pub why: WhyNot,
+}
+
+/// Why a path does not start from the state asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WhyNot {
+    /// It is unstable. Whether the potential falls all the way to the start: if not, the edge does not run there by itself.
+    Unstable {
+        /// Whether it falls.
+        falls: bool,
+    },
+    /// A crest outside it would overlap at this radius, a length.
+    Overlaps(f64),
+}
+
+/// Why a path ended.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum PathStop {
+    /// The bodies came apart.
+    Apart,
+    /// The end contact radius was reached in a stable state.
+    End,
+    /// The curve ends before.
+    Curve(CurveStop),
+}
+
+impl fmt::Display for PathStop {
+    /// Its numbers as they stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&UnitSystem::Reduced))
+    }
+}
+
+impl PathStop {
+    /// Why, with the numbers, which are in the user's units, as `shown` has them.
+    pub fn words(&self, shown: &UnitSystem) -> String {
+        match self {
+            Self::Apart => "the bodies are apart".to_owned(),
+            Self::End => "the end contact radius was reached in a stable state".to_owned(),
+            Self::Curve(stop) => format!("the curve ends: {}", stop.words(shown)),
+        }
+    }
+
+    /// The same with its numbers in the user's units.
+    #[must_use]
+    pub fn in_units(self, units: &Units) -> Self {
+        match self {
+            Self::Curve(stop) => Self::Curve(stop.in_units(units)),
+            other => other,
+        }
+    }
+}
+
+/// The sums of a path; `None` where a dead load leaves no bound, or what was not asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
     /// All losses.
     pub dissipated: Option<f64>,
     /// The same by area.
     pub dissipated_by_area: Option<f64>,
-    /// The losses up to the pull-off, without it.
-    pub dissipated_before_pull_off: f64,
-    /// The work done by the device on the way up, its own elastic energy counted with the bodies.
-    pub work_of_loading: f64,
+    /// The losses up to the last contact, without it.
+    pub dissipated_before_last_contact: f64,
+    /// The work done by the device on the way up, its own elastic energy counted with the bodies; `None` of an unloading alone.
+    pub work_of_loading: Option<f64>,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
-    /// |Π(last) − Σ areas + Σ losses| over the losses or the work of loading, whichever is more, from the first touch to before the
-    /// pull-off.
+    /// |Π(last) − Π(first) − Σ areas + Σ losses| over the losses or the work of loading, whichever is more, from the start to before
+    /// the last contact.
     pub balance: Option<f64>,
 }
 
-/// A whole loop, in reduced units.
+/// A whole path, in reduced units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// What was controlled.
     pub control: Control,
-    /// Where it turned.
-    pub turn: TurnReached,
+    /// Which contacts were followed.
+    pub contact: ContactKind,
+    /// The state asked for, where the path starts at another further out.
+    pub asked: Option<Asked>,
+    /// Where it turned; `None` of an unloading alone.
+    pub turn: Option<TurnReached>,
     /// The events in order.
     pub events: Vec<Event>,
-    /// Stable states in order, dense enough to be drawn: those before and after events among them.
+    /// Stable states in order, dense enough for what was asked for: those before and after events, and where δ or P has an extreme.
     pub states: Vec<PathState>,
+    /// Why it ended.
+    pub stop: PathStop,
     /// The sums.
     pub totals: Totals,
     /// What is to be known about it.
     pub warnings: Vec<Warning>,
+}
+
+impl Path {
+    /// The first state in contact.
+    pub fn start(&self) -> Option<&PathState> {
+        self.states.first()
+    }
+
+    /// The state of the smallest force, the largest pull where that is negative.
+    pub fn largest_pull(&self) -> Option<&PathState> {
+        self.states.iter().min_by(|a, b| a.force.total_cmp(&b.force))
+    }
+
+    /// The state of the smallest approach.
+    pub fn farthest(&self) -> Option<&PathState> {
+        self.states.iter().min_by(|a, b| a.approach.total_cmp(&b.approach))
+    }
+
+    /// How the bodies came apart.
+    pub fn last_contact(&self) -> Option<&Event> {
+        self.events.last().filter(|event| event.kind == EventKind::LastContact)
+    }
+
+    /// The losses that are defined.
+    pub fn losses(&self) -> f64 {
+        self.events.iter().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss)
+    }
+
+    /// The contact radii at the ends of every stable stretch, in the order of the path.
+    pub fn pieces(&self) -> Vec<[f64; 2]> {
+        let pieces = self.states.chunk_by(|a, b| a.piece == b.piece);
+        pieces
+            .filter_map(|piece| Some([piece.first()?.contact_radius, piece.last()?.contact_radius]))
+            .collect()
+    }
 }

@@ -9,10 +9,10 @@ use super::course::Course;
 use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
 use super::point::Step;
-use super::setting::{Path, Totals, TurnReached};
+use super::setting::{Path, PathStop, TurnReached};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
-use crate::problem::Turn;
+use crate::problem::{Control, Turn};
 
 /// A gap below so many waves may be about to close.
 const CLOSING: f64 = 0.02;
@@ -29,8 +29,7 @@ impl Course<'_, '_> {
     }
 
     /// The loop of bodies that do not adhere, from the first touch of `crest`; the balance is that of a held approach.
-    pub(super) fn without_adhesion(mut self, crest: Crest) -> Result<Path, PathError> {
-        let turn = self.setting.turn;
+    pub(super) fn without_adhesion(mut self, crest: Crest, turn: Turn) -> Result<Path, PathError> {
         let apart = PathState {
             contact_radius: crest.radius,
             approach: crest.gap,
@@ -38,95 +37,66 @@ impl Course<'_, '_> {
             energy: 0.0,
             contacts: Vec::new(),
             contact_area: 0.0,
+            held_stiffness: 0.0,
+            stable: true,
             control_value: self.setting.control.value(crest.gap, 0.0),
             direction: Direction::Loading,
             piece: 0,
         };
-        self.continuous(EventKind::FirstTouch, Some(crest.radius), None, Some(apart));
+        self.record.continuous(EventKind::FirstTouch, Some(crest.radius), [None, Some(apart)]);
         let mut held = self.begun(&Contacts::default(), crest.radius, crest.gap)?;
-        while self.measure(&held) < turn.value() {
+        while !self.has_turned(&held) {
             held = self.risen(&held)?;
         }
         let reached = self.measure(&held);
         let at_turn = self.state(&held);
         let work = match self.setting.control {
-            crate::problem::Control::Force => at_turn.energy,
+            Control::Force => at_turn.energy,
             control => at_turn.potential(control),
         };
-        let up = self.events.clone();
-        self.continuous(EventKind::Turn, None, Some(at_turn.clone()), Some(at_turn));
+        let up = self.record.events.clone();
+        self.record.continuous(EventKind::Turn, None, [Some(at_turn.clone()), Some(at_turn)]);
         self.reversed(&up);
-        let totals = Totals {
-            dissipated: Some(0.0),
-            dissipated_by_area: Some(0.0),
-            dissipated_before_pull_off: 0.0,
-            work_of_loading: work,
-            work_of_unloading: Some(-work),
-            balance: None,
-        };
         let turn = TurnReached { asked: turn, reached };
-        let warnings = self.warnings(None);
-        Ok(Path {
-            control: self.setting.control,
-            turn,
-            events: self.events,
-            states: self.states,
-            totals,
-            warnings,
-        })
+        Ok(self.record.finished(None, Some(turn), Some(work), PathStop::Apart))
     }
 
     /// The way back: what happened on the way up, the other way round.
     fn reversed(&mut self, up: &[Event]) {
-        let last_piece = self.piece;
+        let record = &mut self.record;
+        let last_piece = record.piece;
         let turned = |state: &PathState| PathState {
             direction: Direction::Unloading,
             piece: 2 * last_piece + 1 - state.piece,
             ..state.clone()
         };
-        let back: Vec<PathState> = self.states.iter().rev().map(turned).collect();
-        self.states.extend(back);
+        let back: Vec<PathState> = record.states.iter().rev().map(turned).collect();
+        record.states.extend(back);
         for event in up.iter().rev() {
             let kind = match event.kind {
-                EventKind::FirstTouch => EventKind::PullOff,
+                EventKind::FirstTouch => EventKind::LastContact,
                 EventKind::Touch => EventKind::Vanish,
                 EventKind::Merge => EventKind::Split,
                 other => other,
             };
             let (before, after) = (event.after.as_ref().map(turned), event.before.as_ref().map(turned));
-            self.events.push(Event { kind, direction: Direction::Unloading, before, after, ..event.clone() });
+            record.events.push(Event {
+                kind,
+                direction: Direction::Unloading,
+                before,
+                after,
+                ..event.clone()
+            });
         }
-        self.direction = Direction::Unloading;
-    }
-
-    /// Adds an event at which nothing is lost.
-    fn continuous(
-        &mut self,
-        kind: EventKind,
-        radius: Option<f64>,
-        before: Option<PathState>,
-        after: Option<PathState>,
-    ) {
-        let control_value = after.as_ref().or(before.as_ref()).map_or(f64::NAN, |state| state.control_value);
-        self.events.push(Event {
-            kind,
-            direction: self.direction,
-            control_value,
-            radius,
-            before,
-            after,
-            dissipated: Some(0.0),
-            dissipated_by_area: Some(0.0),
-            passed: Vec::new(),
-        });
+        record.direction = Direction::Unloading;
     }
 
     /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
     fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, PathError> {
         let mut delta = delta + self.lift();
-        match self.setting.turn {
-            Turn::Approach(turn) => delta = delta.min(turn),
-            Turn::Control(turn) if self.setting.control == crate::problem::Control::Displacement => {
+        match self.turn {
+            Some(Turn::Approach(turn)) => delta = delta.min(turn),
+            Some(Turn::Control(turn)) if self.setting.control == Control::Displacement => {
                 delta = delta.min(turn);
             }
             _ => {}
@@ -167,19 +137,17 @@ impl Course<'_, '_> {
             // A gap that closes does so before that touch, or is looked at again after it.
             if let Some((gap, merged)) = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach))
             {
-                let turn = self.setting.turn;
-                if self.measure(&merged) < turn.value() {
+                if !self.has_turned(&merged) {
                     let after = self.state(&merged);
                     let mut before = after.clone();
                     split_at(&mut before.contacts, gap);
-                    self.piece += 1;
-                    self.continuous(EventKind::Merge, Some(gap), Some(before), Some(after));
+                    self.record.piece += 1;
+                    self.record.continuous(EventKind::Merge, Some(gap), [Some(before), Some(after)]);
                     self.record(&merged);
                     return Ok(merged);
                 }
             }
-            let turn = self.setting.turn;
-            if self.measure(&next.held) >= turn.value() {
+            if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
                 let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
                 let at_start = self.measure(&point.held) - turn.value();
                 let length = step.length_to(&next);
@@ -192,8 +160,8 @@ impl Course<'_, '_> {
             self.record(&next.held);
             if let Some(crest) = crest {
                 let at = self.state(&next.held);
-                self.continuous(EventKind::Touch, Some(crest.radius), Some(at.clone()), Some(at));
-                self.piece += 1;
+                self.record.continuous(EventKind::Touch, Some(crest.radius), [Some(at.clone()), Some(at)]);
+                self.record.piece += 1;
                 let (contacts, delta) = (next.contacts().clone(), next.held.approach);
                 return self.begun(&contacts, crest.radius, delta);
             }

@@ -1,7 +1,7 @@
 //! What a walk arrives at, and how its requests end.
 
 use crate::continuation::StepFailure;
-use crate::quasistatic::unload::Event;
+use crate::quasistatic::path::Event;
 use crate::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
 use thiserror::Error;
 

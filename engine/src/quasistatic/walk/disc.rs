@@ -12,7 +12,7 @@ use crate::progress::Unwatched;
 use crate::quasistatic::curve::{Curve, settings};
 use crate::quasistatic::jump::{self, Run};
 use crate::quasistatic::monotone::{Limit, Monotone, Turn};
-use crate::quasistatic::unload::{Event, Losses};
+use crate::quasistatic::path::{Event, Losses};
 use crate::quasistatic::{Point, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
 
@@ -304,7 +304,7 @@ impl Walk<'_> {
     pub(super) fn disc_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
         let from = self.begun("jump")?;
         let (curve, leaves, landing) = self.landing(from)?;
-        let event = Event::new(&curve, self.control, leaves, landing, Losses::Twice);
+        let event = Event::of_disc(&*curve.solution, self.control, leaves, landing, Losses::Twice);
         let point = match landing {
             Some(place) => self.equilibrium().explicit(curve.solution.at(place).contact_radius),
             None => Some(from.clone()),

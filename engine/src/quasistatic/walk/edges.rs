@@ -13,7 +13,7 @@ use crate::continuation::{Linearization, System, Vector};
 use crate::disc::Table;
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
-use crate::problem::Control;
+use crate::problem::{ContactKind, Control};
 use crate::progress::Unwatched;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
@@ -118,8 +118,14 @@ impl<'a> Edges<'a> {
         let contacts = contacts(&self.scales, point);
         let [delta, force] = device(&self.scales, point);
         let work_of_adhesion = self.work_of_adhesion;
-        let balance =
-            Balance { ground: self.ground, work_of_adhesion, control, progress: &Unwatched, lane: None };
+        let balance = Balance {
+            ground: self.ground,
+            work_of_adhesion,
+            control,
+            contact: ContactKind::Rings,
+            progress: &Unwatched,
+            lane: None,
+        };
         balance.held(&contacts, &points(self.ground, &contacts), control.value(delta, force)).ok()
     }
 }

@@ -10,8 +10,7 @@ use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::path::course::first_crest;
 use crate::quasistatic::path::{Balance, Direction, EVEN, Held, Passed, PassedKind, PathError, PathState};
-use crate::quasistatic::unload::{Event, EventKind};
-use crate::quasistatic::{Point, State, energy};
+use crate::quasistatic::{Event, EventKind, Point};
 use nalgebra::{DMatrix, DVector};
 
 /// How often the table is made longer for one landing.
@@ -37,7 +36,7 @@ impl Jumped {
 
     /// What it costs.
     pub fn ahead(&self) -> Ahead {
-        Ahead { after: self.event.after, dissipated: self.event.dissipated }
+        Ahead { after: self.event.after.as_ref().map(PathState::state), dissipated: self.event.dissipated }
     }
 }
 
@@ -168,15 +167,23 @@ impl Walk<'_> {
         let bounded = new.is_some() || control != Control::Force;
         let by_area =
             bounded.then(|| balance.area_between(Some(&old), new.as_ref(), value, &crests)).flatten();
-        let [before, after] = [Some(&old), new.as_ref()].map(|state| state.map(plain));
-        let before = before.ok_or(lost(value))?;
+        let kind = match (&new, self.at, sense > 0.0) {
+            (None, ..) => EventKind::LastContact,
+            (Some(_), At::Touch(_), _) => EventKind::Touch,
+            (Some(_), _, true) => EventKind::SnapIn,
+            (Some(_), _, false) => EventKind::Snap,
+        };
+        let radius = if let At::Touch(radius) = self.at { Some(radius) } else { None };
         let event = Event {
-            kind: if after.is_some() { EventKind::Snap } else { EventKind::PullOff },
+            kind,
+            direction,
             control_value: value,
-            dissipated: if adheres { energy::loss(control, &before, after.as_ref()) } else { Some(0.0) },
+            radius,
+            dissipated: if adheres { old.loss(control, new.as_ref()) } else { Some(0.0) },
             dissipated_by_area: if adheres { by_area } else { None },
-            before,
-            after,
+            before: Some(PathState { stable: !kind.begins_at_limit(), ..old }),
+            after: new,
+            passed: Vec::new(),
         };
         Ok(Jumped { ground, held, event, passed })
     }
@@ -232,15 +239,6 @@ impl Walk<'_> {
             return self.landed(&ground, Arrival::Touch(crest.radius), &held);
         }
         Err(WalkFailure::NothingOutward)
-    }
-}
-
-fn plain(state: &PathState) -> State {
-    State {
-        contact_radius: state.contact_radius,
-        approach: state.approach,
-        force: state.force,
-        energy: state.energy,
     }
 }
 

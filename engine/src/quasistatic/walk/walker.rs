@@ -1,7 +1,7 @@
 //! Where a walker stands.
 
 use crate::annuli::Ground;
-use crate::problem::Control;
+use crate::problem::{ContactKind, Control};
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::equilibrium::Equilibrium;
@@ -81,11 +81,12 @@ impl Walk<'_> {
     }
 
     /// The equilibrium of contacts on `ground` under `control`.
-    pub(super) fn balance<'a>(&self, ground: &'a Ground, control: crate::problem::Control) -> Balance<'a> {
+    pub(super) fn balance<'a>(&self, ground: &'a Ground, control: Control) -> Balance<'a> {
         Balance {
             ground,
             work_of_adhesion: self.equilibrium().problem.work_of_adhesion,
             control,
+            contact: ContactKind::Rings,
             progress: &Unwatched,
             lane: None,
         }

@@ -29,11 +29,11 @@ const JOBS: &[Job] = &[
         &["contact, s/λ", "least P -1.480 Pc (L)", "/Pc -1.480"],
     ),
     (
-        "how does the pull-off force depend on A here",
+        "how does the largest pull depend on A here",
         "wavy-sphere",
         "Q\r",
         2,
-        &["pull off force over A", "now"],
+        &["largest pull over A", "now"],
     ),
     (
         "what did I do between the second and the third jump",

@@ -54,7 +54,7 @@ fn a_click_selects_and_once_more_goes_there() {
     let event = &screen.app.model.shown_events()[1];
     let node = screen.app.model.history.current().unwrap();
     let s = node.state.in_units(node.setting.units()).contact_radius;
-    assert!((s - event.before.contact_radius).abs() < 1e-6 * s, "{s}");
+    assert!((s - event.before.as_ref().unwrap().contact_radius).abs() < 1e-6 * s, "{s}");
     // In a list too.
     screen.keys("o");
     let at = place(&screen, "fig-3-jkr");
@@ -79,7 +79,7 @@ fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     click(&mut screen, at);
     let at_pull_off = screen.app.model.history.current().unwrap().state.contact_radius;
     let limits = screen.app.model.curve.clone().unwrap();
-    let last = limits.report.as_ref().unwrap().events.last().unwrap().before.contact_radius;
+    let last = limits.report.as_ref().unwrap().events.last().unwrap().before.as_ref().unwrap().contact_radius;
     let units = *limits.setting.units();
     assert!((at_pull_off * units.length - last).abs() < 0.1 * last, "{at_pull_off} {last}");
     assert_eq!(screen.app.model.panel, Panel::Charts);
@@ -333,16 +333,16 @@ fn differences_tell_curves_apart_that_are_closer_than_a_dot() {
 #[test]
 fn a_study_is_looked_at_read_taken_over_and_exported() {
     let mut screen = Screen::new("wavy-sphere");
-    // The amplitude is selected: its pull-off force is two keys away.
+    // The amplitude is selected: its largest pull is two keys away.
     screen.keys("Q\r");
     let text = screen.text(100, 30);
-    for said in ["pull off force over A", "now"] {
+    for said in ["largest pull over A", "now"] {
         assert!(text.contains(said), "{said}: {text}");
     }
     // The cross-hair reads a value that was computed, and Enter sets it.
     screen.keys("illll");
     let text = screen.text(120, 30);
-    assert!(text.contains("A 0.00") && text.contains(": pull off force -0."), "{text}");
+    assert!(text.contains("A 0.00") && text.contains(": largest pull -0."), "{text}");
     let before = screen.app.model.preset.get("gap.amplitude");
     screen.keys("\r");
     let after = screen.app.model.preset.get("gap.amplitude");
@@ -359,7 +359,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     screen.keys(&format!(":export study {}\r", toml.display()));
     let csv = std::fs::read_to_string(csv).unwrap();
     let rows: Vec<&str> = csv.lines().collect();
-    assert_eq!((rows[0], rows.len()), ("gap.amplitude,pull_off_force,fault", 102));
+    assert_eq!((rows[0], rows.len()), ("gap.amplitude,largest_pull,fault", 102));
     let store = Store::at(screen.folder.path(), &[]);
     let load = |name: &str, over: &[&str]| {
         let source = store.resolve(name).map_err(|error| error.to_string())?;

@@ -1,0 +1,291 @@
+//! What has happened on a path so far.
+
+use super::error::{PathError, Warning};
+use super::event::{Direction, Event, EventKind, Passed, PathState};
+use super::lane::Lane;
+use super::setting::{Asked, Losses, Path, PathStop, Setting, Totals, TurnReached};
+use crate::disc::Place;
+use crate::problem::{ContactKind, Control};
+use crate::progress::Progress;
+use crate::quasistatic::curve::{CurveStop, Detail, places};
+use crate::quasistatic::descent::{Descent, descend};
+use crate::quasistatic::energy;
+use crate::quasistatic::jump::Landing;
+
+/// What the balance of a path may leave of its losses.
+const BALANCED: f64 = 1e-6;
+
+/// The share of a loss by which energy and area may differ.
+const AGREE: f64 = 1e-6;
+
+/// Digits below which a path warns.
+const DIGITS: f64 = 9.0;
+
+/// States of one disc between two questions.
+const TOGETHER: usize = 256;
+
+/// A path while it runs.
+pub(super) struct Record<'a> {
+    pub control: Control,
+    pub contact: ContactKind,
+    pub losses: Losses,
+    pub detail: Detail,
+    pub progress: &'a dyn Progress,
+    pub events: Vec<Event>,
+    pub states: Vec<PathState>,
+    pub piece: usize,
+    pub direction: Direction,
+    /// Σ ∫ (dΠ/dc) dc.
+    pub area: f64,
+    /// The fewest digits, and where.
+    pub digits: (f64, f64),
+    /// Π where it begins.
+    pub begin: f64,
+}
+
+impl<'a> Record<'a> {
+    /// Nothing yet.
+    pub fn new(setting: &Setting<'_>, direction: Direction, progress: &'a dyn Progress) -> Self {
+        Self {
+            control: setting.control,
+            contact: setting.contact,
+            losses: setting.losses,
+            detail: setting.detail,
+            progress,
+            events: Vec::new(),
+            states: Vec::new(),
+            piece: 0,
+            direction,
+            area: 0.0,
+            digits: (f64::INFINITY, f64::NAN),
+            begin: 0.0,
+        }
+    }
+
+    /// The state of one disc at a place.
+    pub fn disc(&self, lane: &Lane, place: Place) -> PathState {
+        let state = PathState::of_disc(&*lane.solution, place, self.control, self.direction);
+        PathState { piece: self.piece, ..state }
+    }
+
+    /// The first state of a path that begins in contact.
+    pub fn begun(&mut self, state: PathState) {
+        self.begin = state.potential(self.control);
+        self.states.push(state);
+    }
+
+    /// Adds the stable states of one disc between two places, in the order of the way and the first left out, with their area.
+    ///
+    /// # Errors
+    /// [`PathError::Cancelled`].
+    pub fn along(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<(), PathError> {
+        let solution = &*lane.solution;
+        let order = |place: Place| (place.panel, place.x);
+        let is_inward = order(to) <= order(from);
+        let (inner, outer) = if is_inward { (to, from) } else { (from, to) };
+        let [lo, hi] = [inner, outer].map(|place| solution.at(place).contact_radius);
+        // The smallest force of a path is that of a state of it.
+        let mut between: Vec<(f64, Place)> = places(solution, hi, lo, self.detail)
+            .into_iter()
+            .chain(lane.extremes.iter().copied())
+            .map(|place| (solution.at(place).contact_radius, place))
+            .filter(|(s, _)| lo < *s && *s < hi)
+            .collect();
+        between.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if is_inward {
+            between.reverse();
+        }
+        for some in between.chunks(TOGETHER) {
+            if self.progress.stop() {
+                return Err(PathError::Cancelled);
+            }
+            let states: Vec<PathState> = some.iter().map(|(_, place)| self.disc(lane, *place)).collect();
+            self.states.extend(states);
+        }
+        if self.losses == Losses::Twice {
+            self.area += energy::work(solution, self.control, from, to).unwrap_or(f64::NAN);
+        }
+        self.states.push(self.disc(lane, to));
+        Ok(())
+    }
+
+    /// The way of one disc down to the radius `to`, jump by jump, from a stable state that is recorded.
+    ///
+    /// # Errors
+    /// [`PathError::Cancelled`].
+    pub fn descend(&mut self, lane: &Lane, from: Landing, to: f64) -> Result<Descent, PathError> {
+        let descent = descend(&*lane.solution, &lane.monotone, from, to);
+        let mut jumps = descent.jumps.iter();
+        for piece in &descent.pieces {
+            self.along(lane, *piece)?;
+            if let Some(jump) = jumps.next() {
+                let landing = jump.landing.map(|landing| landing.place);
+                self.jumped(Event::of_disc(&*lane.solution, self.control, jump.before, landing, self.losses));
+            }
+        }
+        Ok(descent)
+    }
+
+    /// Adds a jump, and the state after it as the first of the next stretch.
+    pub fn jumped(&mut self, mut event: Event) {
+        if let Some(before) = &mut event.before {
+            before.piece = self.piece;
+            before.direction = self.direction;
+        }
+        event.direction = self.direction;
+        self.piece += 1;
+        if let Some(after) = &mut event.after {
+            (after.piece, after.direction) = (self.piece, self.direction);
+            self.states.push(after.clone());
+        }
+        self.events.push(event);
+    }
+
+    /// A jump of edges that run at a held control value, and what it loses by area.
+    pub fn jump(
+        &mut self,
+        kind: EventKind,
+        [before, after]: [Option<PathState>; 2],
+        radius: Option<f64>,
+        by_area: Option<f64>,
+        passed: Vec<Passed>,
+    ) {
+        let kind = if after.is_some() { kind } else { EventKind::LastContact };
+        let before = before.map(|state| PathState { stable: !kind.begins_at_limit(), ..state });
+        let value = before.as_ref().or(after.as_ref()).map_or(f64::NAN, |state| state.control_value);
+        let dissipated = match (&before, &after, self.control) {
+            (Some(before), after, control) => before.loss(control, after.as_ref()),
+            // The bodies apart hold nothing at P = 0.
+            (None, Some(after), Control::Force) => Some(-after.energy),
+            (None, Some(after), control) => Some(-after.potential(control)),
+            (None, None, _) => None,
+        };
+        self.jumped(Event {
+            kind,
+            direction: self.direction,
+            control_value: value,
+            radius,
+            before,
+            after,
+            dissipated,
+            dissipated_by_area: by_area,
+            passed,
+        });
+    }
+
+    /// Adds an event at which nothing runs and nothing is lost.
+    pub fn continuous(
+        &mut self,
+        kind: EventKind,
+        radius: Option<f64>,
+        [before, after]: [Option<PathState>; 2],
+    ) {
+        let control_value = after.as_ref().or(before.as_ref()).map_or(f64::NAN, |state| state.control_value);
+        self.events.push(Event {
+            kind,
+            direction: self.direction,
+            control_value,
+            radius,
+            before,
+            after,
+            dissipated: Some(0.0),
+            dissipated_by_area: (self.losses == Losses::Twice).then_some(0.0),
+            passed: Vec::new(),
+        });
+    }
+
+    /// Turns the control round.
+    pub fn turned(&mut self, at: PathState) {
+        self.continuous(EventKind::Turn, None, [Some(at.clone()), Some(at.clone())]);
+        self.direction = Direction::Unloading;
+        self.piece += 1;
+        self.states.push(PathState { direction: self.direction, piece: self.piece, ..at });
+    }
+
+    /// The losses so far; `None` where one has no bound.
+    pub fn lost(&self) -> Option<f64> {
+        self.events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?))
+    }
+
+    /// The path with its sums.
+    pub fn finished(
+        self,
+        asked: Option<Asked>,
+        turn: Option<TurnReached>,
+        work_of_loading: Option<f64>,
+        stop: PathStop,
+    ) -> Path {
+        let control = self.control;
+        let ends_apart = self.events.last().is_some_and(|event| event.kind == EventKind::LastContact);
+        let before = &self.events[..self.events.len() - usize::from(ends_apart)];
+        let before_last: f64 = before.iter().filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b);
+        let total = self.lost();
+        let last = self.states.last().map(|state| state.potential(control));
+        let is_twice = self.losses == Losses::Twice;
+        let balance = last.filter(|_| is_twice && self.area != 0.0).map(|last| {
+            let error = last - self.begin - self.area + before_last;
+            let whole = total.unwrap_or(before_last).abs();
+            // An unloading from a start in contact is measured by what it stored there.
+            error.abs() / whole.max(work_of_loading.unwrap_or(self.begin).abs())
+        });
+        let by_area = self.events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?));
+        let at_turn = work_of_loading.map_or(Some(self.begin), |work| {
+            let up = self.events.iter().filter(|event| event.direction == Direction::Loading);
+            Some(work - up.filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b))
+        });
+        let down = self.events.iter().filter(|event| event.direction == Direction::Unloading);
+        let lost_down = down.into_iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
+        let totals = Totals {
+            dissipated: total,
+            dissipated_by_area: by_area,
+            dissipated_before_last_contact: before_last,
+            work_of_loading,
+            work_of_unloading: lost_down.zip(at_turn).filter(|_| ends_apart).map(|(lost, at)| lost - at),
+            balance,
+        };
+        let warnings = self.warnings(balance);
+        Path {
+            control,
+            contact: self.contact,
+            asked,
+            turn,
+            events: self.events,
+            states: self.states,
+            stop,
+            totals,
+            warnings,
+        }
+    }
+
+    /// What is to be known about it.
+    fn warnings(&self, balance: Option<f64>) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        // Written so that what is no number warns.
+        if let Some(share) =
+            balance.filter(|share| !matches!(share.total_cmp(&BALANCED), std::cmp::Ordering::Less))
+        {
+            warnings.push(Warning::Balance { share });
+        }
+        if self.digits.0 < DIGITS {
+            warnings.push(Warning::Digits { digits: self.digits.0, control_value: self.digits.1 });
+        }
+        for (event, of) in self.events.iter().enumerate() {
+            if let (Some(energy), Some(area)) = (of.dissipated, of.dissipated_by_area) {
+                let share = (energy - area).abs() / energy.abs().max(f64::MIN_POSITIVE.sqrt());
+                if share > AGREE {
+                    warnings.push(Warning::Area { event: event + 1, share });
+                }
+            }
+        }
+        warnings
+    }
+}
+
+/// Why a way down ended.
+pub(super) fn stop_of(descent: &Descent) -> PathStop {
+    match descent.hole {
+        Some(hole) => PathStop::Curve(CurveStop::NoEquilibrium(hole)),
+        None if descent.pulls_off() => PathStop::Apart,
+        None => PathStop::End,
+    }
+}

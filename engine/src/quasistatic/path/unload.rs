@@ -1,0 +1,151 @@
+//! The way down: from a disc inward, through every snap, until the bodies are apart.
+//!
+//! On the way down gaps open: contact that shrinks anywhere takes load off what lies outside. So a path that starts with one disc that
+//! overlaps nothing stays one disc. Where a crest outside would overlap at the start, the contact first grows at the held control to
+//! the least equilibrium that contains it, as a path of loading does at a touch, and unloads from there. Without adhesion contact has
+//! no memory: the way down is that of the loop.
+
+use super::course::{Course, balance, cycle_on, lane, on_ground};
+use super::error::PathError;
+use super::event::{Direction, EventKind, PathState};
+use super::lane::Lane;
+use super::record::{Record, stop_of};
+use super::setting::{Asked, Path, Setting, WhyNot};
+use crate::annuli::{Contacts, Ground, points};
+use crate::problem::{ContactKind, Control, Turn};
+use crate::progress::Progress;
+use crate::quasistatic::admissible::falls;
+use crate::quasistatic::curve::Curve;
+use crate::quasistatic::descent::stable_start;
+use crate::quasistatic::equilibrium::State;
+use crate::quasistatic::jump::{self, Landing, Run};
+use crate::quasistatic::landscape;
+
+/// How far outward a stable state is looked for, as a multiple of the start radius.
+const OUTWARD_REACH: f64 = 1000.0;
+
+/// How far beyond the start the table goes for rings at first.
+const BEYOND: f64 = 1.3;
+
+/// Unloads along `curve`, from its outermost state down to its innermost.
+///
+/// # Errors
+/// [`PathError::UnstableStart`] when the start is unstable and no stable state lies outward, [`PathError::Cancelled`] when `progress`
+/// said stop, others where contact in rings cannot be followed.
+pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> Result<Path, PathError> {
+    let control = setting.control;
+    let (from, to) = (curve.outermost(), curve.innermost());
+    let mut longer = None;
+    let asked = curve.solution.place(from).map(|place| curve.state(place));
+    let here = if let Some(start) = stable_start(&*curve.solution, &curve.monotone(control), from) {
+        start
+    } else {
+        run_outward(longer.insert(curve.clone()), control, from)?
+    };
+    let curve = longer.as_ref().unwrap_or(curve);
+    let start = curve.state(here.place);
+    let asked = asked.filter(|_| start.contact_radius > from).map(|state| {
+        let value = control.value(state.approach, state.force);
+        let falls = landscape::falls(curve, control, value, from, start.contact_radius);
+        Asked { state, why: WhyNot::Unstable { falls } }
+    });
+    if setting.contact == ContactKind::Rings {
+        let touches = touching(curve, start.contact_radius, progress);
+        let problem = &curve.equilibrium.problem;
+        let splits = problem.work_of_adhesion == 0.0 && falls(&*problem.gap, start.contact_radius);
+        if touches.is_some() || splits {
+            let asked = asked.or(touches.map(|radius| Asked { state: start, why: WhyNot::Overlaps(radius) }));
+            return with_rings(curve, setting, &start, asked, progress);
+        }
+    }
+    let lane = Lane::of(curve, control);
+    let mut record = Record::new(setting, Direction::Unloading, progress);
+    record.begun(record.disc(&lane, here.place));
+    let descent = record.descend(&lane, here, to)?;
+    if progress.stop() {
+        return Err(PathError::Cancelled);
+    }
+    Ok(record.finished(asked, None, None, stop_of(&descent)))
+}
+
+/// Where a crest outside a disc in equilibrium overlaps, a length.
+fn touching(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<f64> {
+    let point = curve.equilibrium.explicit(s)?;
+    let found = curve.equilibrium.admissibility(&point, progress);
+    found.nearest.filter(|_| !found.holds).filter(|crest| crest.gap < 0.0).map(|crest| crest.radius)
+}
+
+/// The way down from a disc beside which there is more contact.
+fn with_rings(
+    curve: &Curve,
+    setting: &Setting<'_>,
+    start: &State,
+    asked: Option<Asked>,
+    progress: &dyn Progress,
+) -> Result<Path, PathError> {
+    let (control, to) = (setting.control, curve.innermost());
+    let value = control.value(start.approach, start.force);
+    let equilibrium = &curve.equilibrium;
+    let gamma = equilibrium.problem.work_of_adhesion;
+    let far_enough = |ground: &Ground| BEYOND * ground.can_touch_up_to(start.approach) <= ground.reach();
+    on_ground(&equilibrium.table, BEYOND * start.contact_radius, &far_enough, progress, &|ground| {
+        if gamma == 0.0 {
+            let whole = cycle_on(ground, gamma, Turn::Control(value), setting, progress)?;
+            return Ok(Path { asked, ..way_back(whole) });
+        }
+        let lane = lane(ground, gamma, control);
+        let balance = balance(ground, gamma, setting, lane.as_ref(), progress);
+        let disc = Contacts::of_disc(start.contact_radius);
+        let mut held = balance.held(&disc, &points(ground, &disc), value)?;
+        let mut passed = Vec::new();
+        if let Some(grown) = balance.touched(&held, value, &mut passed)? {
+            let landed = balance.run(grown, value, 1.0, setting.mobility, &mut passed)?;
+            held = landed.ok_or(PathError::Lost { control_value: value })?;
+        }
+        let record = Record::new(setting, Direction::Unloading, progress);
+        let mut course = Course { balance: &balance, setting, turn: None, end: to, record, steps: 0 };
+        let first = course.state(&held);
+        course.record.begun(first);
+        let stop = course.unloaded(held)?;
+        Ok(course.record.finished(asked, None, None, stop))
+    })
+}
+
+/// The way down of a loop at which nothing is lost.
+fn way_back(mut whole: Path) -> Path {
+    let turn = whole.events.iter().position(|event| event.kind == EventKind::Turn);
+    whole.events.drain(..turn.map_or(0, |at| at + 1));
+    whole.states.retain(|state| state.direction == Direction::Unloading);
+    let first = whole.states.first().map_or(0, |state| state.piece);
+    let counted = |state: &mut PathState| state.piece -= first;
+    whole.states.iter_mut().for_each(counted);
+    let ends =
+        |event: &mut super::event::Event| event.before.iter_mut().chain(&mut event.after).for_each(counted);
+    whole.events.iter_mut().for_each(ends);
+    (whole.turn, whole.totals.work_of_loading) = (None, None);
+    whole
+}
+
+/// From an unstable start outward, at constant control, to the next stable state; `curve` reaches there then.
+fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing, PathError> {
+    let limit = (OUTWARD_REACH * from).min(curve.equilibrium.problem.largest_contact().max(from));
+    let mut reach = from;
+    loop {
+        reach = (1.5 * reach).min(limit);
+        curve.reach(reach);
+        // A start at a limit point that lies beyond the curve as it was.
+        let monotone = curve.monotone(control);
+        if let Some(start) = stable_start(&*curve.solution, &monotone, from) {
+            return Ok(start);
+        }
+        let stretch = monotone.stretch_of(from);
+        let value =
+            curve.solution.place(from).map_or(f64::NAN, |place| monotone.value(&curve.solution.at(place)));
+        if let Ok(Some(landing)) = jump::run(&*curve.solution, &monotone, stretch, value, Run::Outward) {
+            return Ok(landing);
+        }
+        if reach >= limit {
+            return Err(PathError::UnstableStart { contact_radius: from, searched: reach });
+        }
+    }
+}

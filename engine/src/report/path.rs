@@ -1,0 +1,558 @@
+//! A path as a document: an unloading, or a whole loop of loading and unloading.
+
+use super::number::{significant, with_unit};
+use super::overlap::{self, OverlapReport};
+use super::problem::{Head, control_name};
+use super::rows::{RowsError, Table};
+use crate::case::{Case, CaseError};
+use crate::gap::{Gap, wave_index};
+use crate::preset::{BasisSpec, Preset};
+use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
+use crate::progress::{Part, Progress};
+use crate::quasistatic::overlap::passed;
+use crate::quasistatic::path::{
+    Asked, Event, Losses, Passed, Path, PathState, Setting, Totals, TurnReached, WhyNot,
+};
+use crate::quasistatic::{Curve, Detail, Overlap, State};
+use crate::units::Quantity;
+use serde::Serialize;
+
+/// What happens on the way of a device.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PathReport {
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
+    /// What was controlled.
+    pub control: Control,
+    /// `rings`, or `one-disc`.
+    pub contact: &'static str,
+    /// Why the path does not start from the state asked for; null where it does.
+    pub start_note: Option<String>,
+    /// Where the control turned round; null of an unloading alone.
+    pub turn: Option<TurnReport>,
+    /// Why the path ended, in words.
+    pub stop: String,
+    /// What happened, in order.
+    pub events: Vec<EventReport>,
+    /// The sums.
+    pub totals: TotalsReport,
+    /// Where a path of one disc passes states in which the bodies would overlap, from the start inward; null where that is not known,
+    /// and of a path with rings, which passes none.
+    pub inadmissible: Option<Vec<OverlapReport>>,
+    /// Stable states in order, dense enough to be drawn.
+    pub states: Vec<PathStateReport>,
+}
+
+/// Where a path turned round.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TurnReport {
+    /// `approach`, `force`, `contact_radius` or `control`.
+    pub of: &'static str,
+    /// What was asked for.
+    pub asked: f64,
+    /// What the state at the turn has of it: more where loading jumped over the value.
+    pub reached: f64,
+}
+
+/// A state of a path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StateReport {
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// The outermost edge.
+    pub contact_radius: f64,
+    /// The crest of the outermost edge; none for a gap without waves.
+    pub wave: Option<u64>,
+    /// Every contact as [inner, outer], from the axis outward; a disc is [0, s].
+    pub contacts: Vec<[f64; 2]>,
+    /// Whether the device holds it: not at a limit point, from which edges run.
+    pub stable: bool,
+    /// dP/dδ while all edges are held, a force per length.
+    pub held_stiffness: f64,
+    /// The area in contact.
+    pub area: f64,
+    /// U: the elastic energy less γ times the contact area.
+    pub energy: f64,
+}
+
+/// A state of a path and where on it it lies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PathStateReport {
+    /// The stable stretch between two jumps, counted from 0.
+    pub piece: usize,
+    /// `loading` or `unloading`.
+    pub direction: &'static str,
+    /// δ, P, or Δ = δ + P/k.
+    pub control: f64,
+    /// The state.
+    #[serde(flatten)]
+    pub state: StateReport,
+}
+
+/// One event of a path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EventReport {
+    /// Its number on the path, from 1.
+    pub number: usize,
+    /// `first-touch`, `touch`, `merge`, `snap-in`, `snap`, `last-contact`, `split`, `vanish` or `turn`.
+    pub kind: &'static str,
+    /// `loading` or `unloading`.
+    pub direction: &'static str,
+    /// δ, P, or Δ = δ + P/k at which it happens.
+    pub control: f64,
+    /// Where a crest touched, contacts merged or split or one vanished.
+    pub radius: Option<f64>,
+    /// The state before; null while the bodies are apart.
+    pub before: Option<StateReport>,
+    /// The state after; null once they are apart.
+    pub after: Option<StateReport>,
+    /// Energy lost, by the drop of the potential of bodies and device; null where a dead load leaves no bound.
+    pub dissipated: Option<f64>,
+    /// The same by the work that the edges leave over on their way; null where it was not asked for.
+    pub dissipated_by_area: Option<f64>,
+    /// What the jump passed; its order means nothing.
+    pub passed: Vec<PassedReport>,
+    /// Whether the states before and after are admissible, of a path of one disc; null where that is not known.
+    pub admissible: Option<bool>,
+}
+
+/// What a jump passed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassedReport {
+    /// `touch`, `merge` or `vanish`.
+    pub kind: &'static str,
+    /// Where.
+    pub radius: f64,
+}
+
+/// The sums of a path; null where a dead load leaves no bound, or what was not asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TotalsReport {
+    /// The state of the smallest force: its force is negative where the bodies stick.
+    pub largest_pull: Option<StateReport>,
+    /// The state of the smallest approach.
+    pub farthest: Option<StateReport>,
+    /// The last state in contact; null where the path does not end apart.
+    pub last_contact: Option<StateReport>,
+    /// All losses.
+    pub dissipated: Option<f64>,
+    /// The same by area.
+    pub dissipated_by_area: Option<f64>,
+    /// The losses before the last contact.
+    pub dissipated_before_last_contact: f64,
+    /// The work done on bodies and device up to the turn.
+    pub work_of_loading: Option<f64>,
+    /// The same on the way down.
+    pub work_of_unloading: Option<f64>,
+}
+
+/// A state in a row of events.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct StateCells {
+    contact_radius: f64,
+    approach: f64,
+    force: f64,
+    wave: Option<u64>,
+    rings: usize,
+    area: f64,
+    energy: f64,
+}
+
+/// An event as a row of CSV.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct EventRow {
+    number: usize,
+    kind: &'static str,
+    direction: &'static str,
+    control: f64,
+    radius: Option<f64>,
+    before: Option<StateCells>,
+    after: Option<StateCells>,
+    dissipated: Option<f64>,
+    dissipated_by_area: Option<f64>,
+    admissible: Option<bool>,
+}
+
+/// One contact of one state, as a row of CSV.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct ContactRow {
+    state: usize,
+    piece: usize,
+    direction: &'static str,
+    control: f64,
+    approach: f64,
+    force: f64,
+    energy: f64,
+    area: f64,
+    held_stiffness: f64,
+    contact: usize,
+    inner_radius: f64,
+    outer_radius: f64,
+}
+
+/// The columns of the events as CSV; they never change, new ones come after them.
+pub const COLUMNS: &[&str] = &[
+    "number",
+    "kind",
+    "direction",
+    "control",
+    "radius",
+    "before_contact_radius",
+    "before_approach",
+    "before_force",
+    "before_wave",
+    "before_rings",
+    "before_area",
+    "before_energy",
+    "after_contact_radius",
+    "after_approach",
+    "after_force",
+    "after_wave",
+    "after_rings",
+    "after_area",
+    "after_energy",
+    "dissipated",
+    "dissipated_by_area",
+    "admissible",
+];
+
+/// The columns of the states as CSV, a row for each contact; they never change, new ones come after them.
+pub const STATE_COLUMNS: &[&str] = &[
+    "state",
+    "piece",
+    "direction",
+    "control",
+    "approach",
+    "force",
+    "energy",
+    "area",
+    "held_stiffness",
+    "contact",
+    "inner_radius",
+    "outer_radius",
+];
+
+/// How much of a path is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Extent {
+    /// Whether losses are computed twice.
+    pub losses: Losses,
+    /// Whether it is found where a path of one disc is not admissible: that takes longer than all the rest.
+    pub admissibility: bool,
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self { losses: Losses::Twice, admissibility: true }
+    }
+}
+
+/// The two losses agree when they differ by at most this share of the loss.
+pub const LOSS_AGREEMENT: f64 = 1e-6;
+
+impl PathReport {
+    /// Unloads `preset` from its start.
+    ///
+    /// # Errors
+    /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
+    pub fn unload(preset: &Preset, extent: Extent, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.5]))?;
+        let curve = case.curve_in(Detail::Drawn, &Part::new(progress, [0.5, 0.7]))?;
+        let setting = Setting { losses: extent.losses, ..case.setting_of_unloading() };
+        let path = case.unload(&curve, &setting, &Part::new(progress, [0.7, 0.8]))?;
+        let mut report = Self::new(preset, &case, &path);
+        if extent.admissibility {
+            report = report.checked(&case, &curve, &path, &Part::new(progress, [0.8, 1.0]))?;
+        }
+        report.warnings.extend(case.unsettled(&path, progress));
+        // What was given up may lack its warning.
+        if progress.stop() { Err(CaseError::Cancelled) } else { Ok(report) }
+    }
+
+    /// The loop of `preset`, turned round at `turn`, in the units of the preset, in place of what that says.
+    ///
+    /// # Errors
+    /// As [`unload`](Self::unload).
+    pub fn cycle(
+        preset: &Preset,
+        turn: Option<Turn>,
+        extent: Extent,
+        progress: &dyn Progress,
+    ) -> Result<Self, CaseError> {
+        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
+        let units = case.units();
+        let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
+        let setting = Setting { losses: extent.losses, ..case.setting() };
+        let path = case.cycle(turn, &setting, &Part::new(progress, [0.1, 0.9]))?;
+        let report = Self::new(preset, &case, &path);
+        if !extent.admissibility || setting.contact == ContactKind::Rings {
+            return Ok(report);
+        }
+        let largest = path.states.iter().map(|state| state.contact_radius).fold(case.start, f64::max);
+        let curve = case.curve_from(largest, &Part::new(progress, [0.9, 0.95]))?;
+        report.checked(&case, &curve, &path, &Part::new(progress, [0.95, 1.0]))
+    }
+
+    /// The document of a path of `case`; whether one of one disc is admissible is not known yet.
+    #[must_use]
+    pub fn new(preset: &Preset, case: &Case, path: &Path) -> Self {
+        let (units, shown, problem) = (case.units(), &case.shown, &case.reduced);
+        let is_loop = path.turn.is_some();
+        let begins = path.start().map_or(0.0, |start| start.contact_radius).max(case.start);
+        let mut warnings = if is_loop { case.warnings_of_problem() } else { case.warnings(begins) };
+        warnings.extend(path.warnings.iter().map(|w| w.words(path.control, units, shown)));
+        let mut notes = if is_loop { problem_notes(case) } else { case.notes(begins) };
+        if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
+            notes.push(
+                "a loop is followed by exact states, without ring elements, whatever the basis".to_owned(),
+            );
+        }
+        let states = path.states.iter().map(|state| PathStateReport {
+            piece: state.piece,
+            direction: state.direction.name(),
+            control: state.control_value * of_control(path.control, units),
+            state: StateReport::new(problem, state),
+        });
+        Self {
+            head: Head::new("path", preset, case),
+            warnings,
+            notes,
+            control: case.shown_control(path.control),
+            contact: path.contact.name(),
+            start_note: path.asked.map(|asked| start_note(case, path, &asked)),
+            turn: path.turn.map(|turn| TurnReport::new(turn, path.control, units)),
+            stop: path.stop.in_units(units).words(shown),
+            events: (1..)
+                .zip(&path.events)
+                .map(|(number, event)| EventReport::new(problem, path.control, number, event))
+                .collect(),
+            totals: TotalsReport::new(problem, path),
+            inadmissible: None,
+            states: states.collect(),
+        }
+    }
+
+    /// The same document with the inadmissible states that a path of one disc passes on `curve`, which reaches as far out.
+    ///
+    /// # Errors
+    /// [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn checked(
+        self,
+        case: &Case,
+        curve: &Curve,
+        path: &Path,
+        progress: &dyn Progress,
+    ) -> Result<Self, CaseError> {
+        if path.contact == ContactKind::Rings {
+            return Ok(self);
+        }
+        let found = passed(curve, &path.pieces(), progress).ok_or(CaseError::Cancelled)?;
+        Ok(self.with_overlaps(case, path, &found))
+    }
+
+    fn with_overlaps(mut self, case: &Case, path: &Path, passed: &[Overlap]) -> Self {
+        let holds = |state: &PathState| !passed.iter().any(|overlap| overlap.contains(state.contact_radius));
+        for (report, event) in self.events.iter_mut().zip(&path.events) {
+            report.admissible = Some(event.before.iter().chain(&event.after).all(holds));
+        }
+        let inadmissible = OverlapReport::all(passed, case.units());
+        self.warnings.extend(overlap::warning("the path", &inadmissible, &case.shown));
+        self.inadmissible = Some(inadmissible);
+        self
+    }
+
+    /// The events under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        events_table(&self.events)
+    }
+
+    /// The states under the names of their columns, a row for each contact.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn states_table(&self) -> Result<Table, RowsError> {
+        let rows: Vec<ContactRow> = self
+            .states
+            .iter()
+            .enumerate()
+            .flat_map(|(number, at)| {
+                at.state.contacts.iter().enumerate().map(move |(contact, edges)| ContactRow {
+                    state: number,
+                    piece: at.piece,
+                    direction: at.direction,
+                    control: at.control,
+                    approach: at.state.approach,
+                    force: at.state.force,
+                    energy: at.state.energy,
+                    area: at.state.area,
+                    held_stiffness: at.state.held_stiffness,
+                    contact,
+                    inner_radius: edges[0],
+                    outer_radius: edges[1],
+                })
+            })
+            .collect();
+        Table::of(STATE_COLUMNS, &rows)
+    }
+}
+
+/// Events under the names of their columns.
+///
+/// # Errors
+/// As [`Table::of`].
+pub fn events_table(events: &[EventReport]) -> Result<Table, RowsError> {
+    let cells = |state: &Option<StateReport>| {
+        state.as_ref().map(|state| StateCells {
+            contact_radius: state.contact_radius,
+            approach: state.approach,
+            force: state.force,
+            wave: state.wave,
+            rings: state.contacts.iter().filter(|[inner, _]| *inner > 0.0).count(),
+            area: state.area,
+            energy: state.energy,
+        })
+    };
+    let row = |event: &EventReport| EventRow {
+        number: event.number,
+        kind: event.kind,
+        direction: event.direction,
+        control: event.control,
+        radius: event.radius,
+        before: cells(&event.before),
+        after: cells(&event.after),
+        dissipated: event.dissipated,
+        dissipated_by_area: event.dissipated_by_area,
+        admissible: event.admissible,
+    };
+    Table::of(COLUMNS, &events.iter().map(row).collect::<Vec<_>>())
+}
+
+fn problem_notes(case: &Case) -> Vec<String> {
+    case.problem.shape.remarks(&case.shown)
+}
+
+/// Why a path does not start from the state asked for.
+fn start_note(case: &Case, path: &Path, asked: &Asked) -> String {
+    let units = case.units();
+    let length =
+        |s: f64| with_unit(&case.shown, Quantity::Length, s * units.length, true, |s| significant(s, 6));
+    let State { contact_radius, .. } = asked.state;
+    let reached = length(path.start().map_or(f64::NAN, |start| start.contact_radius));
+    let asked_for = format!("the state asked for (contact radius {})", length(contact_radius));
+    let control = control_name(path.control);
+    match asked.why {
+        WhyNot::Unstable { falls: true } => {
+            format!(
+                "{asked_for} is unstable under {control} control: the edge first ran outward to {reached}"
+            )
+        }
+        WhyNot::Unstable { falls: false } => format!(
+            "{asked_for} is unstable under {control} control: the path starts at the next stable state outward, {reached}, to \
+             which the edge would not run by itself (the potential rises on the way)"
+        ),
+        WhyNot::Overlaps(radius) => format!(
+            "{asked_for} is none: the bodies would overlap at r = {}, where the gap outside is closed; the path starts at the \
+             contact that holds it, out to {reached}",
+            length(radius)
+        ),
+    }
+}
+
+fn of_control(control: Control, units: &Units) -> f64 {
+    if control == Control::Force { units.force } else { units.length }
+}
+
+impl TurnReport {
+    fn new(turn: TurnReached, control: Control, units: &Units) -> Self {
+        let (of, unit) = match turn.asked {
+            Turn::Approach(_) => ("approach", units.length),
+            Turn::Force(_) => ("force", units.force),
+            Turn::Radius(_) => ("contact_radius", units.length),
+            Turn::Control(_) => ("control", of_control(control, units)),
+        };
+        Self { of, asked: turn.asked.value() * unit, reached: turn.reached * unit }
+    }
+}
+
+impl StateReport {
+    /// A state of `problem` in the user's units.
+    pub fn new(problem: &Reduced, state: &PathState) -> Self {
+        let Units { length, force, energy, stiffness, .. } = problem.units;
+        Self {
+            approach: state.approach * length,
+            force: state.force * force,
+            contact_radius: state.contact_radius * length,
+            wave: wave_index(state.contact_radius, problem.gap.wavelength()),
+            contacts: state.contacts.iter().map(|edges| edges.map(|r| r * length)).collect(),
+            stable: state.stable,
+            held_stiffness: state.held_stiffness * stiffness,
+            area: state.contact_area * length * length,
+            energy: state.energy * energy,
+        }
+    }
+}
+
+impl EventReport {
+    /// An event of `problem` under `control` in the user's units, with its number on the path.
+    pub fn new(problem: &Reduced, control: Control, number: usize, event: &Event) -> Self {
+        let units = problem.units;
+        let state = |state: &Option<PathState>| state.as_ref().map(|state| StateReport::new(problem, state));
+        let passed =
+            |passed: &Passed| PassedReport { kind: passed.kind.name(), radius: passed.radius * units.length };
+        Self {
+            number,
+            kind: event.kind.name(),
+            direction: event.direction.name(),
+            control: event.control_value * of_control(control, &units),
+            radius: event.radius.map(|r| r * units.length),
+            before: state(&event.before),
+            after: state(&event.after),
+            dissipated: event.dissipated.map(|x| x * units.energy),
+            dissipated_by_area: event.dissipated_by_area.map(|x| x * units.energy),
+            passed: event.passed.iter().map(passed).collect(),
+            admissible: None,
+        }
+    }
+
+    /// Whether the loss by area confirms the one by energy; `None` where there are not both.
+    #[must_use]
+    pub fn losses_agree(&self) -> Option<bool> {
+        let (energy, area) = self.dissipated.zip(self.dissipated_by_area)?;
+        Some((energy - area).abs() <= LOSS_AGREEMENT * energy.abs())
+    }
+}
+
+impl TotalsReport {
+    fn new(problem: &Reduced, path: &Path) -> Self {
+        let Totals {
+            dissipated,
+            dissipated_by_area,
+            dissipated_before_last_contact,
+            work_of_loading,
+            work_of_unloading,
+            ..
+        } = path.totals;
+        let energy = |x: f64| x * problem.units.energy;
+        let state = |state: &PathState| StateReport::new(problem, state);
+        Self {
+            largest_pull: path.largest_pull().map(state),
+            farthest: path.farthest().map(state),
+            last_contact: path.last_contact().and_then(|event| event.before.as_ref()).map(state),
+            dissipated: dissipated.map(energy),
+            dissipated_by_area: dissipated_by_area.map(energy),
+            dissipated_before_last_contact: energy(dissipated_before_last_contact),
+            work_of_loading: work_of_loading.map(energy),
+            work_of_unloading: work_of_unloading.map(energy),
+        }
+    }
+}

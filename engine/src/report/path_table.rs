@@ -1,0 +1,185 @@
+//! A path as text for a terminal.
+
+use super::number::{loss, significant};
+use super::path::{EventReport, PathReport, StateReport};
+use super::table::{aligned, ascii_unit, control, head, ratio};
+use crate::problem::Control;
+use crate::units::{Quantity, UnitSystem};
+use std::fmt::Write;
+
+/// Rings told one by one in a line; a document lists all.
+const TOLD: usize = 2;
+
+/// The path as lines of text.
+#[must_use]
+pub fn path(report: &PathReport) -> String {
+    let mut text = opening(report);
+    text.push('\n');
+    if report.events.is_empty() {
+        text.push_str("no instabilities\n");
+    } else {
+        text.push_str(&events(report));
+    }
+    text.push('\n');
+    text.push_str(&outcome(report));
+    text
+}
+
+/// The case, its control, its start, and what is to be known of them.
+fn opening(report: &PathReport) -> String {
+    let title = report.head.problem.preset.get("title").and_then(|title| title.as_str()).unwrap_or_default();
+    let units = &report.head.units.shown;
+    let mut text = if title.is_empty() { String::new() } else { format!("{title}\n") };
+    let _ = writeln!(text, "control: {}", control(units, report.control));
+    let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 6));
+    if let Some(start) = report.states.first().filter(|_| report.turn.is_none()) {
+        let start = &start.state;
+        let _ = writeln!(
+            text,
+            "start: delta {}  P {}  contact {}",
+            shown(Quantity::Length, start.approach),
+            shown(Quantity::Force, start.force),
+            in_contact(units, &start.contacts, 6)
+        );
+    }
+    for note in report.start_note.iter().chain(&report.notes) {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
+
+/// The events as a table, and what is wrong with those that cannot be.
+fn events(report: &PathReport) -> String {
+    let units = &report.head.units.shown;
+    let head = |name, quantity| head(units, name, quantity);
+    let mut rows = vec![vec![
+        "#".to_owned(),
+        "event".to_owned(),
+        head("contact", Quantity::Length),
+        "> contact".to_owned(),
+        "crest".to_owned(),
+        head("delta", Quantity::Length),
+        "> delta".to_owned(),
+        head("P", Quantity::Force),
+        "> P".to_owned(),
+        head("lost", Quantity::Energy),
+        "by area".to_owned(),
+    ]];
+    rows.extend(report.events.iter().map(|event| row(units, event)));
+    let mut text = aligned(&rows, 4);
+    if report.events.iter().any(|event| event.admissible == Some(false)) {
+        let found = report.inadmissible.as_deref().unwrap_or_default();
+        let crest = found.iter().any(|part| part.crest_radius.is_some());
+        let pull = found.iter().any(|part| part.crest_radius.is_none());
+        let faults = [(crest, "the next crest would touch"), (pull, "the disc would have to pull")];
+        let faults: Vec<&str> = faults.iter().filter(|(is, _)| *is).map(|(_, fault)| *fault).collect();
+        let _ = writeln!(text, "! limit point or landing inadmissible: {}", faults.join(", or "));
+    }
+    text
+}
+
+fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
+    let dash = || "-".to_owned();
+    let shown = |quantity, x| significant(units.shown(quantity, x).number, 5);
+    let lost = |x| loss(units.shown(Quantity::Energy, x).number);
+    let of = |state: &Option<StateReport>, quantity, number: fn(&StateReport) -> f64| {
+        state.as_ref().map_or_else(dash, |state| shown(quantity, number(state)))
+    };
+    let contacts = |state: &Option<StateReport>| {
+        state.as_ref().map_or_else(|| "apart".to_owned(), |state| contacts(units, &state.contacts))
+    };
+    let (before, after) = (&event.before, &event.after);
+    // Where nothing jumps there is one state.
+    let still = before == after;
+    let landed = |text: String| if still { dash() } else { text };
+    let crest = |state: &Option<StateReport>| {
+        state.as_ref().and_then(|state| state.wave).map_or_else(dash, |wave| wave.to_string())
+    };
+    let mut kind = match event.radius {
+        Some(radius) => format!("{} {}", event.kind, shown(Quantity::Length, radius)),
+        None => event.kind.to_owned(),
+    };
+    if event.admissible == Some(false) {
+        kind.push_str(" !");
+    }
+    vec![
+        event.number.to_string(),
+        kind,
+        contacts(before),
+        landed(contacts(after)),
+        if still { crest(before) } else { format!("{}>{}", crest(before), crest(after)) },
+        of(before, Quantity::Length, |state| state.approach),
+        landed(of(after, Quantity::Length, |state| state.approach)),
+        of(before, Quantity::Force, |state| state.force),
+        landed(of(after, Quantity::Force, |state| state.force)),
+        event.dissipated.map_or_else(dash, lost),
+        match event.losses_agree() {
+            Some(true) => "agrees".to_owned(),
+            _ => event.dissipated_by_area.map_or_else(dash, lost),
+        },
+    ]
+}
+
+/// `0.11480 [0.13710, 0.15540]`: the disc by its radius, rings by their edges.
+#[must_use]
+pub fn contacts(units: &UnitSystem, contacts: &[[f64; 2]]) -> String {
+    in_contact(units, contacts, 5)
+}
+
+fn in_contact(units: &UnitSystem, contacts: &[[f64; 2]], digits: usize) -> String {
+    let shown = |x| significant(units.shown(Quantity::Length, x).number, digits);
+    let (disc, rings) = match contacts {
+        [[inner, outer], rings @ ..] if *inner == 0.0 => (Some(shown(*outer)), rings),
+        rings => (None, rings),
+    };
+    let ring = |[inner, outer]: &[f64; 2]| format!("[{}, {}]", shown(*inner), shown(*outer));
+    let more = rings.len().saturating_sub(TOLD);
+    let told = rings.iter().take(TOLD).map(ring);
+    let more = (more > 0).then(|| format!("+{more}"));
+    disc.into_iter().chain(told).chain(more).collect::<Vec<_>>().join(" ")
+}
+
+/// What the path comes to: where it turned, extreme states, losses, its end.
+fn outcome(report: &PathReport) -> String {
+    let (units, totals) = (&report.head.units.shown, &report.totals);
+    let mut text = String::new();
+    if let Some(turn) = &report.turn {
+        let is_force = turn.of == "force" || turn.of == "control" && report.control == Control::Force;
+        let quantity = if is_force { Quantity::Force } else { Quantity::Length };
+        let at = |x| ascii_unit(units, quantity, x, |x| significant(x, 6));
+        let of = match turn.of {
+            "control" => "control value".to_owned(),
+            of => of.replace('_', " "),
+        };
+        let _ = writeln!(text, "turn: asked for the {of} {}, reached {}", at(turn.asked), at(turn.reached));
+    }
+    let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
+    if let Some(at) = &totals.largest_pull {
+        let name = if at.force < 0.0 { "largest pull" } else { "smallest force" };
+        let ratio = ratio(at.force, report.head.problem.critical_force);
+        let _ = writeln!(text, "{name}: {}{ratio}", shown(Quantity::Force, at.force));
+    }
+    if let Some(at) = &totals.farthest {
+        let _ = writeln!(text, "farthest: delta {}", shown(Quantity::Length, at.approach));
+    }
+    let rings = |state: &StateReport| state.contacts.iter().filter(|edges| edges[0] > 0.0).count();
+    let most = report.states.iter().map(|state| rings(&state.state)).max().unwrap_or(0);
+    if most > 0 || report.turn.is_some() {
+        let _ = writeln!(text, "most rings at a time: {most}");
+    }
+    let energy = |x| ascii_unit(units, Quantity::Energy, x, loss);
+    let before = totals.dissipated_before_last_contact;
+    let _ = match totals.dissipated {
+        Some(lost) => {
+            writeln!(text, "energy lost: {}, of it {} before the last contact", energy(lost), energy(before))
+        }
+        None => writeln!(
+            text,
+            "energy lost before the last contact: {}; under a dead load the last contact loses without bound: the bodies fall \
+             apart for ever",
+            energy(before)
+        ),
+    };
+    let _ = writeln!(text, "end: {}", report.stop);
+    text
+}

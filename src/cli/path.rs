@@ -1,0 +1,183 @@
+//! `pulloff unload` and `pulloff cycle`: what happens on the way of the device, event by event.
+
+use super::Failure;
+use super::console::{Console, Messages};
+use super::format::{Format, FormatArgument};
+use super::output::{Destination, Sink};
+use super::problem::Problem;
+use super::watch::Stop;
+use clap::{Args, ValueEnum};
+use pulloff_engine::case::CaseError;
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::schema::TURN_KEYS;
+use pulloff_engine::problem::{ContactKind, Control, Turn};
+use pulloff_engine::progress::Progress;
+use pulloff_engine::quasistatic::{Losses, PathStop};
+use pulloff_engine::report::path::{COLUMNS, Extent, STATE_COLUMNS};
+use pulloff_engine::report::{PathReport, columns, json, path_table, table};
+use std::process::ExitCode;
+
+/// The arguments of `pulloff unload`.
+#[derive(Debug, Args)]
+pub struct UnloadArguments {
+    #[command(flatten)]
+    path: PathArguments,
+}
+
+/// The arguments of `pulloff cycle`.
+#[derive(Debug, Args)]
+pub struct CycleArguments {
+    #[command(flatten)]
+    turn: TurnArguments,
+    #[command(flatten)]
+    path: PathArguments,
+}
+
+/// What both are asked for.
+#[derive(Debug, Args)]
+struct PathArguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// Follow one disc of contact alone, as path.contact=one-disc does; states in which the bodies would overlap are marked
+    #[arg(long)]
+    one_disc: bool,
+    /// Compute losses by energy alone: faster, and without the balance of energy and areas
+    #[arg(long)]
+    no_area: bool,
+    /// What the rows of a table or of CSV are; JSON has both
+    #[arg(long, value_enum, default_value_t = Rows::Events)]
+    rows: Rows,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+/// What a row is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Rows {
+    /// What happens, in order
+    Events,
+    /// The stable states, a row for each contact
+    States,
+}
+
+/// Where the loop turns round; instead of what the preset says.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+#[expect(clippy::struct_field_names, reason = "clap makes the flags of these names")]
+struct TurnArguments {
+    /// Turn round at the first stable state with at least this approach
+    #[arg(long, value_name = "APPROACH", allow_hyphen_values = true)]
+    to_approach: Option<String>,
+    /// Turn round at the first stable state with at least this force
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
+    to_force: Option<String>,
+    /// Turn round at the first stable state whose outermost edge is at least this far out
+    #[arg(long, value_name = "RADIUS")]
+    to_radius: Option<String>,
+    /// Turn round at this value of what is controlled: an approach, a force, or the way of the spring's other end
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    to_control: Option<String>,
+}
+
+impl TurnArguments {
+    /// Gives the preset the turn, where one is given; a control value is none of its keys.
+    fn lay(&self, preset: &mut Preset) -> Result<Option<Turn>, Failure> {
+        let given = [
+            ("--to-approach", TURN_KEYS[0], &self.to_approach),
+            ("--to-force", TURN_KEYS[1], &self.to_force),
+            ("--to-radius", TURN_KEYS[2], &self.to_radius),
+        ];
+        for (flag, key, text) in given {
+            if let Some(text) = text {
+                preset.assign(key, text).map_err(|invalid| Failure::Usage(format!("{flag}: {invalid}")))?;
+            }
+        }
+        let Some(text) = &self.to_control else { return Ok(None) };
+        // It is typed as an approach or a force is.
+        let key = TURN_KEYS[usize::from(preset.path.control == Control::Force)];
+        let value = preset.row(key).map(|row| preset.number(&row, text)).transpose();
+        let value = value.map_err(|invalid| Failure::Usage(format!("--to-control: {invalid}")))?;
+        Ok(value.map(Turn::Control))
+    }
+}
+
+pub fn unload(arguments: &UnloadArguments) -> Result<ExitCode, Failure> {
+    let (report, opened) = arguments
+        .path
+        .compute(|_| Ok(None), &|preset, _, extent, progress| PathReport::unload(preset, extent, progress))?;
+    opened.written(&report)
+}
+
+pub fn cycle(arguments: &CycleArguments) -> Result<ExitCode, Failure> {
+    let (report, opened) = arguments.path.compute(|preset| arguments.turn.lay(preset), &PathReport::cycle)?;
+    opened.written(&report)
+}
+
+/// How a path is computed.
+type Compute<'a> = &'a dyn Fn(&Preset, Option<Turn>, Extent, &dyn Progress) -> Result<PathReport, CaseError>;
+
+/// Where the answer goes.
+struct Opened {
+    console: Console,
+    format: Format,
+    rows: Rows,
+    sink: Sink,
+}
+
+impl PathArguments {
+    /// Computes a path, once it is sure where it goes.
+    fn compute(
+        &self,
+        turn: impl FnOnce(&mut Preset) -> Result<Option<Turn>, Failure>,
+        path: Compute<'_>,
+    ) -> Result<(PathReport, Opened), Failure> {
+        let console = self.messages.open();
+        let format = self.format.of(self.destination.path(), Format::Table)?;
+        let loaded = self.problem.load(&console)?;
+        let sink = self.destination.sink(self.problem.inputs(&loaded))?;
+        let mut preset = loaded.preset;
+        let turn = turn(&mut preset)?;
+        if self.one_disc {
+            preset.path.contact = ContactKind::OneDisc;
+        }
+        let losses = if self.no_area { Losses::Once } else { Losses::Twice };
+        let stop = Stop::catch()?;
+        let extent = Extent { losses, ..Extent::default() };
+        let report = path(&preset, turn, extent, &console.bar(Some(&stop)))?;
+        Ok((report, Opened { console, format, rows: self.rows, sink }))
+    }
+}
+
+impl Opened {
+    fn written(self, report: &PathReport) -> Result<ExitCode, Failure> {
+        let Self { console, format, rows, sink } = self;
+        console.warn(&report.warnings);
+        let units = &report.head.units.shown;
+        let text = match (format, rows) {
+            (Format::Table, Rows::Events) => path_table::path(report),
+            (Format::Table, Rows::States) => table::rows(&report.states_table()?),
+            (Format::Csv, rows) => {
+                let (columns, table) = match rows {
+                    Rows::Events => (COLUMNS, report.table()?),
+                    Rows::States => (STATE_COLUMNS, report.states_table()?),
+                };
+                console.note(columns::units(columns, report.control, units).as_deref());
+                table.csv()?
+            }
+            (Format::Json, _) => json(report)?,
+        };
+        sink.write(text)?;
+        if [PathStop::Apart, PathStop::End].iter().any(|end| report.stop == end.to_string()) {
+            return console.end();
+        }
+        Err(Failure::Incomplete(format!(
+            "the path stopped early, its {} events were written: {}",
+            report.events.len(),
+            report.stop
+        )))
+    }
+}
