@@ -127,7 +127,7 @@ fn every_view_a_closer_look_and_a_pin() {
         "limit points under",
         "where snaps begin",
         "ΔP/Pc over",
-        "pull off force over A",
+        "largest pull over A",
     ] {
         pty.keys("t");
         pty.wait_for(|screen| screen.contains(title), title);

@@ -17,7 +17,7 @@ const PRESET: &str = "units = \"reduced\"\ntitle = \"piped\"\n[material]\neffect
     start_contact_radius = 0.3\n";
 
 const SPEC: &str = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]\n\
-    quantities = [\"pull_off_force\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [0.001, 0.002]\n";
+    quantities = [\"last_contact_force\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [0.001, 0.002]\n";
 
 /// A shell line with the program as `$pulloff`, in the home.
 fn shell(home: &Home, line: &str) -> Ended {

@@ -112,50 +112,6 @@ fn a_walk_in_the_exact_basis_goes_on_as_if_it_had_never_been_interrupted() {
     );
 }
 
-/// Saved by a program that knew the basis spectral and its number of functions: walked in both bases and with two
-/// numbers, pinned, jumped and undone.
-const SPECTRAL: &[u8] = include_bytes!("data/session-spectral.json");
-
-#[test]
-fn a_session_that_calls_the_exact_basis_spectral_opens_says_so_and_goes_on() {
-    let text = std::str::from_utf8(SPECTRAL).unwrap();
-    assert!(text.contains("kind = \\\"spectral\\\"") && text.contains("functions = 48"));
-    let snapshot = read(SPECTRAL).unwrap();
-    assert_eq!(snapshot.preset.basis, BasisSpec::Exact);
-    assert_eq!((snapshot.steps(), snapshot.pins.len(), snapshot.history.cursor()), (34, 1, Some(34)));
-    let bases: Vec<_> = snapshot.history.nodes().map(|node| node.setting.preset.basis).collect();
-    let in_rings = bases.iter().filter(|basis| matches!(basis, BasisSpec::Rings { rings: 40, .. })).count();
-    // Solved again in rings, and one step.
-    assert_eq!((in_rings, bases.len()), (2, 35));
-    let (mut model, effects) = snapshot.resume(None);
-    let note = "its basis spectral is exact now";
-    assert!(model.message.as_ref().is_some_and(|(_, said)| said == note), "{:?}", model.message);
-    let mut session = Session::new("wavy-sphere");
-    session.driver.settle(&mut model, effects);
-    session.model = model;
-    let before = session.model.walker().unwrap().state;
-    session.does(Command::Steps(1));
-    let node = session.model.walker().unwrap();
-    assert_eq!((session.model.history.len(), node.step), (36, 34));
-    // The next state lies on the same curve, a step further.
-    assert!(node.state.contact_radius < before.contact_radius && node.from_exact.abs() < 1e-12, "{node:?}");
-    // What it is written as has nothing of before, and reads as any other.
-    let bytes = document(&session.model);
-    let again = String::from_utf8(bytes.clone()).unwrap();
-    assert!(!again.contains("spectral") && !again.contains("functions"));
-    let (model, _) = read(&bytes).unwrap().resume(None);
-    assert!(model.message.is_none(), "{:?}", model.message);
-    // Its walk is a script that this program plays, but for the line that has no meaning any more.
-    let lines = session.model.script().unwrap();
-    assert!(
-        lines.contains(&"set basis.kind=exact".to_owned())
-            && lines.contains(&"set gap.amplitude=0.0024".to_owned())
-    );
-    for line in &lines {
-        script::parse(line).unwrap();
-    }
-}
-
 #[test]
 fn presets_of_every_kind_come_back() {
     let folder = tempfile::tempdir().unwrap();

@@ -354,7 +354,7 @@ fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
     assert!(left.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().starts_with(".pulloff-")));
     // A sweep keeps its whole rows, and goes on from them.
     let many = SPEC.replace("values = [0.001, 0.002]", "linear = { from = 0.001, to = 0.002, count = 300 }");
-    home.file("many.toml", &many.replace("\"snaps\"", "\"snaps\", \"enhancement\", \"pull_off_force\""));
+    home.file("many.toml", &many.replace("\"snaps\"", "\"snaps\", \"enhancement\", \"last_contact_force\""));
     let limited = shell(&home, "ulimit -f 6; $pulloff sweep many.toml -o r.csv");
     assert_eq!(limited.status, 1, "{}", limited.err);
     assert!(limited.err.contains("r.csv: cannot write: over the limit"), "{}", limited.err);

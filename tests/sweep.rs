@@ -95,7 +95,7 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
     assert!(!said.contains('\u{1b}'), "no progress where there is no terminal: {said}");
     let text = home.text("r.csv");
     assert!(text.starts_with(
-        "row,gap.amplitude,groups.adhesion,pull_off_force,snaps_force,enhancement,kesari_lew,error\n0,0.001,0.01,"
+        "row,gap.amplitude,groups.adhesion,last_contact_force,snaps_force,enhancement,kesari_lew,error\n0,0.001,0.01,"
     ));
     // The last axis runs fastest, and its ends are those that were typed.
     let all = home.columns("r.csv", &["row", "gap.amplitude", "groups.adhesion", "error"]);
@@ -382,7 +382,7 @@ fn shards_join_to_the_single_run() {
         (row.replacen("4,", "7,", 1), "row 4: column row is 7, expected 4"),
         (row.replacen(",0.001,", ",\"0.001\",", 1), "row 4: is not written as a sweep writes it"),
         (row.split_once(',').unwrap().0.to_owned(), "row 4: column gap.amplitude is empty, expected 0.001"),
-        (row.replacen(",0.001,0.03,", ",0.001,0.03,x", 1), "row 4: column pull_off_force is x-"),
+        (row.replacen(",0.001,0.03,", ",0.001,0.03,x", 1), "row 4: column last_contact_force is x-"),
         (format!("{row}why"), "row 4: column error is why, expected a fault or nothing"),
         (format!("{row},"), "row 4: has 9 fields, expected 8"),
     ] {

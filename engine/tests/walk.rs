@@ -146,7 +146,7 @@ fn reproduces(gamma: f64, reference: &str) {
     println!("{worst:?}");
     assert!(worst[..3].iter().all(|error| *error < 1e-10) && worst[3] < 1e-8, "{worst:?}");
     // The last jump of loading, by the other program's own numbers.
-    let jumps = |event: &&serde_json::Value| event["kind"] == "touch" || event["kind"] == "advance";
+    let jumps = |event: &&serde_json::Value| event["kind"] == "touch" || event["kind"] == "snap-in";
     let last = expected.iter().rposition(jumps).unwrap();
     let (delta, force, contacts) = support::numbers(&expected[last]["before"]);
     let before = found.events[last].before.as_ref().unwrap();

@@ -98,11 +98,12 @@ impl Preset {
             .or_else(|| groups::row(key).map(Row::Borrowed))
     }
 
-    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, and the waves
-    /// after the first [`WAVE_KNOBS`](family::WAVE_KNOBS).
+    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, the waves after the
+    /// first [`WAVE_KNOBS`](family::WAVE_KNOBS), and which contacts are followed, which is set by its key: the others fill 40 rows.
     pub fn knobs(&self) -> impl Iterator<Item = Row> {
         self.rows().filter(|row| {
             row.key != "format"
+                && row.key != "path.contact"
                 && !is_of_units(&row.key)
                 && !shape::is_range(&row.key)
                 && family::has_knob(&row.key)
