@@ -258,6 +258,7 @@ fn map_lines(bencher: Bencher, key: &str) {
     let range = if key.contains("radius") { [0.02, 0.1] } else { [0.0, 0.0125] };
     let x = Axis::new(key, range, false, 1.0).unwrap();
     let y = Axis::new("groups.adhesion", [1e-3, 1.0], true, 1.0).unwrap();
-    bencher
-        .bench_local(|| Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map(&Unwatched).unwrap());
+    bencher.bench_local(|| {
+        Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map([32, 24], &Unwatched).unwrap()
+    });
 }

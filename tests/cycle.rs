@@ -123,7 +123,8 @@ fn the_document_has_its_form() {
 #[test]
 fn the_loop_of_the_paper_has_its_numbers() {
     let document = Home::new().json(&["cycle", "fig-9-cycle"]);
-    let expected = [&["first-touch"][..], &["snap-in"; 5], &["turn"], &["snap"; 7], &["last-contact"]].concat();
+    let expected =
+        [&["first-touch"][..], &["snap-in"; 5], &["turn"], &["snap"; 7], &["last-contact"]].concat();
     assert_eq!(kinds(&document), expected);
     // Two other programs agree on them.
     assert!((number(&document["totals"]["dissipated"]) - 2.112_003_387_3e-3).abs() < 1e-12);

@@ -218,7 +218,7 @@ class Map(Result):
     line: Floats
     """The number of the point's line, from 1; NaN where it is on none."""
     kind: Texts
-    """``fold``, ``cusp``, ``swallowtail``, ``landing`` or ``start``."""
+    """``fold``, ``cusp``, ``swallowtail``, ``landing``, ``start`` or ``change``."""
     crest: Floats
     contact_radius: Floats
     x: Floats

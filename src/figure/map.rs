@@ -23,6 +23,7 @@ fn role(row: &RowReport) -> (Role, &'static str) {
         ("cusp" | "landing", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
         ("landing", _) => (Role::Landings, "line of landings"),
         ("start", _) => (Role::Starts, "limit point at the start"),
+        ("change", _) => (Role::Starts, "the count changes"),
         _ => (Role::Cusps, "line of cusps"),
     }
 }

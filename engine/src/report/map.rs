@@ -39,7 +39,7 @@ impl Ordinate {
 pub struct RowReport {
     /// The number of its line, from 1; a cusp, swallowtail or landing on a line has the number of that line where it is known.
     pub line: Option<usize>,
-    /// `fold`, `cusp`, `swallowtail`, `landing` or `start`.
+    /// `fold`, `cusp`, `swallowtail`, `landing`, `start` or `change`: a count that changes for some other reason, from cell to cell.
     pub kind: &'static str,
     /// The crest at which the limit point is, counted from the axis; null without a wave.
     pub crest: Option<u32>,
@@ -188,10 +188,9 @@ impl MapReport {
         });
         if let Ordinate::Key(axis) = y {
             report.y = AxisReport::of(axis);
-            let family = Family::new(preset, vec![x, axis.clone()])?;
-            let mut map = family.map(&Part::new(progress, [0.1, 0.3]))?;
-            family.mark_changes(&mut map, &Part::new(progress, [0.3, 0.7]));
-            let counts = family.counts(cells, &Part::new(progress, [0.7, 1.0])).ok_or(MapError::Cancelled)?;
+            let mut family = Family::new(preset, vec![x, axis.clone()])?;
+            let found = family.map(cells, &Part::new(progress, [0.1, 1.0]))?;
+            let (map, counts) = found.ok_or(MapError::Cancelled)?;
             report.rows_of_map(&family, &map);
             report.counts = Some(CountsReport::of(&family, counts));
             report.notes.extend(map.notes);
@@ -222,10 +221,11 @@ impl MapReport {
     fn rows_of_map(&mut self, family: &Family, map: &Map) {
         for (number, line) in map.lines.iter().enumerate() {
             let kind = match line.sort {
-                Sort::Cusp => "cusp",
-                Sort::Landing => "landing",
-                Sort::Start => "start",
-                Sort::Fold => "fold",
+                Some(Sort::Cusp) => "cusp",
+                Some(Sort::Landing) => "landing",
+                Some(Sort::Start | Sort::Arrival) => "start",
+                Some(Sort::Fold) => "fold",
+                None => "change",
             };
             let row = |point: &MapPoint, kind, changes| RowReport {
                 line: Some(number + 1),

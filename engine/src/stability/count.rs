@@ -18,14 +18,18 @@ pub const NEARLY: usize = 12;
 /// The path of one member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passage {
-    /// The snaps, without the pull-off.
+    /// The snaps, without the last contact.
     pub snaps: usize,
     /// The minima of the control between the end and the start of the path, ascending: s and the weighted control.
     pub minima: Vec<[f64; 2]>,
+    /// The maxima further out than the start, of a start from which the edge runs outward first.
+    pub crests: Vec<[f64; 2]>,
     /// The limit points there, of both kinds.
     pub limits: usize,
     /// Those from which the edge snaps, s.
     pub jumps: Vec<f64>,
+    /// s at its end and at its start: of an unstable start, where the edge runs to.
+    pub radii: [f64; 2],
 }
 
 /// What makes the number of snaps change.
@@ -60,20 +64,21 @@ impl Family {
         let member = self.member(at)?;
         let (basis, problem, [end, start]) = member.ground(at)?;
         let Some(solution) = basis.solution(&problem, end, start, &Unwatched) else { return Ok(None) };
-        let monotone = Monotone::of(&*solution, member.control);
-        let radius = |place| solution.at(place).contact_radius;
+        let mut monotone = Monotone::of(&*solution, member.control);
+        let mut from = start;
         let (snaps, jumps) = if let Some(here) = stable_start(&*solution, &monotone, start) {
             let descent = descend(&*solution, &monotone, here, end);
             if descent.hole.is_some() {
                 return Ok(None);
             }
             let landed = descent.jumps.iter().filter(|jump| jump.landing.is_some());
+            let radius = |place| solution.at(place).contact_radius;
             (descent.snaps(), landed.map(|jump| radius(jump.before)).collect())
         } else {
             // The edge runs outward first: the path of the whole unloading knows how far.
             let table = Arc::clone(basis.table());
-            let curve =
-                Curve::new(problem, Arc::new(basis), table, [start, end], Detail::Borders, &Unwatched);
+            let of = Arc::new(basis.clone());
+            let curve = Curve::new(problem.clone(), of, table, [start, end], Detail::Borders, &Unwatched);
             let Some(curve) = curve else { return Ok(None) };
             let (losses, detail) = (Losses::Once, Detail::Borders);
             let setting = Setting { losses, detail, ..Setting::one_disc(member.control) };
@@ -82,19 +87,28 @@ impl Family {
                     let snaps = path.events.iter().filter(|event| event.kind == EventKind::Snap);
                     let jumps: Vec<f64> =
                         snaps.filter_map(|event| Some(event.before.as_ref()?.contact_radius)).collect();
+                    from = path.start().map_or(from, |start| start.contact_radius);
+                    let Some(longer) = basis.solution(&problem, end, from, &Unwatched) else {
+                        return Ok(None);
+                    };
+                    monotone = Monotone::of(&*longer, member.control);
                     (jumps.len(), jumps)
                 }
                 Err(_) => return Ok(None),
             }
         };
-        let within = |s: f64| end <= s && s <= start;
+        let within = |s: f64| end <= s && s <= from;
         let minima = monotone.stretches.iter().filter(|stretch| stretch.rising && stretch.joined);
         let minima = minima.map(|stretch| [stretch.radii[0], stretch.values[0]]);
+        let crests = monotone.stretches.iter().filter(|stretch| stretch.rising && stretch.radii[1] > start);
+        let crests = crests.map(|stretch| [stretch.radii[1], stretch.values[1]]);
         Ok(Some(Passage {
             snaps,
             minima: minima.filter(|[s, _]| within(*s)).collect(),
+            crests: if from > start { crests.collect() } else { Vec::new() },
             limits: monotone.limits.iter().filter(|limit| within(limit.contact_radius)).count(),
             jumps,
+            radii: [end, from],
         }))
     }
 

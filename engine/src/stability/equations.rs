@@ -5,6 +5,7 @@
 //! cusp      (s, p, q)        F = √(πγ/2),  F' = 0
 //! landing   (sᵢ, sⱼ, p, q)   F = √(πγ/2) at both,  the control at sᵢ that at sⱼ
 //! start     (p, q)           F = √(πγ/2) at the start of the path
+//! arrival   (s, p, q)        F = √(πγ/2),  the control at s that at the start, which is unstable
 //! ```
 //!
 //! Radii are in waves, numbers in shares of their axes. Derivatives by s are exact, those by the numbers central differences.
@@ -25,6 +26,8 @@ pub enum Sort {
     Landing,
     /// A limit point at the start of the path.
     Start,
+    /// The edge that runs outward from an unstable start just passes, or just does not pass, over a crest.
+    Arrival,
 }
 
 /// Half the step of a difference by a share: rounding of the table leaves eight digits.
@@ -61,7 +64,7 @@ impl<'a> Equations<'a> {
     /// How many of the unknowns are radii.
     pub fn radii(&self) -> usize {
         match self.sort {
-            Sort::Fold | Sort::Cusp => 1,
+            Sort::Fold | Sort::Cusp | Sort::Arrival => 1,
             Sort::Landing => 2,
             Sort::Start => 0,
         }
@@ -84,9 +87,14 @@ impl<'a> Equations<'a> {
         let (radii, shares) = y.split_at(self.radii());
         let member = self.family.member(shares).ok()?;
         if self.sort == Sort::Start {
-            return Some(vec![member.local(self.family.radii[1])?]);
+            return Some(vec![member.local(self.family.start()?)?]);
         }
-        radii.iter().map(|s| member.local(s * self.unit)).collect()
+        let mut locals: Vec<Local> =
+            radii.iter().map(|s| member.local(s * self.unit)).collect::<Option<_>>()?;
+        if self.sort == Sort::Arrival {
+            locals.push(member.local(self.family.start()?)?);
+        }
+        Some(locals)
     }
 
     fn rows(&self, y: &[f64]) -> Option<Vec<Row>> {
@@ -97,22 +105,24 @@ impl<'a> Equations<'a> {
             let size = local.edge.value.abs().max(local.root).max(f64::MIN_POSITIVE);
             Row { value: local.edge.value - local.root, size, by_radius }
         };
-        let mut rows: Vec<Row> = locals.iter().enumerate().map(|(at, local)| fold(local, at)).collect();
+        let folds = if self.sort == Sort::Arrival { 1 } else { locals.len() };
+        let mut rows: Vec<Row> =
+            locals[..folds].iter().enumerate().map(|(at, local)| fold(local, at)).collect();
         match (self.sort, &locals[..]) {
             (Sort::Cusp, [local]) => rows.push(Row {
                 value: local.edge.slope * self.unit,
                 size: rows[0].size,
                 by_radius: [local.edge.bend * self.unit * self.unit, 0.0],
             }),
-            (Sort::Landing, [outer, inner]) => {
-                let [a, b] =
-                    [outer, inner].map(|local| weighted(local.control, local.approach(), local.force()));
+            (Sort::Landing | Sort::Arrival, [outer, inner]) => {
+                let [a, b] = [outer, inner].map(Local::control_value);
                 let [da, db] = [outer, inner].map(|local| {
                     let [approach, force] = local.slopes();
                     weighted(local.control, approach, force) * self.unit
                 });
                 let size = (a.abs() + b.abs()).max(f64::MIN_POSITIVE);
-                rows.push(Row { value: a - b, size, by_radius: [da, -db] });
+                let inner = if self.sort == Sort::Arrival { 0.0 } else { -db };
+                rows.push(Row { value: a - b, size, by_radius: [da, inner] });
             }
             _ => {}
         }

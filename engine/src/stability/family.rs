@@ -13,6 +13,7 @@ use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
 use crate::progress::Unwatched;
+use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::start::{StartError, contact_radius};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -58,7 +59,8 @@ pub struct Family {
     base: Arc<Made>,
     /// The last members made, with the bits of the numbers that change their gaps.
     made: Mutex<Vec<(Vec<u64>, Arc<Made>)>>,
-    /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path.
+    /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path, or the smallest
+    /// and the largest radius of all paths once they are known.
     pub radii: [f64; 2],
 }
 
@@ -143,6 +145,11 @@ impl Local {
     /// P.
     pub fn force(&self) -> f64 {
         2.0 * (self.approach() * self.contact_radius - self.area)
+    }
+
+    /// The weighted control.
+    pub fn control_value(&self) -> f64 {
+        weighted(self.control, self.approach(), self.force())
     }
 
     /// dδ/ds and dP/ds.
@@ -316,6 +323,31 @@ impl Family {
             Start::ContactRadius(s) => s / self.length,
             _ => self.radii[1].max(0.1),
         }
+    }
+
+    /// The radius at which the paths of all members start, reduced, before the edge runs from there; `None` where they differ.
+    pub fn start(&self) -> Option<f64> {
+        let Start::ContactRadius(s) = self.preset.path.start else { return None };
+        let is_free = self.axes.iter().any(|axis| axis.key.starts_with("path.start"));
+        (!is_free).then_some(s / self.length)
+    }
+
+    /// Widens the radii between which lines are looked for, so that a path's are among them. With more features of the gap in
+    /// them than a map takes they end there.
+    ///
+    /// # Errors
+    /// What is to be said of radii that are left out.
+    pub fn widen(&mut self, [end, start]: [f64; 2]) -> Result<(), String> {
+        let most = self.wave().map_or(f64::INFINITY, |wave| MOST_FEATURES * wave);
+        let [from, to] = self.radii;
+        self.radii = [from.min(end), to.max(start.min(most))];
+        if start > most {
+            let [start, most] = [start, most].map(|s| s * self.length);
+            return Err(format!(
+                "a path starts at the contact radius {start:?}; lines are followed up to {most:?}, {MOST_FEATURES} waves"
+            ));
+        }
+        Ok(())
     }
 
     /// The contact radius at the start, reduced.

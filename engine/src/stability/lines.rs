@@ -33,16 +33,23 @@ impl Traced {
 
 impl Equations<'_> {
     /// Whether a solution is on the map and means something there.
-    fn is_good(&self, y: &[f64]) -> bool {
+    pub(super) fn is_good(&self, y: &[f64]) -> bool {
         let radii = self.radii();
         let [end, start] = self.family.radii.map(|s| s / self.unit);
         let known = y[..radii].iter().all(|s| (end..=start).contains(s));
         let inside = y[radii..].iter().all(|share| (0.0..=1.0).contains(share));
-        // A jump begins and lands at minima of the control.
-        let minima = self.sort != Sort::Landing
-            || y[0] - y[1] > 1e-3
-                && self.locals(y).is_some_and(|locals| locals.iter().all(|local| local.edge.slope > 0.0));
-        known && inside && minima
+        let locals = || self.locals(y).unwrap_or_default();
+        let is_met = match self.sort {
+            // A jump begins and lands at minima of the control.
+            Sort::Landing => y[0] - y[1] > 1e-3 && locals().iter().all(|local| local.edge.slope > 0.0),
+            // Further out than the start, which is unstable, a maximum.
+            Sort::Arrival => matches!(locals()[..], [crest, start]
+                if crest.contact_radius > start.contact_radius
+                    && crest.edge.slope < 0.0
+                    && start.edge.value < start.root),
+            Sort::Fold | Sort::Cusp | Sort::Start => true,
+        };
+        known && inside && is_met
     }
 
     /// The line through the solution `y`, both ways from it.
@@ -85,7 +92,7 @@ impl Equations<'_> {
         }
         let tips = match self.sort {
             Sort::Cusp | Sort::Fold => self.tips(&points),
-            Sort::Landing | Sort::Start => Vec::new(),
+            Sort::Landing | Sort::Start | Sort::Arrival => Vec::new(),
         };
         let points = points.iter().map(|point| point.y().as_slice().to_vec()).collect();
         Some(Traced { points, tips })

@@ -1,19 +1,16 @@
 //! The map of two numbers: lines of cusps, landings and starts, and the number of snaps in every cell.
 
-use super::count::{Cause, NEARLY, even};
+use super::count::{Passage, even};
 use super::equations::{Equations, Sort};
 use super::family::{At, Family, FamilyError};
 use super::law::adhesion_of;
 use super::lines::Traced;
 use crate::elementary::hypot;
 use crate::gap::Gap;
-use crate::progress::Progress;
-use crate::quasistatic::monotone::weighted;
+use crate::progress::{Part, Progress};
 
-/// Columns of the map in which cusps are looked for, and those in which landings are, with their samples.
+/// Columns of the map in which cusps are looked for.
 const CUSP_COLUMNS: u32 = 24;
-const LANDING_COLUMNS: u32 = 12;
-const LANDING_SAMPLES: u32 = 24;
 
 /// Cells a side of the grid on which cusps are looked for where neither number is the work of adhesion.
 const CUSP_CELLS: u32 = 14;
@@ -37,10 +34,10 @@ pub struct MapPoint {
 }
 
 /// A line of a map.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MapLine {
-    /// What it is of.
-    pub sort: Sort,
+    /// What it is of; `None` where the number of snaps changes for some other reason.
+    pub sort: Option<Sort>,
     /// The crest at which it is, by its number from the axis; none without a wave.
     pub crest: Option<u32>,
     /// Its points in order.
@@ -49,6 +46,8 @@ pub struct MapLine {
     pub tips: Vec<MapPoint>,
     /// At each point, whether the number of snaps differs on its two sides; empty before that is known.
     pub changes: Vec<bool>,
+    /// The unknowns of its equations at each point; none where it has no equations.
+    pub(super) solutions: Vec<Vec<f64>>,
 }
 
 /// The lines of a map.
@@ -70,45 +69,60 @@ pub struct Counts {
 }
 
 impl Family {
-    /// The lines of the map of both axes. `progress` is asked now and then; what is found until it says stop is given.
+    /// The map of both axes, with the snaps on a grid of so many columns and rows: between two neighbouring cells with different
+    /// numbers of snaps there is a line. `None` when `progress` said stop.
     ///
     /// # Errors
     /// The gap cannot be tabulated somewhere, or a value is out of its range.
-    pub fn map(&self, progress: &dyn Progress) -> Result<Map, FamilyError> {
+    pub fn map(
+        &mut self,
+        cells: [u32; 2],
+        progress: &dyn Progress,
+    ) -> Result<Option<(Map, Counts)>, FamilyError> {
         let mut map = Map::default();
-        if let Some(lines) = self.explicit_cusps(progress)? {
-            for (points, tips) in lines {
-                let point = |born: &super::explicit::Born| self.point_at(&born.at, born.contact_radius);
-                let points: Vec<MapPoint> = points.iter().filter_map(point).collect();
-                let tips = tips.iter().filter_map(point).collect();
-                map.lines.push(self.line_of(Sort::Cusp, points, tips));
-            }
-        } else {
-            let cusps = Equations::new(self, Sort::Cusp);
-            self.follow(&cusps, self.cusp_starts(progress), &mut map, progress);
+        let Some((counts, radii)) = self.counts(cells, &Part::new(progress, [0.0, 0.4])) else {
+            return Ok(None);
+        };
+        if let Some(radii) = radii {
+            map.notes.extend(self.widen(radii).err());
         }
-        let landings = Equations::new(self, Sort::Landing);
-        self.follow(&landings, self.landing_starts(progress), &mut map, progress);
-        if self.has_fixed_start() {
-            let starts = Equations::new(self, Sort::Start);
-            self.follow(&starts, self.start_starts(progress), &mut map, progress);
-        }
-        map.lines.retain(|line| line.points.len() > 1);
+        self.draw(&mut map, progress)?;
+        self.complete(&mut map, &counts, &Part::new(progress, [0.5, 0.8]));
+        self.mark_changes(&mut map, &Part::new(progress, [0.8, 1.0]));
         let corners = self.member(&[0.5; 2]).and_then(|member| member.law(&[0.5; 2]));
         if corners.is_ok_and(|law| !law.cusps(self.radii).1.is_empty()) {
             map.notes.push(
                 "the second derivative of the gap jumps: there the law has corners, which are no cusps, and pairs of limit \
-                 points that begin at them are not on a line"
+                 points that begin at them are not on a line of cusps"
                     .to_owned(),
             );
         }
-        Ok(map)
+        Ok((!progress.stop()).then_some((map, counts)))
     }
 
-    /// Whether the start is the same contact radius all over the map.
-    fn has_fixed_start(&self) -> bool {
-        matches!(self.preset.path.start, crate::problem::Start::ContactRadius(_))
-            && self.axes.iter().all(|axis| !axis.key.starts_with("path.start"))
+    /// The lines that are looked for all over the map, whether the number of snaps changes across them or not.
+    fn draw(&self, map: &mut Map, progress: &dyn Progress) -> Result<(), FamilyError> {
+        let cusps = Equations::new(self, Sort::Cusp);
+        if let Some(lines) = self.explicit_cusps(progress)? {
+            for (points, tips) in lines {
+                let known = points.iter().filter_map(|born| {
+                    let y = vec![born.contact_radius / cusps.unit, born.at[0], born.at[1]];
+                    Some((self.point_at(&born.at, born.contact_radius)?, y))
+                });
+                let (points, solutions) = known.unzip();
+                let tips = tips.iter().filter_map(|born| self.point_at(&born.at, born.contact_radius));
+                let tips = tips.collect();
+                map.lines.push(self.line_of(Sort::Cusp, points, solutions, tips));
+            }
+        } else {
+            self.follow(&cusps, self.cusp_starts(progress), map, progress);
+        }
+        if self.start().is_some() {
+            let starts = Equations::new(self, Sort::Start);
+            self.follow(&starts, self.start_starts(progress), map, progress);
+        }
+        map.lines.retain(|line| line.points.len() > 1);
+        Ok(())
     }
 
     /// Traces the lines through `starts` that are on none yet.
@@ -122,22 +136,36 @@ impl Family {
                 continue;
             }
             let Some(line) = of.line(&y, progress) else { continue };
-            let point = |y: &Vec<f64>| {
-                let (radii, shares) = y.split_at(of.radii());
-                let s = radii.first().map_or(self.radii[1], |s| s * of.unit);
-                self.point_at(&[shares[0], shares[1]], s)
-            };
-            let points = line.points.iter().filter_map(point).collect();
-            let tips = line.tips.iter().filter_map(point).collect();
-            map.lines.push(self.line_of(of.sort, points, tips));
+            map.lines.push(self.map_line(of, &line));
             known.push(line);
         }
     }
 
-    fn line_of(&self, sort: Sort, points: Vec<MapPoint>, tips: Vec<MapPoint>) -> MapLine {
+    /// A line as the tracer has it, on the map.
+    pub(super) fn map_line(&self, of: &Equations<'_>, line: &Traced) -> MapLine {
+        let known = line.points.iter().filter_map(|y| Some((self.map_point(of, y)?, y.clone())));
+        let (points, solutions) = known.unzip();
+        let tips = line.tips.iter().filter_map(|y| self.map_point(of, y)).collect();
+        self.line_of(of.sort, points, solutions, tips)
+    }
+
+    /// A solution, on the map.
+    pub(super) fn map_point(&self, of: &Equations<'_>, y: &[f64]) -> Option<MapPoint> {
+        let (radii, shares) = y.split_at(of.radii());
+        let s = radii.first().map_or_else(|| self.start(), |s| Some(s * of.unit))?;
+        self.point_at(&[shares[0], shares[1]], s)
+    }
+
+    fn line_of(
+        &self,
+        sort: Sort,
+        points: Vec<MapPoint>,
+        solutions: Vec<Vec<f64>>,
+        tips: Vec<MapPoint>,
+    ) -> MapLine {
         let middle = points.get(points.len() / 2);
         let crest = middle.and_then(|point| self.crest(point.contact_radius));
-        MapLine { sort, crest, points, tips, changes: Vec::new() }
+        MapLine { sort: Some(sort), crest, points, tips, changes: Vec::new(), solutions }
     }
 
     /// The number of the crest nearest to the radius `s`, reduced, from the axis.
@@ -154,8 +182,7 @@ impl Family {
     /// The limit point at these shares and the radius `s`, reduced.
     pub fn point_at(&self, at: At<'_>, s: f64) -> Option<MapPoint> {
         let local = self.member(at).ok()?.local(s)?;
-        let (approach, force) = (local.approach(), local.force());
-        let control_value = weighted(local.control, approach, force);
+        let (approach, force, control_value) = (local.approach(), local.force(), local.control_value());
         let at = [0, 1].map(|k| at.get(k).copied().unwrap_or(0.0));
         Some(MapPoint { contact_radius: s, at, control_value, approach, force })
     }
@@ -225,32 +252,13 @@ impl Family {
         starts
     }
 
-    /// Points on landing lines: where the number of snaps changes without a birth.
-    fn landing_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
-        let of = Equations::new(self, Sort::Landing);
-        // Along the axis that keeps the gap, where one does: a table serves a whole column.
-        let along = usize::from(self.keeps_gap(1) || !self.keeps_gap(0));
-        let mut starts = Vec::new();
-        for share in even(LANDING_COLUMNS) {
-            let mut at = [share; 2];
-            at[along] = 0.0;
-            for change in self.changes(along, &at, &even(LANDING_SAMPLES), NEARLY, progress) {
-                if let Cause::Landing([outer, inner]) = change.cause {
-                    at[along] = change.share;
-                    let y = [outer / of.unit, inner / of.unit, at[0], at[1]];
-                    starts.extend(of.polished(&y, 2 + (1 - along)));
-                }
-            }
-        }
-        starts
-    }
-
     /// Points at which the start of the path is a limit point.
     fn start_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Start);
+        let Some(start) = self.start() else { return Vec::new() };
         let off = |at: At<'_>| {
             let member = self.member(at).ok()?;
-            Some(member.local(self.radii[1])?.edge.value - member.root)
+            Some(member.local(start)?.edge.value - member.root)
         };
         let shares = even(CUSP_COLUMNS);
         let mut starts = Vec::new();
@@ -277,7 +285,7 @@ impl Family {
     }
 
     /// Says of every line where the number of snaps changes across it.
-    pub fn mark_changes(&self, map: &mut Map, progress: &dyn Progress) {
+    fn mark_changes(&self, map: &mut Map, progress: &dyn Progress) {
         let count = map.lines.len() as f64;
         for (i, line) in map.lines.iter_mut().enumerate() {
             progress.report(i as f64 / count);
@@ -298,10 +306,16 @@ impl Family {
         }
     }
 
-    /// The snaps on a grid of so many columns and rows, cell by cell; `None` when `progress` said stop.
-    pub fn counts(&self, [columns, rows]: [u32; 2], progress: &dyn Progress) -> Option<Counts> {
+    /// The snaps on a grid of so many columns and rows, cell by cell, with the smallest and the largest radius of their paths,
+    /// where there is one; `None` when `progress` said stop.
+    fn counts(
+        &self,
+        [columns, rows]: [u32; 2],
+        progress: &dyn Progress,
+    ) -> Option<(Counts, Option<[f64; 2]>)> {
         let shares = [even(columns), even(rows)];
         let mut cells = vec![vec![None; shares[0].len()]; shares[1].len()];
+        let mut radii: Option<[f64; 2]> = None;
         // Column by column, so that a table serves a whole one.
         for (i, x) in shares[0].iter().enumerate() {
             progress.report(*x);
@@ -309,9 +323,14 @@ impl Family {
                 if progress.stop() {
                     return None;
                 }
-                cells[j][i] = self.passage(&[*x, *y]).map(|passage| passage.snaps);
+                let passage = self.passage(&[*x, *y]);
+                cells[j][i] = passage.as_ref().map(|passage| passage.snaps);
+                if let Some(Passage { radii: [end, start], .. }) = passage {
+                    let [from, to] = radii.unwrap_or([end, start]);
+                    radii = Some([from.min(end), to.max(start)]);
+                }
             }
         }
-        Some(Counts { shares, cells })
+        Some((Counts { shares, cells }, radii))
     }
 }

@@ -10,6 +10,7 @@
 //! | [`explicit`] | lines of cusps that follow from s |
 //! | [`equations`] | cusps, landings, starts and folds as systems for the tracer |
 //! | [`lines`] | lines followed by the tracer |
+//! | [`edges`] | a line between neighbouring cells of a map whose snaps differ |
 //! | [`map`] | the lines of two numbers, and the snaps in every cell |
 //! | [`folds`] | the limit points over one number |
 //! | [`onset`] | the smallest amplitude at which a preset snaps |
@@ -18,6 +19,7 @@
 
 pub mod axis;
 pub mod count;
+pub mod edges;
 pub mod equations;
 pub mod explicit;
 pub mod family;

@@ -28,13 +28,7 @@ const JOBS: &[Job] = &[
         8,
         &["contact, s/λ", "least P -1.480 Pc (L)", "/Pc -1.480"],
     ),
-    (
-        "how does the largest pull depend on A here",
-        "wavy-sphere",
-        "Q\r",
-        2,
-        &["largest pull over A", "now"],
-    ),
+    ("how does the largest pull depend on A here", "wavy-sphere", "Q\r", 2, &["largest pull over A", "now"]),
     (
         "what did I do between the second and the third jump",
         "wavy-sphere",
