@@ -115,7 +115,7 @@ fn the_ending_of_a_file_is_its_format() {
         home.quiet(&[command, "fig-3-jkr", "-o", "R.CSV", "--overwrite"]);
         let text = home.text("R.CSV");
         assert!(
-            text.lines().next().unwrap().contains(",contact_radius,") || text.starts_with("kind,"),
+            text.lines().next().unwrap().contains(",contact_radius,") || text.starts_with("number,kind,"),
             "{text}"
         );
         home.quiet(&[command, "fig-3-jkr", "-o", "none", "--format=csv", "--overwrite"]);

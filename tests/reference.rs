@@ -91,7 +91,7 @@ fn errors(case: &Case, control: Control, basis: Arc<dyn Basis>) -> (f64, f64) {
     let min_approach = case.data["min_approach"].as_f64().unwrap();
     match control {
         Control::Force => {
-            assert!((ours.largest_pull().unwrap().force - min_force).abs() < 1e-3 * range("force"))
+            assert!((ours.largest_pull().unwrap().force - min_force).abs() < 1e-3 * range("force"));
         }
         Control::Displacement => {
             assert!((ours.farthest().unwrap().approach - min_approach).abs() < 1e-3 * range("approach"));

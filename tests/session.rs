@@ -12,13 +12,11 @@ use pty::Pty;
 use pulloff::explorer::archive::Archive;
 use pulloff::explorer::branches::branches;
 use pulloff::explorer::session::{Document, Ended, Snapshot, Unreadable, summary};
-use pulloff::explorer::{
-    Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, script, update,
-};
+use pulloff::explorer::{Command, History, Id, Inline, Model, Node, NodeKind, Overlay, View, answer, update};
 use pulloff::figure::Role;
 use pulloff::figure::Subject;
 use pulloff::store::Store;
-use pulloff_engine::preset::{BasisSpec, write};
+use pulloff_engine::preset::write;
 use rustix::process::Signal;
 use session::Session;
 use std::path::Path;

@@ -510,7 +510,7 @@ fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
     // Adhesion so weak that crests touch, none at all, and a start that is unstable.
     let weak = ["material.work_of_adhesion=20 mJ/m^2", "basis.kind=exact"];
     let same = ["material.work_of_adhesion=1e-4", "basis.kind=exact"];
-    let none = ["material.work_of_adhesion=0", "basis.kind=exact"];
+    let none = ["material.work_of_adhesion=0", "basis.kind=exact", "path.contact=one-disc"];
     let starts = (["path.start_contact_radius=2.4 mm"], ["path.start_contact_radius=0.48"]);
     for (lines, word) in [
         (both(&weak, &same, traced), "s = "),

@@ -8,7 +8,7 @@ use pulloff_engine::annuli::Ground;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
-use pulloff_engine::quasistatic::path::{Direction, EVEN, Losses, PathState, Setting, cycle_on};
+use pulloff_engine::quasistatic::path::{Direction, Losses, PathState, Setting, cycle_on};
 use pulloff_engine::ritz::kernel::disc_interaction;
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -84,6 +84,8 @@ pub struct CurveData {
     /// The quasi-static path, reduced, or why there is none.
     pub unloading: Result<Path, String>,
     pub report: Option<PathReport>,
+    /// Whether what takes longer is known of the path too.
+    checked: bool,
 }
 
 impl ProblemCurve {
@@ -148,7 +150,7 @@ impl CurveData {
         let mut curve = base.curve.clone();
         let units = *base.case.units();
         let control = preset.path.control.in_units(units.stiffness);
-        let case = Case { control, ..base.case.clone() };
+        let case = Case { control, contact: preset.path.contact, ..base.case.clone() };
         let shown = |at: &Sample| CurvePoint {
             approach: at.approach * units.length,
             force: at.force * units.force,
@@ -193,7 +195,7 @@ impl CurveData {
         let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
         let report = unloading.as_ref().ok().map(|path| PathReport::new(preset, &case, path));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
-        Ok(Self { base, case, setting, points, limits, other_limits, unloading, report })
+        Ok(Self { base, case, setting, points, limits, other_limits, unloading, report, checked: false })
     }
 
     /// δ, P and s of the limit points under the chosen control in the user's units, from the start inward.
@@ -207,9 +209,7 @@ impl CurveData {
 
     /// Whether the admissibility of its states and of its path has been checked.
     pub fn is_checked(&self) -> bool {
-        let needs_none = |report: &PathReport| report.contact == "rings" || report.inadmissible.is_some();
-        let path = self.report.as_ref().is_none_or(needs_none);
-        self.base.inadmissible.is_some() && path
+        self.base.inadmissible.is_some() && self.checked
     }
 
     /// The same curve with the inadmissible states of it and of its path; `None` if `progress` said stop.
@@ -229,6 +229,6 @@ impl CurveData {
             report = Some(checked);
         }
         // What was given up may lack its warning.
-        (!progress.stop()).then(|| Self { base, report, ..self.clone() })
+        (!progress.stop()).then(|| Self { base, report, checked: true, ..self.clone() })
     }
 }

@@ -70,7 +70,8 @@ impl LoopData {
 
 /// Whether two presets have the same loop.
 pub(super) fn same_loop(a: &Preset, b: &Preset) -> bool {
-    same_curve(a, b) && (a.path.control, a.path.turn) == (b.path.control, b.path.turn)
+    let of = |preset: &Preset| (preset.path.control, preset.path.contact, preset.path.turn);
+    same_curve(a, b) && of(a) == of(b)
 }
 
 /// Whether the gap of a curve has crests further out: else the loop is the first touch and the unloading.

@@ -336,8 +336,8 @@ impl Model {
     /// Whether the curve on the screen is that of the values as they are, under their control.
     pub fn shows_its_curve(&self) -> bool {
         self.curve.as_ref().is_some_and(|curve| {
-            let control = curve.setting.preset.path.control;
-            curve.base.is_of(&self.preset) && control == self.preset.path.control
+            let [ours, its] = [&self.preset, &curve.setting.preset].map(|preset| &preset.path);
+            curve.base.is_of(&self.preset) && (ours.control, ours.contact) == (its.control, its.contact)
         })
     }
 

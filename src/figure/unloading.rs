@@ -45,17 +45,9 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             stretch.iter().map(|state| path.shown(&state.state())).collect()
         };
         figure.lines.push(Line::new(Role::Stable, "path", points));
-    }
-    for event in &unloading.events {
-        let Some(before) = event.before.as_ref().map(PathState::state) else { continue };
-        let after = event.after.as_ref().map(PathState::state);
-        let to = after.unwrap_or_else(|| apart(unloading.control, &before, event.control_value));
-        figure.lines.push(Line::new(Role::Jump, "jump", vec![path.shown(&before), path.shown(&to)]));
-        if event.before.iter().chain(&event.after).all(|state| state.rings() == 0) {
-            figure.areas.extend(path.area(unloading.control, event, &before, after.as_ref()));
-        }
-        if event.after.is_some() {
-            figure.marks.push(Mark { sign: Sign::Landing, at: path.shown(&to) });
+        let leaves = |event: &&Event| event.before.as_ref().is_some_and(|before| before.piece == first.piece);
+        for event in unloading.events.iter().filter(leaves) {
+            path.jump(unloading.control, event, &mut figure);
         }
     }
     // The path may begin or land beyond the curve; where the bodies come apart may be far away.
@@ -96,6 +88,20 @@ impl OnCurve<'_> {
         points.extend(passed.map(|point| self.scale.place(VIEW, place(point))));
         points.extend(to.map(|to| self.shown(to)));
         points
+    }
+
+    /// Adds the line of a jump, what it loses and where it lands.
+    fn jump(&self, control: Control, event: &Event, figure: &mut Figure) {
+        let Some(before) = event.before.as_ref().map(PathState::state) else { return };
+        let after = event.after.as_ref().map(PathState::state);
+        let to = after.unwrap_or_else(|| apart(control, &before, event.control_value));
+        figure.lines.push(Line::new(Role::Jump, "jump", vec![self.shown(&before), self.shown(&to)]));
+        if event.before.iter().chain(&event.after).all(|state| state.rings() == 0) {
+            figure.areas.extend(self.area(control, event, &before, after.as_ref()));
+        }
+        if event.after.is_some() {
+            figure.marks.push(Mark { sign: Sign::Landing, at: self.shown(&to) });
+        }
     }
 
     /// The area of a jump; none where it has no bound.

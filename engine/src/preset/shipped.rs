@@ -159,11 +159,11 @@ mod tests {
             let kind = preset.get("basis.kind").unwrap().to_string();
             let is_spring = matches!(preset.path.control, Control::Stiffness(_));
             let fits = |row: &Row| row.fits("gap.shape", preset.gap.name()) && row.fits("basis.kind", &kind);
-            // The knobs leave out the format, the units and their display.
+            // The knobs leave out the format, the units and their display, and which contacts are followed.
             let units = preset
                 .values()
                 .iter()
-                .filter(|(row, _)| row.key == "format" || is_of_units(&row.key))
+                .filter(|(row, _)| matches!(&*row.key, "format" | "path.contact") || is_of_units(&row.key))
                 .count();
             assert_eq!(
                 preset.values().len() + 7 + data - usize::from(turns) - usize::from(is_spring),

@@ -1,7 +1,7 @@
 //! The way up a solution at a slowly rising control: from the first touch to where the edge lands, along the curve to the next
 //! maximum of the control, from there outward to where the edge lands, and on.
 //!
-//! One disc alone: where a crest outside touches on the way, rings of contact take another one, see [`cycle`](super::cycle).
+//! One disc alone: where a crest outside touches on the way, rings of contact take another one, see [`path`](super::path).
 
 use super::jump::{self, Landing, Run};
 use super::monotone::Monotone;

@@ -461,8 +461,13 @@ fn start_note(case: &Case, path: &Path, asked: &Asked) -> String {
              which the edge would not run by itself (the potential rises on the way)"
         ),
         WhyNot::Overlaps(radius) => format!(
-            "{asked_for} is none: the bodies would overlap at r = {}, where the gap outside is closed; the path starts at the \
-             contact that holds it, out to {reached}",
+            "{asked_for} is no contact of its own: outside it the bodies would overlap at r = {}; the path starts from the \
+             contact at the same control in which they do not, out to {reached}",
+            length(radius)
+        ),
+        WhyNot::Pulls(radius) => format!(
+            "{asked_for} is no contact without adhesion: the bodies would pull at each other at r = {}; the path starts from \
+             the contact at the same control in which they do not, out to {reached}",
             length(radius)
         ),
     }

@@ -24,7 +24,7 @@
 //! | [`lane`] | the equilibria of one disc, exactly |
 //! | `one_disc` | a path on them |
 //! | [`course`] | the loop |
-//! | [`unload`] | the way down from a disc |
+//! | `unload` | the way down from a disc |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
 //! | `zero` | the loop without adhesion |
@@ -42,7 +42,7 @@ mod one_disc;
 pub mod point;
 mod record;
 pub mod setting;
-pub mod unload;
+mod unload;
 mod zero;
 
 pub use balance::{Balance, Held, NotFound};

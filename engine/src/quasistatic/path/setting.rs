@@ -87,6 +87,8 @@ pub enum WhyNot {
     },
     /// A crest outside it would overlap at this radius, a length.
     Overlaps(f64),
+    /// Without adhesion the bodies would pull at each other at this radius, a length.
+    Pulls(f64),
 }
 
 /// Why a path ended.

@@ -50,11 +50,11 @@ pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> 
         Asked { state, why: WhyNot::Unstable { falls } }
     });
     if setting.contact == ContactKind::Rings {
-        let touches = touching(curve, start.contact_radius, progress);
+        let fault = fault(curve, start.contact_radius, progress);
         let problem = &curve.equilibrium.problem;
         let splits = problem.work_of_adhesion == 0.0 && falls(&*problem.gap, start.contact_radius);
-        if touches.is_some() || splits {
-            let asked = asked.or(touches.map(|radius| Asked { state: start, why: WhyNot::Overlaps(radius) }));
+        if fault.is_some() || splits {
+            let asked = asked.or(fault.map(|why| Asked { state: start, why }));
             return with_rings(curve, setting, &start, asked, progress);
         }
     }
@@ -68,11 +68,12 @@ pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> 
     Ok(record.finished(asked, None, None, stop_of(&descent)))
 }
 
-/// Where a crest outside a disc in equilibrium overlaps, a length.
-fn touching(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<f64> {
+/// Why a disc in equilibrium is not all of the contact; `None` where it is.
+fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
     let point = curve.equilibrium.explicit(s)?;
     let found = curve.equilibrium.admissibility(&point, progress);
-    found.nearest.filter(|_| !found.holds).filter(|crest| crest.gap < 0.0).map(|crest| crest.radius)
+    let overlap = found.nearest.filter(|crest| crest.gap < 0.0).map(|crest| WhyNot::Overlaps(crest.radius));
+    if found.holds { None } else { overlap.or(found.least_pressure.map(|(radius, _)| WhyNot::Pulls(radius))) }
 }
 
 /// The way down from a disc beside which there is more contact.

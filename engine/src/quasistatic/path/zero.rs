@@ -135,17 +135,15 @@ impl Course<'_, '_> {
             };
             let (_, next, crest) = self.touching(&step, &point, length, next)?;
             // A gap that closes does so before that touch, or is looked at again after it.
-            if let Some((gap, merged)) = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach))
-            {
-                if !self.has_turned(&merged) {
-                    let after = self.state(&merged);
-                    let mut before = after.clone();
-                    split_at(&mut before.contacts, gap);
-                    self.record.piece += 1;
-                    self.record.continuous(EventKind::Merge, Some(gap), [Some(before), Some(after)]);
-                    self.record(&merged);
-                    return Ok(merged);
-                }
+            let closed = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach));
+            if let Some((gap, merged)) = closed.filter(|(_, merged)| !self.has_turned(merged)) {
+                let after = self.state(&merged);
+                let mut before = after.clone();
+                split_at(&mut before.contacts, gap);
+                self.record.piece += 1;
+                self.record.continuous(EventKind::Merge, Some(gap), [Some(before), Some(after)]);
+                self.record(&merged);
+                return Ok(merged);
             }
             if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
                 let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
