@@ -169,15 +169,6 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
             &axis("key = 'path.control'\nvalues = ['forse']"),
             "s.toml:4: path.control = \"forse\" is not known",
         ),
-        (
-            &axis("key = 'basis.functions'\nvalues = [48]"),
-            "s.toml:4: basis.functions is no longer needed: the exact basis resolves every gap by itself; remove it and \
-             write kind = \"exact\"",
-        ),
-        (
-            &axis("key = 'basis.kind'\nvalues = ['spectral', 'rings']"),
-            "s.toml:4: basis.kind = \"spectral\" is called \"exact\" now: write kind = \"exact\"",
-        ),
         (&axis("key = 'basis.rings'\nvalues = [3]"), "s.toml:4: basis.rings = 3 is out of range: it must be"),
         (
             &axis("key = 'gap.amplitude'\nlinear = { from = 1, to = 2 }"),

@@ -4,7 +4,7 @@
 use super::chebyshev::Rule;
 use super::panels::Panels;
 use super::sources::{self, Sources};
-use super::table::{TableError, graded};
+use super::spans::{TableError, graded};
 use crate::gap::{Form, Gap};
 use crate::gap::{panels::Span, panels::divide};
 use crate::progress::Progress;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`table`] | the table of g: panels with their series, grown outward when asked |
 //! | [`panels`] | its panels, and what is read from them |
+//! | `spans` | the panels of a gap before there is a table on them |
 //! | [`blend`] | tables of mixtures of gaps |
 //! | [`sources`] | g of any gap, from samples of its slope |
 //! | [`waves`] | g of a paraboloid with waves |
@@ -31,6 +32,7 @@ pub mod sampled;
 pub mod solution;
 pub mod sources;
 pub mod span;
+mod spans;
 pub mod table;
 pub mod waves;
 
@@ -39,4 +41,5 @@ pub use exact::Exact;
 pub use panels::{Panel, Panels, Values};
 pub use solution::{ExactSolution, Local, Solution};
 pub use span::Place;
-pub use table::{Table, TableError};
+pub use spans::TableError;
+pub use table::Table;

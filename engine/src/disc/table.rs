@@ -16,8 +16,9 @@ use super::chebyshev::Rule;
 use super::law::Law;
 use super::panels::{Panel, Panels};
 use super::sources::{self, Sources};
+use super::spans::{TableError, graded};
 use super::{cubic, outside, waves};
-use crate::elementary::{exp2, ln, log2, log10, pow};
+use crate::elementary::{exp2, log2, log10};
 use crate::gap::{Form, Gap, Piece, Wave};
 use crate::gap::{panels::Refused, panels::Span, panels::Variable, panels::divide};
 use crate::progress::{Progress, Unwatched};
@@ -34,10 +35,6 @@ const TOWARDS_AXIS: f64 = 4.0;
 
 /// The panel of a cubic right of a knot is at most this many times as wide as the interval before it: 16 nodes then leave 1e-13.
 const WIDER: f64 = 1.25;
-
-/// The slope of a gap grows on a panel by this factor at most, in so many parts at most.
-const GRADED: f64 = 1e3;
-const MOST_PARTS: f64 = 64.0;
 
 /// Panels of half a wave at most: some hundred megabytes.
 const MOST_WAVE_PANELS: f64 = 100_000.0;
@@ -62,17 +59,6 @@ const KEPT: usize = 8;
 
 /// The tables of the last gaps, each with its key.
 pub type Kept<K> = Mutex<Vec<(K, Arc<Table>)>>;
-
-/// Why there is no table.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum TableError {
-    /// The gap has structure too fine for the most panels.
-    #[error(transparent)]
-    TooFine(Refused),
-    /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
-}
 
 /// How far panels reach and how finely they begin: nothing else decides them, so that an answer never depends on what was asked
 /// before.
@@ -347,23 +333,6 @@ fn part(piece: &Piece, [lo, hi]: [f64; 2]) -> Piece {
     let [c0, c1, c2] = piece.slope;
     let t = lo - piece.lo;
     Piece { lo, hi, slope: [c0 + t * (c1 + t * c2), c1 + 2.0 * t * c2, c2] }
-}
-
-/// The panels of a gap, parted where its slope grows so much on one that its inner end had no relative digits: a gap may rise
-/// like r^20.
-pub(super) fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
-    let parted = |span: Span| {
-        let [inner, outer] = [span.lo, span.hi].map(|r| gap.jet(r).first.abs());
-        let growth = if span.variable == Variable::Radius && span.lo > 0.0 { outer / inner } else { 1.0 };
-        // Where the slope vanishes at the inner end there is no number of parts that would do.
-        let parts = if growth > GRADED { (ln(growth) / ln(GRADED)).ceil().min(MOST_PARTS) } else { 1.0 };
-        let border = |k: f64| if k < parts { span.lo * pow(span.hi / span.lo, k / parts) } else { span.hi };
-        let parts = std::iter::successors(Some(0.0), |k| Some(k + 1.0)).take_while(move |k| *k < parts);
-        parts
-            .map(move |k| Span { lo: if k < 0.5 { span.lo } else { border(k) }, hi: border(k + 1.0), ..span })
-            .collect::<Vec<_>>()
-    };
-    spans.into_iter().flat_map(parted).collect()
 }
 
 /// Panels of half the shortest wave, and towards the axis each a fourth of the one before.

@@ -27,10 +27,7 @@ use toml_edit::{Array, Document, InlineTable, Item, Table, Value};
 /// relative to `folder`.
 #[must_use]
 pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String> {
-    let held = |text: &str| {
-        let read = read_holding(preset.files, "", text, Held::by(preset)).ok();
-        read.map(|(preset, _)| preset)
-    };
+    let held = |text: &str| read_holding(preset.files, "", text, Held::by(preset)).ok();
     // A text of another profile is read with its own rows.
     let before = held(text).or_else(|| read_in(preset.files, folder, "", text, &[] as &[&str]).ok());
     let layout = Layout::of(text)?;

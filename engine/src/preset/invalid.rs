@@ -16,14 +16,6 @@ pub enum Invalid {
         /// The known key most alike.
         meant: Option<Key>,
     },
-    /// A key or a word of before that has another name or none.
-    #[error("{was} {now}")]
-    Former {
-        /// What it was, as written.
-        was: &'static str,
-        /// What became of it, and what to write.
-        now: &'static str,
-    },
     /// A group that cannot be set.
     #[error("unknown key {key}; of the groups, {known} can be set")]
     UnknownGroup {
@@ -250,7 +242,6 @@ impl Invalid {
             | Self::Wide { key, .. } => Some(key),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }
-            | Self::Former { .. }
             | Self::UnknownGroup { .. }
             | Self::Syntax { .. }
             | Self::Assignment

@@ -22,7 +22,6 @@
 //! | [`manual`] | the key table as text for the manual |
 //! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
 //! | [`rows`] | any row by its dotted key |
-//! | `former` | keys and words of before, and what to write for them |
 //! | [`groups`] | the dimensionless groups as values to set |
 //! | [`measured`] | the columns of a measured profile → rows of a gap; where they come from |
 //! | [`data`], `attached` | what the table `[data]` holds: a measured curve; how it is read, and its points |
@@ -36,7 +35,6 @@ pub mod edit;
 #[cfg(test)]
 mod examples;
 pub mod family;
-pub mod former;
 mod given;
 pub mod groups;
 pub mod invalid;

@@ -68,20 +68,18 @@ pub fn read_in<S: AsRef<str>>(
     sheet.finish()
 }
 
-/// Reads a preset as a session holds it, and says whether it has keys or words of before, which are read as they were
-/// meant. Its files hold what `held` says, whatever they hold by now; none is read.
+/// Reads a preset as a session holds it: its files hold what `held` says, whatever they hold by now; none is read.
 ///
 /// # Errors
 /// Every mistake found, with its line.
-pub fn read_holding(files: Files, name: &str, text: &str, held: Held) -> Result<(Preset, bool), ReadError> {
+pub fn read_holding(files: Files, name: &str, text: &str, held: Held) -> Result<Preset, ReadError> {
     let held = Some(held);
-    let mut sheet = Sheet { name: show_name(name), files, held, takes_former: true, ..Sheet::default() };
+    let mut sheet = Sheet { name: show_name(name), files, held, ..Sheet::default() };
     match DeTable::parse(text) {
         Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
         Err(error) => sheet.syntax(text, &error),
     }
-    let was_former = sheet.was_former;
-    Ok((sheet.finish()?, was_former))
+    sheet.finish()
 }
 
 #[cfg(test)]

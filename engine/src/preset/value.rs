@@ -1,6 +1,5 @@
 //! One parameter's value, and its check against the parameter's row.
 
-use super::former;
 use super::invalid::Invalid;
 use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
 use crate::gap::shapes::Rows;
@@ -259,9 +258,6 @@ impl Parameter {
     }
 
     fn no_choice(&self, word: &str, words: &[&'static str]) -> Invalid {
-        if let Some(former) = former::word(&self.key, word) {
-            return former;
-        }
         let meant = closest(word, words.iter().copied());
         // The borrow of `words` is shorter than its words' own.
         let meant = meant.and_then(|w| words.iter().copied().find(|known| *known == w)).map(Cow::Borrowed);

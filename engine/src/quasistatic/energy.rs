@@ -22,6 +22,15 @@ use super::equilibrium::State;
 use crate::disc::{Local, Place, Solution, sources::GAUSS};
 use crate::problem::Control;
 
+/// How often the loss of a jump is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Losses {
+    /// Once, by the drop of the potential.
+    Once,
+    /// By the area between the curve and the control line as well, which costs far more: two independent numbers that must agree.
+    Twice,
+}
+
 /// The potential of bodies and device at `state`, but for a constant of the control.
 pub fn potential(control: Control, value: f64, state: &State) -> f64 {
     match control {

@@ -32,13 +32,11 @@
 //! | `print` | a command → its line |
 //! | `fault` | what can be wrong with a line |
 //! | `complete` | what a line begun could go on with |
-//! | `former` | lines written by older programs, as they read now |
 //! | [`mod@play`] | a script run on a model, without a terminal |
 //! | `permissions` | where a script may write |
 
 mod complete;
 mod fault;
-mod former;
 mod lexer;
 mod parse;
 mod permissions;
@@ -48,7 +46,8 @@ mod read;
 
 pub use complete::{Completion, complete};
 pub use fault::{Fault, LONGEST};
-pub(super) use former::{HEAD, by_states, without_former};
+/// The first line of a script that a session writes.
+pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
 pub use parse::{for_script, parse};
 pub use permissions::Permission;
 pub use play::{Failed, play};

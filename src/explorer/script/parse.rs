@@ -1,7 +1,6 @@
 //! Words → a command.
 
 use super::fault::Fault;
-use super::former::UNDO_COMMAND;
 use super::lexer::{Word, split};
 use super::print::overlay_name;
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROWS, row_of};
@@ -11,7 +10,7 @@ use crate::explorer::pins;
 use crate::explorer::view::{Overlay, View};
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::groups::{self, GROUPS};
-use pulloff_engine::preset::{Key, PARAMETERS, former, parameter};
+use pulloff_engine::preset::{Key, PARAMETERS, parameter};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::Column;
 use pulloff_engine::text::{closest, closest_key, quote};
@@ -169,9 +168,6 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         return Err(Fault::new(name.column, "try stands in a script, once, before a command"));
     }
     let Some(row) = ROWS.iter().find(|row| row.name == name.text) else {
-        if name.text == UNDO_COMMAND {
-            return Err(Fault::new(name.column, "undo takes a whole command back: write undo"));
-        }
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([RUN_TO.0, TRY]).collect();
         return Err(unknown(name, "command", &names));
     };
@@ -331,9 +327,6 @@ fn assignment(word: &Word) -> Result<Assignment, Fault> {
 /// A key or a group.
 fn known(key: &str, column: usize) -> Result<Key, Fault> {
     if parameter(key).is_none() && groups::row(key).is_none() {
-        if let Some(former) = former::key(key) {
-            return Err(Fault::new(column, former.to_string()));
-        }
         let known = PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(key, known);
         let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));

@@ -1,7 +1,7 @@
 //! Reads a whole script: every line is parsed before any is run.
 
 use super::fault::Fault;
-use super::{former, parse};
+use super::parse;
 use crate::explorer::command::Command;
 use pulloff_engine::text::show_name;
 use std::fmt;
@@ -48,15 +48,13 @@ impl fmt::Display for ScriptError {
 /// Reads a script; `name` names it in messages. Nothing of it is done.
 pub fn read(name: &str, text: &str) -> Result<Vec<ScriptLine>, ScriptError> {
     let (mut lines, mut faults) = (Vec::new(), Vec::new());
-    let is_first = former::is_first_version(text);
     for (i, text) in text.lines().enumerate() {
-        let text = if is_first { former::by_states(text) } else { text.into() };
         let number = i + 1;
         if number > MOST_LINES {
             faults.push((number, Fault::new(1, format!("a script has at most {MOST_LINES} lines"))));
             break;
         }
-        match parse::script_line(&text) {
+        match parse::script_line(text) {
             Ok(Some((may_fail, command))) => lines.push(ScriptLine { number, may_fail, command }),
             Ok(None) => {}
             Err(fault) => faults.push((number, fault)),

@@ -3,13 +3,12 @@
 //! What a list of sessions shows stands first; it is read without the rest being understood.
 
 use super::number::{Real, floats, reals};
-use super::places::{Places, of_walk};
+use super::places::Places;
 use super::problems::{Aside, Collector, Place, Problems, Restored};
 use super::snapshot::{Look, Snapshot};
 use super::tree::{self, Saved};
-use super::unreadable::{BY_COMMANDS, FORMAT, Unreadable};
+use super::unreadable::{FORMAT, Unreadable};
 use crate::explorer::journal::{Beginning, Kept, Replay};
-use crate::explorer::script;
 use crate::store::{Fingerprint, Source, shipped};
 use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
@@ -107,25 +106,17 @@ impl Script {
         }
     }
 
-    fn back(
-        self,
-        format: u32,
-        preset: impl Fn(usize) -> Result<Preset, Unreadable>,
-    ) -> Result<Kept, Unreadable> {
+    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<Kept, Unreadable> {
         let start =
             self.start.map(|(source, at)| Ok(Beginning { source: source.back()?, preset: preset(at)? }));
         let replay =
             self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
-        let (mut lines, left_out) = script::without_former(self.lines);
-        if format < BY_COMMANDS {
-            lines = lines.iter().map(|line| script::by_states(line).into_owned()).collect();
-        }
         Ok(Kept {
-            lines: Arc::new(lines),
+            lines: Arc::new(self.lines),
             start: start.transpose()?,
             replay: replay.transpose()?,
             steps: self.steps,
-            broken: self.broken.or(left_out),
+            broken: self.broken,
         })
     }
 }
@@ -244,7 +235,7 @@ impl Document {
     /// The snapshot of it; no problem is made ready and no file is read.
     /// Errors: Something in it does not fit, or the rows of a profile were not taken back.
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
-        let Restored { presets, settings, was_former } = self.problems.back()?;
+        let Restored { presets, settings } = self.problems.back()?;
         let preset = |number: usize| {
             let found = presets.get(number).cloned();
             found.ok_or_else(|| Unreadable::Damaged("a preset is missing".to_owned()))
@@ -252,7 +243,7 @@ impl Document {
         let history = tree::history(self.nodes, self.cursor, &settings)
             .ok_or_else(|| Unreadable::Damaged("the states make no walk".to_owned()))?;
         let pins = self.pins.iter().map(|(number, at)| Ok((*number, preset(*at)?)));
-        let undo = if self.format < BY_COMMANDS { of_walk(&history) } else { self.undo.back(preset)? };
+        let undo = self.undo.back(preset)?;
         Ok(Snapshot {
             session: 0,
             preset: preset(self.preset)?,
@@ -264,8 +255,7 @@ impl Document {
             settled: self.settled,
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
-            journal: self.journal.back(self.format, preset)?,
-            was_former,
+            journal: self.journal.back(preset)?,
         })
     }
 }
@@ -280,7 +270,7 @@ pub fn summary(bytes: &[u8]) -> Result<Summary, Unreadable> {
     serde_json::from_slice(bytes).map_err(|error| damaged(&error))
 }
 
-/// Refuses what a later program wrote, before anything else in it is looked at.
+/// Refuses what has another format, before anything else in it is looked at.
 fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
     /// What every version has: known before anything else is looked at.
     #[derive(Deserialize)]
@@ -290,9 +280,9 @@ fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
     }
     let Format { format, program_version } =
         serde_json::from_slice(bytes).map_err(|error| damaged(&error))?;
-    if format > FORMAT {
+    if format != FORMAT {
         let program = pulloff_engine::text::sanitize(&program_version, 40);
-        return Err(Unreadable::Future { format, program });
+        return Err(Unreadable::Format { format, program });
     }
     Ok(())
 }

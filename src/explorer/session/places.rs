@@ -65,24 +65,3 @@ impl Places {
         Ok(Undo::of(past?, future?))
     }
 }
-
-/// The undo of a session that has none: before each command that made states of the walk.
-pub(super) fn of_walk(history: &History) -> Undo {
-    let (mut past, mut at) = (Vec::new(), history.cursor());
-    while let Some((here, parent)) = at.and_then(|at| Some((history.node(at)?, history.node(at)?.parent?))) {
-        at = Some(parent);
-        let Some(before) = history.node(parent).filter(|before| before.request != here.request) else {
-            continue;
-        };
-        past.push(Place {
-            preset: before.setting.preset.clone(),
-            node: Some(parent as u64),
-            inward: true,
-            length: crate::explorer::command::FIRST_LENGTH,
-            settled: true,
-            shelved: None,
-        });
-    }
-    past.reverse();
-    Undo::of(past, Vec::new())
-}

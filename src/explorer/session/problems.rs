@@ -260,8 +260,6 @@ impl From<Written> for Profile {
 pub(super) struct Restored {
     pub(super) presets: Vec<Preset>,
     pub(super) settings: Vec<Arc<Setting>>,
-    /// Whether any preset has keys or words of before.
-    pub(super) was_former: bool,
 }
 
 impl Problems {
@@ -336,13 +334,12 @@ impl Problems {
             preset.map_err(|error| Unreadable::Damaged(error.to_string()))
         };
         let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;
-        let (presets, former): (Vec<_>, Vec<_>) = presets.into_iter().unzip();
         let setting = |saved: Scaled| {
             let preset: &Preset = presets.get(saved.preset).ok_or_else(|| missing("preset"))?;
             let [approach, force, contact_radius] = floats(saved.scales);
             Ok(Arc::new(Setting::new(preset.clone(), Scales { approach, force, contact_radius })))
         };
         let settings = self.settings.into_iter().map(setting).collect::<Result<Vec<_>, Unreadable>>()?;
-        Ok(Restored { presets, settings, was_former: former.contains(&true) })
+        Ok(Restored { presets, settings })
     }
 }

@@ -5,7 +5,7 @@ use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
 use crate::explorer::maps::MapAxes;
-use crate::explorer::model::{Level, Model};
+use crate::explorer::model::Model;
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
 use crate::explorer::undo::Undo;
@@ -31,12 +31,7 @@ pub struct Snapshot {
     pub pins: Vec<(usize, Preset)>,
     pub look: Look,
     pub journal: Kept,
-    /// Whether it was read from a session that calls the exact basis spectral, as programs before this one did.
-    pub was_former: bool,
 }
-
-/// What is said of a session of before when it goes on.
-const FORMER: &str = "its basis spectral is exact now";
 
 /// How a session is looked at and walked; the fields are as in [`Model`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,7 +107,6 @@ impl Snapshot {
             pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
             look: Look::of(model),
             journal: model.journal.kept(),
-            was_former: false,
         }
     }
 
@@ -161,9 +155,6 @@ impl Snapshot {
         }
         if let Some(before) = before {
             model.follow(before);
-        }
-        if self.was_former {
-            model.message = Some((Level::Info, FORMER.to_owned()));
         }
         let mut effects = vec![want_curve(&mut model)];
         effects

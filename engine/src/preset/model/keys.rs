@@ -4,7 +4,6 @@ use super::{BasisSpec, Preset, start_key, turn_key};
 use crate::measured::asked::signs_text;
 use crate::preset::data;
 use crate::preset::family;
-use crate::preset::former;
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::rows::parameter;
@@ -146,9 +145,6 @@ pub(in crate::preset) fn unknown_key(key: &str, shape: Option<&str>) -> Invalid 
 }
 
 fn unknown_among<'a>(key: &str, rows: impl Iterator<Item = &'a Parameter>) -> Invalid {
-    if let Some(former) = former::key(key) {
-        return former;
-    }
     if key.starts_with("groups.") {
         let known: Vec<&str> = groups::GROUPS.iter().map(|row| &*row.key).collect();
         return Invalid::UnknownGroup { key: quote(key), known: known.join(", ") };

@@ -21,7 +21,7 @@ fn another(key: &str) -> Value {
         "display.energy" => "eV".into(),
         "gap.shape" => "sphere".into(),
         "basis.kind" => "exact".into(),
-        "basis.rings" | "basis.functions" => 77.into(),
+        "basis.rings" => 77.into(),
         "basis.grading" => "edge".into(),
         "path.control" => Control::Force.into(),
         "path.begin" => "touch".into(),
@@ -172,9 +172,6 @@ fn the_table_is_total() {
         }
         if row.fits("units", "SI") && !row.fits("units", "reduced") {
             preset.set("units", "SI".into()).unwrap();
-        }
-        if row.key == "basis.functions" {
-            preset.set("basis.kind", "exact".into()).unwrap();
         }
         preset.set(&row.key, value.clone()).unwrap();
         assert_eq!(preset.get(&row.key), Some(value), "{}", row.key);

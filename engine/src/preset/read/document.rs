@@ -6,7 +6,6 @@ use super::sheet::{Place, Sheet};
 use crate::gap::shapes::harmonics::MOST_WAVES;
 use crate::preset::data;
 use crate::preset::family;
-use crate::preset::former::{self, Kept};
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured::located;
@@ -37,15 +36,6 @@ impl Sheet {
             // A quoted key with a dot in it is none of ours, whatever it spells.
             let plain = !name.contains('.');
             let row = parameter(&full).filter(|_| plain);
-            if self.takes_former
-                && let Some(kept) = former::kept(&full, value.get_ref())
-            {
-                self.was_former = true;
-                if let (Kept::Word(word), Some(row)) = (kept, &row) {
-                    self.put(row, Ok(word.into()), origin);
-                }
-                continue;
-            }
             let known_table = Some(&*full).filter(|table| plain && is_table(table));
             match (value.get_ref(), row, known_table) {
                 (DeValue::Array(waves), _, Some(family::WAVE_TABLE)) => {

@@ -63,10 +63,6 @@ pub(super) struct Sheet {
     pub(super) folder: Option<PathBuf>,
     /// What its files hold, where that is known and no file is to be read.
     pub(super) held: Option<Held>,
-    /// Whether keys and words of before are read as they were meant, as a session holds them.
-    pub(super) takes_former: bool,
-    /// Whether there were any.
-    pub(super) was_former: bool,
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     pub(super) refit: bool,
     pub(super) entries: BTreeMap<Key, Entry>,

@@ -5,12 +5,13 @@ use super::error::PathError;
 use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
 use super::record::Record;
-use super::setting::{Losses, Path, PathStop, Setting, TurnReached, measure};
+use super::setting::{Path, PathStop, Setting, TurnReached, measure};
 use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
 use crate::progress::Progress;
+use crate::quasistatic::energy::Losses;
 use nalgebra::DVector;
 use std::sync::Arc;
 

@@ -1,11 +1,10 @@
 //! What happens on a path, and its states.
 
 use super::balance::Held;
-use super::setting::Losses;
 use crate::disc::{Local, Place, Solution};
 use crate::problem::Control;
 use crate::quasistatic::State;
-use crate::quasistatic::energy;
+use crate::quasistatic::energy::{self, Losses};
 use std::f64::consts::PI;
 
 /// Which way the control goes.

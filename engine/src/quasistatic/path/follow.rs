@@ -5,10 +5,10 @@ use super::course::{Course, End};
 use super::error::PathError;
 use super::event::Direction;
 use super::point::{Point, Step};
-use super::setting::Losses;
 use crate::annuli::ground::gauss;
 use crate::annuli::{AnnuliError, Around, Crest, MOST_POINTS_IN_ALL, points};
 use crate::problem::{ContactKind, Control};
+use crate::quasistatic::energy::Losses;
 
 /// Steps of a path at most.
 const STEPS: usize = 200_000;

@@ -45,6 +45,7 @@ pub mod setting;
 mod unload;
 mod zero;
 
+pub use super::energy::Losses;
 pub use balance::{Balance, Held, NotFound};
 pub use course::{cycle, cycle_on};
 pub use error::{PathError, Warning};
@@ -52,5 +53,5 @@ pub use event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
 pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
 pub use point::{Point, Step};
-pub use setting::{Asked, Losses, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
+pub use setting::{Asked, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
 pub use unload::unload;

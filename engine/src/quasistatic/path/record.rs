@@ -3,13 +3,13 @@
 use super::error::{PathError, Warning};
 use super::event::{Direction, Event, EventKind, Passed, PathState};
 use super::lane::Lane;
-use super::setting::{Asked, Losses, Path, PathStop, Setting, Totals, TurnReached};
+use super::setting::{Asked, Path, PathStop, Setting, Totals, TurnReached};
 use crate::disc::Place;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use crate::quasistatic::curve::{CurveStop, Detail, places};
 use crate::quasistatic::descent::{Descent, descend};
-use crate::quasistatic::energy;
+use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::jump::Landing;
 
 /// What the balance of a path may leave of its losses.

@@ -7,6 +7,7 @@ use super::jump::{EVEN, Mobility};
 use crate::problem::{ContactKind, Control, Turn, Units};
 use crate::quasistatic::State;
 use crate::quasistatic::curve::{CurveStop, Detail};
+use crate::quasistatic::energy::Losses;
 use crate::units::UnitSystem;
 use std::fmt;
 
@@ -18,15 +19,6 @@ pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
         Turn::Radius(_) => held.state.contacts.outermost(),
         Turn::Control(_) => control.value(held.approach, held.force),
     }
-}
-
-/// How often the loss of a jump is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Losses {
-    /// Once, by the drop of the potential.
-    Once,
-    /// By the area between the curve and the control line as well, which costs far more: two independent numbers that must agree.
-    Twice,
 }
 
 /// What a path is asked for.

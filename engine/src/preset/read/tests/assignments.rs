@@ -51,26 +51,6 @@ fn a_basis_drops_and_brings_its_keys() {
 }
 
 #[test]
-fn keys_and_words_of_before_are_refused_with_what_to_write() {
-    let spectral = "basis.kind = \"spectral\" is called \"exact\" now: write kind = \"exact\" (basis.kind=exact in an \
-                    assignment)";
-    let functions = "basis.functions is no longer needed: the exact basis resolves every gap by itself; remove it and \
-                     write kind = \"exact\" (basis.kind=exact in an assignment)";
-    let old = "\"rings\"\nrings = 200";
-    assert_eq!(edited(old, "\"spectral\""), format!("w.toml:12: {spectral}"));
-    assert_eq!(edited(old, "\"rings\"\nfunctions = 48"), format!("w.toml:13: {functions}"));
-    // Both lines of a file are named.
-    let both = messages(&WAVY.replace(old, "\"spectral\"\nfunctions = \"auto\""), &[]);
-    assert_eq!(both, [format!("w.toml:12: {spectral}"), format!("w.toml:13: {functions}")]);
-    for (set, what) in [("basis.kind=spectral", spectral), ("basis.functions=48", functions)] {
-        let refused = read_with("w.toml", WAVY, &[set]).unwrap_err().to_string();
-        assert_eq!(refused, format!("--set {set}: {what}"));
-        let (key, value) = set.split_once('=').unwrap();
-        assert_eq!(read("w.toml", WAVY).unwrap().assign(key, value).unwrap_err().to_string(), what);
-    }
-}
-
-#[test]
 fn an_assignment_repairs_a_wrong_line() {
     let text = WAVY.replace("= 200", "= 1");
     assert_eq!(
