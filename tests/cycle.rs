@@ -415,3 +415,17 @@ fn a_narrow_bump_is_touched() {
         "{first}"
     );
 }
+
+#[test]
+fn one_disc_alone_is_marked_where_bodies_would_overlap_on_the_way_up_too() {
+    let ended = Home::new().run(&["cycle", "fig-9-weak", "--one-disc", "--no-area", "--format", "json"]);
+    assert!(ended.err.contains("the path crosses 7 intervals of inadmissible states"), "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    let parts = document["inadmissible"].as_array().unwrap();
+    // The crest at 0.0488 touches when the disc has the radius 0.01069, on its way to the limit point at 0.02027.
+    let innermost = parts.last().unwrap();
+    assert!((number(&innermost["to_contact_radius"]) - 0.010_691_08).abs() < 1e-7, "{innermost}");
+    let limit = number(&document["events"][1]["before"]["contact_radius"]);
+    assert!((number(&innermost["from_contact_radius"]) - limit).abs() < 1e-6 && limit < 0.021, "{innermost}");
+    assert_eq!(document["events"][1]["admissible"], false);
+}

@@ -188,11 +188,20 @@ impl Path {
         self.events.iter().filter_map(|event| event.dissipated).fold(0.0, |sum, loss| sum + loss)
     }
 
-    /// The contact radii at the ends of every stable stretch, in the order of the path.
+    /// The contact radii of its stable stretches as [outer, inner], from outside inward and each radius once.
     pub fn pieces(&self) -> Vec<[f64; 2]> {
-        let pieces = self.states.chunk_by(|a, b| a.piece == b.piece);
-        pieces
+        let mut pieces: Vec<[f64; 2]> = (self.states.chunk_by(|a, b| a.piece == b.piece))
             .filter_map(|piece| Some([piece.first()?.contact_radius, piece.last()?.contact_radius]))
-            .collect()
+            .map(|[from, to]| [from.max(to), from.min(to)])
+            .collect();
+        pieces.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        pieces.dedup_by(|next, before| {
+            let joins = next[0] > before[1];
+            if joins {
+                before[1] = before[1].min(next[1]);
+            }
+            joins
+        });
+        pieces
     }
 }
