@@ -156,7 +156,7 @@ impl Problem {
             ..Rows::default()
         };
         let read = read_holding(FILES, "from_gap", text, Held { rows: Arc::new(rows), ..Held::default() });
-        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
+        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
     }
 
     /// All that it is: the text of its preset, and what the files that this names hold.
@@ -206,7 +206,7 @@ impl Problem {
             held.points = Arc::new(Source::new(name, folder, bytes.into()));
         }
         let read = read_holding(FILES, "the text", text, held);
-        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))?.0 })
+        Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
     }
 
     /// The same problem with its gap and its measured curve in files of these names; those that come with the package keep theirs.
