@@ -8,15 +8,17 @@
 
 mod support;
 
+use pulloff_engine::Case;
 use pulloff_engine::annuli::{Around, Contacts, Ground};
 use pulloff_engine::disc::Table;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
+use pulloff_engine::preset::{self, shipped};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{
-    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathState, Setting, Warning, cycle,
+    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathState, Setting, Warning, WhyNot, cycle,
     cycle_on,
 };
 use serde_json::Value;
@@ -98,6 +100,34 @@ fn weak_adhesion_takes_the_rings_of_another_program() {
     assert!(found.totals.balance.unwrap() < 1e-8 && found.warnings.is_empty(), "{:?}", found.totals);
     let rings = found.states.iter().map(|state: &PathState| state.contacts.len()).max();
     assert_eq!(rings, Some(2));
+}
+
+#[test]
+fn an_unloading_from_inside_an_overlap_starts_with_what_loading_comes_to() {
+    let text = shipped::find("fig-9-weak").unwrap().text;
+    let mut preset = preset::read("fig-9-weak", text).unwrap();
+    let mut inside = 0;
+    for number in 1..=60 {
+        preset.set_all([("path.start_contact_radius", (0.003 * f64::from(number)).into())]).unwrap();
+        let case = Case::new(&preset).unwrap();
+        let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+        let found = case.unload(&case.curve(&Unwatched).unwrap(), &setting, &Unwatched).unwrap();
+        let overlaps = found.asked.is_some_and(|asked| matches!(asked.why, WhyNot::Overlaps(_)));
+        if !overlaps {
+            continue;
+        }
+        inside += 1;
+        let first = found.start().unwrap();
+        let whole = case.cycle(Some(Turn::Control(first.approach)), &setting, &Unwatched).unwrap();
+        let turned = whole.events.iter().find(|event| event.kind == EventKind::Turn).unwrap();
+        let turned = turned.before.as_ref().unwrap();
+        assert_eq!(first.contacts.len(), turned.contacts.len(), "{number}");
+        for (a, b) in first.contacts.iter().flatten().zip(turned.contacts.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{number}: {:?} {:?}", first.contacts, turned.contacts);
+        }
+        assert!((first.force - turned.force).abs() < 1e-10, "{number}");
+    }
+    assert!(inside >= 10, "{inside}");
 }
 
 #[test]

@@ -229,7 +229,11 @@ impl Course<'_, '_> {
         self.record.states.push(state);
     }
 
-    fn whole(mut self, turn: Turn) -> Result<Path, PathError> {
+    /// The crest that touches first, and the control value at which it does.
+    ///
+    /// # Errors
+    /// [`PathError`] where the bodies do not touch, or not before the turn.
+    pub(super) fn first_crest(&self, turn: Turn) -> Result<(Crest, f64), PathError> {
         let (balance, setting) = (self.balance, self.setting);
         let ground = balance.ground;
         if let Turn::Radius(radius) = turn
@@ -267,6 +271,12 @@ impl Course<'_, '_> {
                 PathError::TurnBeforeTouch { turn: turn.value(), touch: least }
             });
         }
+        Ok((crest, first))
+    }
+
+    fn whole(mut self, turn: Turn) -> Result<Path, PathError> {
+        let (balance, setting) = (self.balance, self.setting);
+        let (crest, first) = self.first_crest(turn)?;
         if balance.work_of_adhesion == 0.0 {
             return self.without_adhesion(crest, turn);
         }
@@ -284,7 +294,7 @@ impl Course<'_, '_> {
     }
 
     /// From the first touch at a crest to the turn.
-    fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
+    pub(super) fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
         let mut held = self.first_touch(crest, value)?;
         while !self.has_turned(&held) {
             let (end, next) = self.way_up(&held)?;

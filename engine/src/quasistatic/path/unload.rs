@@ -2,9 +2,12 @@
 //!
 //! On the way down gaps open: contact that shrinks anywhere takes load off what lies outside. So a path that starts with one disc that
 //! overlaps nothing stays one disc. Where a crest outside would overlap at the start, the contact first grows at the held control to
-//! the least equilibrium that contains it, as a path of loading does at a touch, and unloads from there. Without adhesion contact has
+//! the least equilibrium that contains it, as a path of loading does at a touch, and unloads from there. Deep inside an overlap none
+//! contains it, since what presses outside opens the disc: then it starts from what loading from apart has come to at this control,
+//! which is the same contact where both are found. Without adhesion contact has
 //! no memory: the way down is that of the loop.
 
+use super::balance::{Balance, Held};
 use super::course::{Course, balance, cycle_on, lane, on_ground};
 use super::error::PathError;
 use super::event::{Direction, EventKind, PathState};
@@ -96,13 +99,21 @@ fn with_rings(
         }
         let lane = lane(ground, gamma, control);
         let balance = balance(ground, gamma, setting, lane.as_ref(), progress);
-        let disc = Contacts::of_disc(start.contact_radius);
-        let mut held = balance.held(&disc, &points(ground, &disc), value)?;
-        let mut passed = Vec::new();
-        if let Some(grown) = balance.touched(&held, value, &mut passed)? {
-            let landed = balance.run(grown, value, 1.0, setting.mobility, &mut passed)?;
-            held = landed.ok_or(PathError::Lost { control_value: value })?;
-        }
+        let held = match grown(&balance, setting, start.contact_radius, value) {
+            // The bodies press at the crest and open the disc: nothing contains it. Loading from apart comes to what there is.
+            Err(lost @ PathError::NoLanding { .. }) => {
+                let record = Record::new(setting, Direction::Loading, progress);
+                let turn = Turn::Control(value);
+                let mut up =
+                    Course { balance: &balance, setting, turn: Some(turn), end: 0.0, record, steps: 0 };
+                match up.first_crest(turn) {
+                    Ok((crest, first)) => up.loaded(crest, first)?,
+                    Err(PathError::TurnBeforeTouch { .. }) => return Err(lost),
+                    Err(error) => return Err(error),
+                }
+            }
+            found => found?,
+        };
         let record = Record::new(setting, Direction::Unloading, progress);
         let mut course = Course { balance: &balance, setting, turn: None, end: to, record, steps: 0 };
         let first = course.state(&held);
@@ -110,6 +121,16 @@ fn with_rings(
         let stop = course.unloaded(held)?;
         Ok(course.record.finished(asked, None, None, stop))
     })
+}
+
+/// The contact that grows at the held control from a disc beside which bodies overlap.
+fn grown(balance: &Balance<'_>, setting: &Setting<'_>, s: f64, value: f64) -> Result<Held, PathError> {
+    let disc = Contacts::of_disc(s);
+    let held = balance.held(&disc, &points(balance.ground, &disc), value)?;
+    let mut passed = Vec::new();
+    let Some(seeded) = balance.touched(&held, value, &mut passed)? else { return Ok(held) };
+    let landed = balance.run(seeded, value, 1.0, setting.mobility, &mut passed)?;
+    landed.ok_or(PathError::Lost { control_value: value })
 }
 
 /// The way down of a loop at which nothing is lost.
