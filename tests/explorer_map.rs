@@ -34,7 +34,7 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
     let shown = figure(&session);
     assert!(shown.title.contains("δ over A"), "{}", shown.title);
     let events = session.model.shown_events().len();
-    assert_eq!(count(&shown, |sign| matches!(sign, Sign::Event(_) | Sign::PullOff)), events);
+    assert_eq!(count(&shown, |sign| matches!(sign, Sign::Event(_) | Sign::LastContact)), events);
     assert!(
         count(&shown, |sign| *sign == Sign::Cusp) > 2 && count(&shown, |sign| *sign == Sign::Landing) > 0
     );
@@ -47,7 +47,7 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
         let line = shown.lines.iter().find(|line| line.role == Role::Chosen).unwrap();
         assert_eq!(line.name, format!("event {number}"));
         let is_it = |sign: &Sign| {
-            if number == events { *sign == Sign::PullOff } else { *sign == Sign::Event(number) }
+            if number == events { *sign == Sign::LastContact } else { *sign == Sign::Event(number) }
         };
         let (x, y) = shown.marks.iter().find(|mark| is_it(&mark.sign)).unwrap().at;
         let height = shown.bounds.y[1] - shown.bounds.y[0];

@@ -34,10 +34,7 @@ fn the_rows_are_points_of_lines_and_the_smallest_amplitude_is_said() {
     let text = String::from_utf8(output.stdout).unwrap();
     let mut rows = csv::Reader::from_reader(text.as_bytes());
     let header: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();
-    assert_eq!(
-        header,
-        ["line", "kind", "crest", "contact_radius", "x", "y", "control_value", "stable", "changes"]
-    );
+    assert_eq!(header, ["line", "kind", "crest", "contact_radius", "x", "y", "control", "stable", "changes"]);
     let mut kinds = std::collections::BTreeSet::new();
     for row in rows.records() {
         let row = row.unwrap();

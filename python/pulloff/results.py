@@ -224,7 +224,7 @@ class Map(Result):
     x: Floats
     """The number on the x axis; ``inf`` for the compliance of a dead load."""
     y: Floats
-    control_value: Floats
+    control: Floats
     stable: Texts
     changes: NDArray[Any]
     """Of a line of a map, whether the number of snaps differs on its two sides."""

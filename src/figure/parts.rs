@@ -73,7 +73,7 @@ pub enum Sign {
     /// The limit point where an event of the path begins, by its number from 1.
     Event(usize),
     /// The last limit point of a path: the bodies come apart.
-    PullOff,
+    LastContact,
     Landing,
     /// A crest touches.
     Touch,

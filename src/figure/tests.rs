@@ -69,7 +69,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         let snaps = curve.report.as_ref().unwrap().events.len() - 1;
         assert!((1..=snaps).all(|number| signs(&figure, Sign::Event(number)) == 1));
         assert_eq!(signs(&figure, Sign::Limit) + snaps + 1, curve.limits.len());
-        assert_eq!(signs(&figure, Sign::PullOff), 1);
+        assert_eq!(signs(&figure, Sign::LastContact), 1);
         assert_eq!((signs(&figure, Sign::Landing), signs(&figure, Sign::Walker)), (1, 1));
         assert_eq!((count(&figure, Role::Walk), count(&figure, Role::Jump)), (2, 1));
         assert_eq!((count(&figure, Role::Smooth), count(&figure, Role::Exact)), (1, 0));
@@ -187,7 +187,7 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
         let figure = session.figure(View::Unloading);
         assert_eq!(figure.areas.len() + unbounded, unloading.events.len(), "{control}");
         assert_eq!(count(&figure, Role::Jump), unloading.events.len());
-        assert_eq!(signs(&figure, Sign::PullOff), 1);
+        assert_eq!(signs(&figure, Sign::LastContact), 1);
         let scale = curve.base.critical_force;
         for (area, event) in figure.areas.iter().zip(&unloading.events) {
             // The outline encloses what was lost: P/Pc over δ.
@@ -242,7 +242,7 @@ fn the_areas_of_a_loop_are_its_losses() {
         let (report, figure, lost) = whole("fig-9-cycle", &[&control]);
         let jumps = report.events.iter().filter(|event| event.before != event.after).count();
         assert_eq!((figure.areas.len() + unbounded, count(&figure, Role::Jump)), (jumps, jumps), "{control}");
-        assert_eq!((signs(&figure, Sign::PullOff), signs(&figure, Sign::Turn)), (1, 1));
+        assert_eq!((signs(&figure, Sign::LastContact), signs(&figure, Sign::Turn)), (1, 1));
         let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_last_contact);
         assert!((lost / all - 1.0).abs() < 1e-9, "{control}: {lost} {all}");
     }

@@ -34,7 +34,7 @@ pub fn events_before<'a>(
     let units = *subject.curve.case.units();
     let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
     (1..).zip(events).filter_map(move |(number, event)| {
-        let sign = if event.kind == EventKind::LastContact { Sign::PullOff } else { Sign::Event(number) };
+        let sign = if event.kind == EventKind::LastContact { Sign::LastContact } else { Sign::Event(number) };
         let before = event.before.as_ref()?.state().in_units(&units);
         Some(Mark { sign, at: scale.place(view, quantities(&before)) })
     })

@@ -92,7 +92,7 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
         Sign::OtherLimit(_) | Sign::Limit => one("·", "."),
         Sign::Event(number @ 1..=9) => number.to_string(),
         Sign::Event(_) => "v".to_owned(),
-        Sign::PullOff => one("×", "X"),
+        Sign::LastContact => one("×", "X"),
         Sign::Landing => one("○", "O"),
         Sign::Touch => "t".to_owned(),
         Sign::Turn => "T".to_owned(),

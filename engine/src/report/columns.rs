@@ -18,9 +18,7 @@ fn quantity(column: &str, control: Control) -> Option<Quantity> {
         "contact_stiffness" | "tangent_stiffness" | "held_stiffness" => Some(Quantity::ForcePerLength),
 
         // What the grips hold: a spring's other end is moved.
-        "control" | "control_value" => {
-            Some(if control == Control::Force { Quantity::Force } else { Quantity::Length })
-        }
+        "control" => Some(if control == Control::Force { Quantity::Force } else { Quantity::Length }),
         _ => None,
     }
 }

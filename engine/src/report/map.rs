@@ -50,7 +50,7 @@ pub struct RowReport {
     /// What stands on the y axis.
     pub y: Option<f64>,
     /// δ, P or Δ at the limit point.
-    pub control_value: f64,
+    pub control: f64,
     /// Of a fold, on which side of it the states are stable, `outward` or `inward`; null for the others.
     pub stable: Option<&'static str>,
     /// Of a line of a map, whether the number of snaps differs on its two sides; null for the others.
@@ -59,7 +59,7 @@ pub struct RowReport {
 
 /// The columns of the points as CSV; they never change, new ones come behind them.
 pub const COLUMNS: &[&str] =
-    &["line", "kind", "crest", "contact_radius", "x", "y", "control_value", "stable", "changes"];
+    &["line", "kind", "crest", "contact_radius", "x", "y", "control", "stable", "changes"];
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -247,7 +247,7 @@ impl MapReport {
             row.y = Some(match y {
                 Ordinate::Approach => point.approach * units.length,
                 Ordinate::Force => point.force * units.force,
-                Ordinate::Control | Ordinate::Key(_) => row.control_value,
+                Ordinate::Control | Ordinate::Key(_) => row.control,
             });
             row
         };
@@ -278,8 +278,8 @@ impl RowReport {
             family.axes.get(k).map(|axis| axis.value(point.at[k])).filter(|value| value.is_finite())
         };
         let shares = &point.at[..family.axes.len()];
-        let control = family.member(shares).map_or(Control::Displacement, |member| member.control);
-        let unit = if control == Control::Force { units.force } else { units.length };
+        let device = family.member(shares).map_or(Control::Displacement, |member| member.control);
+        let unit = if device == Control::Force { units.force } else { units.length };
         Self {
             line: None,
             kind: "fold",
@@ -287,7 +287,7 @@ impl RowReport {
             contact_radius: point.contact_radius * units.length,
             x: value(0),
             y: value(1),
-            control_value: control.value(point.approach, point.force) * unit,
+            control: device.value(point.approach, point.force) * unit,
             stable: None,
             changes: None,
         }

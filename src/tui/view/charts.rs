@@ -109,7 +109,7 @@ fn select_event(model: &Model, chart: &mut Chart<'_>) {
     let count = model.shown_events().len();
     chart.selected = chart.figure.marks.iter().position(|mark| match mark.sign {
         Sign::Event(other) => other == number,
-        Sign::PullOff => number == count,
+        Sign::LastContact => number == count,
         _ => false,
     });
     if let Some(at) = chart.selected

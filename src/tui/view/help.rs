@@ -16,7 +16,7 @@ use ratatui::widgets::{Clear, Paragraph};
 /// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
 const FIRST_STEPS: &[&str] = &[
     "The walker @ stands at the start of the path. \u{1}next-limit\u{1} runs to the first limit point: there the edge lets go.",
-    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the pull-off; \u{1}undo\u{1} takes the last command back, whatever it was.",
+    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the last contact; \u{1}undo\u{1} takes the last command back, whatever it was.",
     "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
     "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
     "\u{1}next-view\u{1} shows the pressure, the gap, the energy; \u{1}cross-hair\u{1} reads numbers off the chart.",
@@ -61,7 +61,7 @@ const SHORT: &[(&str, &str)] = &[
     ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
     ("c7", "on maps: the line of limit points at the seventh crest from the axis"),
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
-    ("× pull-off", "the limit point from which nothing stable is left: the bodies come apart"),
+    ("× last contact", "the limit point from which nothing stable is left: the bodies come apart"),
     ("○ landing", "where a jump comes to rest"),
     ("touch", "a crest outside the disc meets the other body: a ring of contact begins"),
     (
@@ -69,7 +69,7 @@ const SHORT: &[(&str, &str)] = &[
         "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
     ),
     ("lost 3e-4", "energy lost in jumps; with a + behind it, a jump without bound comes on top"),
-    ("no bound", "a dead load falls for ever: what is lost at the pull-off has no end"),
+    ("no bound", "a dead load falls for ever: what is lost at the last contact has no end"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
     ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),

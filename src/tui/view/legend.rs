@@ -56,7 +56,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Stray | Sign::Value | Sign::Letter(_) => return None,
         Sign::OtherLimit(_) | Sign::Limit => (9, "limit off the path"),
         Sign::Event(_) => (4, "event"),
-        Sign::PullOff => (7, "pull-off"),
+        Sign::LastContact => (7, "last contact"),
         Sign::Landing => (7, "landing"),
         Sign::Touch => (5, "touch"),
         Sign::Turn => (5, "turn"),

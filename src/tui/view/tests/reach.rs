@@ -69,9 +69,9 @@ fn a_click_selects_and_once_more_goes_there() {
 fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     let mut screen = screen("wavy-sphere");
     screen.app.theme = PLAIN;
-    // The letter of the pull-off stands on the curve, and in the legend above it.
+    // The letter of the last contact stands on the curve, and in the legend above it.
     let drawn = screen.text(SIZE.width, SIZE.height);
-    let is_it = |line: &&str| line.contains('X') && !line.contains("X pull-off");
+    let is_it = |line: &&str| line.contains('X') && !line.contains("X last contact");
     let line = drawn.lines().find(is_it).unwrap_or_else(|| unreachable!("no X in {drawn}"));
     let at = place(&screen, line);
     let along = line.chars().position(|c| c == 'X').unwrap();
