@@ -513,7 +513,7 @@ fn pins_and_views_go_on_in_another_preset() {
     session.all(&[Id::Pin, Id::NextView]).does(Command::Overlay(Overlay::Exact));
     session.set("gap.amplitude", "0.002").does(Id::Pin);
     session.does(Command::Open("fig-8".to_owned()));
-    assert_eq!((session.model.view, session.model.overlays.exact), (View::RadiusForce, true));
+    assert_eq!((session.model.view, session.model.overlays.exact), (View::ForceRadius, true));
     let pins = session.model.pins.all();
     assert_eq!(pins.iter().map(|pin| pin.number).collect::<Vec<_>>(), [1, 2]);
     assert!(pins[1].name(&session.model.preset).contains("A 0.002"));

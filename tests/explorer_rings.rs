@@ -127,7 +127,7 @@ fn every_view_of_a_state_knows_its_rings() {
             _ => assert!(figure.missing.unwrap().contains("rings")),
         }
     }
-    let figure = Subject::of(&session.model).unwrap().figure(View::RadiusForce);
+    let figure = Subject::of(&session.model).unwrap().figure(View::ForceRadius);
     // The walk's own line, and the two edges within.
     assert!(figure.lines.iter().filter(|line| line.role == Role::Walk).count() >= 3);
     session.does(Id::Events);

@@ -115,7 +115,7 @@ fn every_view_a_closer_look_and_a_pin() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
     pty.wait_for(|screen| screen.contains("Events on the curve: 2"), "the curve");
     for title in [
-        "s/λ over P/Pc",
+        "P/Pc over s/λ",
         "s/λ over δ",
         "p/E* over r/λ",
         "gap/R over r/λ",

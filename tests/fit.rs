@@ -426,6 +426,6 @@ fn measured_points_lie_behind_a_curve() {
         data.matches("measured approach").count() == 350
             && data.matches("measured retraction").count() == 350
     );
-    let ended = home.run(&["plot", "lens", "--measured", &path, "--view", "radius-force"]);
-    assert!(ended.status == 2 && ended.err.contains("has not the columns of radius-force"), "{}", ended.err);
+    let ended = home.run(&["plot", "lens", "--measured", &path, "--view", "force-radius"]);
+    assert!(ended.status == 2 && ended.err.contains("has not the columns of force-radius"), "{}", ended.err);
 }

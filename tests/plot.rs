@@ -36,7 +36,7 @@ fn structure(svg: &str) -> Vec<String> {
 }
 
 const VIEWS: [&str; 7] =
-    ["force-approach", "radius-force", "radius-approach", "pressure", "gap", "energy", "unloading"];
+    ["force-approach", "force-radius", "radius-approach", "pressure", "gap", "energy", "unloading"];
 
 #[test]
 fn every_view_is_a_document_of_one_column_with_its_axes() {
@@ -53,7 +53,7 @@ fn every_view_is_a_document_of_one_column_with_its_axes() {
 fn every_shipped_preset_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     for preset in pulloff::store::shipped::SHIPPED {
-        for view in ["radius-force", "pressure"] {
+        for view in ["force-radius", "pressure"] {
             let svg = svg(folder.path(), &[preset.name, "--view", view]);
             roxmltree::Document::parse(&svg).unwrap();
         }
@@ -63,7 +63,7 @@ fn every_shipped_preset_is_drawn() {
 #[test]
 fn an_si_preset_has_units_beside_its_axes() {
     let folder = tempfile::tempdir().unwrap();
-    let svg = svg(folder.path(), &["fig-9-si", "--raw", "--view", "radius-force"]);
+    let svg = svg(folder.path(), &["fig-9-si", "--raw", "--view", "force-radius"]);
     let texts = structure(&svg).join("\n");
     assert!(texts.contains("\"P (") && texts.contains("\"s ("), "{texts}");
 }
@@ -175,7 +175,7 @@ fn a_range_of_an_axis_is_shown_in_its_own_units() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |range: &[&str]| {
         let output =
-            pulloff(folder.path(), &[&["plot", "wavy-sphere", "--view", "radius-force"], range].concat());
+            pulloff(folder.path(), &[&["plot", "wavy-sphere", "--view", "force-radius"], range].concat());
         assert!(output.status.success(), "{range:?}: {}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
     };
@@ -185,7 +185,7 @@ fn a_range_of_an_axis_is_shown_in_its_own_units() {
         texts.filter_map(|text| text.trim().replace('−', "-").parse().ok()).collect()
     };
     let whole = ticks(&drawn(&[]));
-    let part = ticks(&drawn(&["--x", "-1..-0.5", "--y=2..4"]));
+    let part = ticks(&drawn(&["--y", "-1..-0.5", "--x=2..4"]));
     assert!(whole.iter().any(|tick| *tick > 4.0), "{whole:?}");
     assert!(part.iter().all(|tick| (-1.0..=-0.5).contains(tick) || (2.0..=4.0).contains(tick)), "{part:?}");
     assert!(part.contains(&-1.0) && part.contains(&4.0), "{part:?}");

@@ -269,7 +269,7 @@ fn the_other_branches_are_drawn_where_the_curve_is() {
             subject.figure(view).lines.into_iter().filter(|line| line.role == Role::Branch).collect();
         (lines, scale)
     };
-    for view in [View::ForceApproach, View::RadiusForce] {
+    for view in [View::ForceApproach, View::ForceRadius] {
         let (lines, scale) = branch(view);
         // From the state in which it parts through those after it, though they solve another problem.
         let states = (1..=3).map(|number| {
@@ -543,7 +543,7 @@ fn a_program_that_changed_nothing_writes_nothing() {
     let mut pty = home.explore(&[]);
     pty.wait_for(|screen| screen.contains(UP), "the curve");
     pty.keys("t\t\t");
-    pty.wait_for(|screen| screen.contains("(t: radius-approach)"), "another view");
+    pty.wait_for(|screen| screen.contains("s/λ────────────────────┬P/Pc over δ/R"), "another view");
     pty.signal(Signal::HUP);
     pty.exit_code();
     assert!(!home.0.path(".local").exists());

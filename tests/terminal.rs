@@ -138,7 +138,7 @@ fn any_size_is_survived_and_the_next_one_drawn() {
     pty.resize(30, 8);
     pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
     pty.resize(160, 45);
-    let both = |screen: &str| screen.contains("P/Pc over δ") && screen.contains("s/λ over P/Pc");
+    let both = |screen: &str| screen.contains("P/Pc over δ") && screen.contains("P/Pc over s/λ");
     pty.wait_for(both, "both charts at the new size");
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
@@ -194,7 +194,7 @@ fn nothing_is_written_while_nothing_changes() {
     // Back where it was: only what differs between two frames is sent.
     pty.keys("jk");
     pty.keys("t");
-    pty.wait_for(|screen| screen.contains("s/λ over P/Pc  (t:"), "the next view");
+    pty.wait_for(|screen| screen.contains("P/Pc over s/λ  (t:"), "the next view");
     let bytes = pty.raw().len() - before;
     assert!(bytes < 8000, "{bytes} bytes");
     pty.keys("q");

@@ -61,7 +61,7 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
     }
     let times = if closer { CLOSER } else { 1.0 / CLOSER };
     match model.window(view).zoomed(times, about) {
-        Some(window) => model.windows[view as usize] = window,
+        Some(window) => model.set_window(view, window),
         None if closer => model.tell(Level::Info, "no closer: there is nothing more to tell apart"),
         None => {
             model.tell(Level::Info, format!("no further away: {} shows the whole chart", Id::Whole.named()));
@@ -70,7 +70,12 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
 }
 
 pub(super) fn whole(model: &mut Model) {
-    model.windows[model.view as usize] = Window::WHOLE;
+    // All that stands side by side with one axis.
+    for view in model.shown_views() {
+        if view == model.view || (view.is_of_force() && model.view.is_of_force()) {
+            model.set_window(view, Window::WHOLE);
+        }
+    }
 }
 
 pub(super) fn cross_hair(model: &mut Model) {
@@ -95,7 +100,7 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     let window = model.window(model.view);
     let Some((x, y)) = model.cross else {
         let window = window.moved(right * PAN, up * PAN);
-        model.windows[model.view as usize] = window;
+        model.set_window(model.view, window);
         if window.is_beyond() {
             model.tell(
                 Level::Info,
@@ -106,7 +111,7 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     };
     let (x, y) = (x + right * ACROSS, y + up * UPWARDS);
     let beyond = |at: f64| at - at.clamp(0.0, 1.0);
-    model.windows[model.view as usize] = window.moved(beyond(x), beyond(y));
+    model.set_window(model.view, window.moved(beyond(x), beyond(y)));
     model.cross = Some((x.clamp(0.0, 1.0), y.clamp(0.0, 1.0)));
 }
 

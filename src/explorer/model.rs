@@ -413,9 +413,26 @@ impl Model {
         self.profile.as_deref().filter(|_| self.profile_wanted.is_some())
     }
 
-    /// The part of a view that is shown.
+    /// The part of a view that is shown: views of the force beside the first one show the same part of its axis.
     pub fn window(&self, view: View) -> Window {
-        self.windows[view as usize]
+        let window = self.windows[view as usize];
+        if self.shares_force(view) {
+            Window { y: self.windows[self.view as usize].y, ..window }
+        } else {
+            window
+        }
+    }
+
+    /// Shows a part of a view.
+    pub fn set_window(&mut self, view: View, window: Window) {
+        self.windows[view as usize] = window;
+        if self.shares_force(view) {
+            self.windows[self.view as usize].y = window.y;
+        }
+    }
+
+    fn shares_force(&self, view: View) -> bool {
+        self.view.is_of_force() && view.is_of_force()
     }
 
     /// Where the session stands, for undo.

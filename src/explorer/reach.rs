@@ -12,7 +12,7 @@ use pulloff_engine::problem::Control;
 pub fn why_not(model: &Model, view: View) -> Option<String> {
     let node = model.history.current();
     match view {
-        View::ForceApproach | View::RadiusForce | View::RadiusApproach | View::Stability => None,
+        View::ForceApproach | View::ForceRadius | View::RadiusApproach | View::Stability => None,
         View::ForcePosition => no_spring(&model.preset),
         View::Pressure | View::Gap | View::Contact | View::Energy => {
             let apart = node.is_some_and(Node::is_apart);

@@ -68,8 +68,8 @@ pub enum View {
     ForceApproach,
     /// P over Δ, the way of the device's far end.
     ForcePosition,
-    /// s over P.
-    RadiusForce,
+    /// P over s, on the same axis of P as [`View::ForceApproach`].
+    ForceRadius,
     /// s over δ.
     RadiusApproach,
     /// The contact pressure p(r) of the walker's state.
@@ -105,7 +105,7 @@ impl View {
     pub const ALL: [Self; 17] = [
         Self::ForceApproach,
         Self::ForcePosition,
-        Self::RadiusForce,
+        Self::ForceRadius,
         Self::RadiusApproach,
         Self::Pressure,
         Self::Gap,
@@ -127,7 +127,7 @@ impl View {
         match self {
             Self::ForceApproach => "force-approach",
             Self::ForcePosition => "force-position",
-            Self::RadiusForce => "radius-force",
+            Self::ForceRadius => "force-radius",
             Self::RadiusApproach => "radius-approach",
             Self::Pressure => "pressure",
             Self::Gap => "gap",
@@ -150,7 +150,7 @@ impl View {
         match self {
             Self::ForceApproach => "the force P over the approach",
             Self::ForcePosition => "the force P over the way of the device's far end",
-            Self::RadiusForce => "the contact radius s over the force",
+            Self::ForceRadius => "the force P over the contact radius s",
             Self::RadiusApproach => "the contact radius s over the approach",
             Self::Pressure => "the contact pressure of the walker's state",
             Self::Gap => "the gap around its contact, deformed and undeformed",
@@ -180,12 +180,17 @@ impl View {
 
     /// Whether it shows the equilibrium curve, on which walker, pins and overlays have a place.
     pub fn is_curve(self) -> bool {
-        matches!(self, Self::ForceApproach | Self::ForcePosition | Self::RadiusForce | Self::RadiusApproach)
+        matches!(self, Self::ForceApproach | Self::ForcePosition | Self::ForceRadius | Self::RadiusApproach)
     }
 
     /// Whether it shows forces of a curve and no radius.
     pub fn is_without_radius(self) -> bool {
         matches!(self, Self::ForceApproach | Self::ForcePosition)
+    }
+
+    /// Whether the force goes upward in it: such views stand side by side with one axis of it.
+    pub fn is_of_force(self) -> bool {
+        matches!(self, Self::ForceApproach | Self::ForcePosition | Self::ForceRadius)
     }
 
     /// Whether it shows the whole loop of loading and unloading.
@@ -208,20 +213,20 @@ impl View {
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, Gap, Map,
-            Pressure, RadiusApproach, RadiusForce, Residuals, Stability, Study, Unloading, Walk,
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius, Gap,
+            Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
-            ForceApproach => [RadiusForce, Pressure, Energy],
+            ForceApproach => [ForceRadius, Pressure, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
-            ContactMap => [Cycle, ForceApproach, RadiusForce],
+            ContactMap => [Cycle, ForceApproach, ForceRadius],
             Contact => [ForceApproach, Gap, Pressure],
             Stability => [RadiusApproach, ForceApproach, Unloading],
             Map => [Stability, ForceApproach, Unloading],
-            Residuals => [ForceApproach, RadiusForce, Pressure],
-            Study => [ForceApproach, Unloading, RadiusForce],
-            Differences => [ForceApproach, RadiusForce, RadiusApproach],
-            ForcePosition | RadiusForce | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
+            Residuals => [ForceApproach, ForceRadius, Pressure],
+            Study => [ForceApproach, Unloading, ForceRadius],
+            Differences => [ForceApproach, ForceRadius, RadiusApproach],
+            ForcePosition | ForceRadius | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
             Energy => [RadiusApproach, ForceApproach, Pressure],

@@ -9,7 +9,7 @@
 //! | [`bounds`] | the range of both axes, always finite and ascending |
 //! | [`range`] | the part of an axis that is asked for |
 //! | [`scale`] | what the axes are divided by |
-//! | [`curves`] | P over δ and Δ, s over P, s over δ |
+//! | [`curves`] | P over δ and Δ, P over s, s over δ |
 //! | [`walk`] | the states walked, the jumps, the walker |
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
@@ -62,7 +62,7 @@ impl Subject<'_> {
     /// The figure of `view`.
     pub fn figure(&self, view: View) -> Figure {
         let mut figure = match view {
-            View::ForceApproach | View::ForcePosition | View::RadiusForce | View::RadiusApproach => {
+            View::ForceApproach | View::ForcePosition | View::ForceRadius | View::RadiusApproach => {
                 curves::figure(self, view)
             }
             View::Unloading => unloading::figure(self),

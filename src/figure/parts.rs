@@ -266,6 +266,18 @@ impl Figure {
         self
     }
 
+    /// The same figure with its axes exchanged.
+    #[must_use]
+    pub fn transposed(mut self) -> Self {
+        let swap = |at: &mut (f64, f64)| *at = (at.1, at.0);
+        self.lines.iter_mut().flat_map(|line| &mut line.points).for_each(swap);
+        self.marks.iter_mut().for_each(|mark| swap(&mut mark.at));
+        self.areas.iter_mut().flat_map(|area| &mut area.outline).for_each(swap);
+        std::mem::swap(&mut self.x, &mut self.y);
+        std::mem::swap(&mut self.bounds.x, &mut self.bounds.y);
+        self
+    }
+
     /// Where the walker stands, if it is on the figure.
     pub fn walker(&self) -> Option<(f64, f64)> {
         self.marks

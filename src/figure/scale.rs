@@ -64,7 +64,7 @@ impl<'a> Scale<'a> {
         let radius = self.radius(radius);
         match view {
             View::ForcePosition => (position, force),
-            View::RadiusForce => (force, radius),
+            View::ForceRadius => (radius, force),
             View::RadiusApproach => (approach, radius),
             _ => (approach, force),
         }
@@ -89,7 +89,7 @@ impl<'a> Scale<'a> {
     pub fn axes(self, view: View) -> [Axis; 2] {
         match view {
             View::ForcePosition => [self.length_axis("Δ"), self.force_axis()],
-            View::RadiusForce => [self.force_axis(), self.radius_axis("s")],
+            View::ForceRadius => [self.radius_axis("s"), self.force_axis()],
             View::RadiusApproach => [self.length_axis("δ"), self.radius_axis("s")],
             _ => [self.length_axis("δ"), self.force_axis()],
         }

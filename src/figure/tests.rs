@@ -61,7 +61,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
     let mut session = Session::new("wavy-sphere");
     session.does(Id::NextLimit).does(Id::Jump).does(Id::Step);
     let curve = session.model.curve.clone().unwrap();
-    for view in [View::ForceApproach, View::RadiusForce, View::RadiusApproach] {
+    for view in [View::ForceApproach, View::ForceRadius, View::RadiusApproach] {
         let figure = session.figure(view);
         let changes = curve.points.windows(2).filter(|pair| pair[0].stable != pair[1].stable).count();
         assert_eq!(count(&figure, Role::Stable) + count(&figure, Role::Unstable), changes + 1);
@@ -76,20 +76,20 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         assert!(figure.walker().is_some() && is_fit(&figure));
     }
     let titles = View::ALL.map(|view| session.figure(view).title);
-    assert_eq!(titles[..4], ["P/Pc over δ/R", "P/Pc over Δ/R", "s/λ over P/Pc", "s/λ over δ/R"]);
+    assert_eq!(titles[..4], ["P/Pc over δ/R", "P/Pc over Δ/R", "P/Pc over s/λ", "s/λ over δ/R"]);
     session.does(Id::Axes);
-    assert_eq!(session.figure(View::RadiusForce).title, "s over P");
-    assert_eq!(session.figure(View::RadiusForce).x.unit, "force");
+    assert_eq!(session.figure(View::ForceRadius).title, "P over s");
+    assert_eq!(session.figure(View::ForceRadius).y.unit, "force");
 }
 
 #[test]
 fn radii_are_counted_in_waves_only_where_the_gap_has_one_alone() {
     for (preset, title) in
-        [("formula", "s/R over P/Pc"), ("harmonics", "s/R over P/Pc"), ("wavy-sphere", "s/λ over P/Pc")]
+        [("formula", "P/Pc over s/R"), ("harmonics", "P/Pc over s/R"), ("wavy-sphere", "P/Pc over s/λ")]
     {
         let session = Session::new(preset);
         let curve = session.model.curve.as_ref().unwrap();
-        assert_eq!(session.figure(View::RadiusForce).title, title);
+        assert_eq!(session.figure(View::ForceRadius).title, title);
         let has_crests = curve
             .report
             .as_ref()
@@ -97,7 +97,7 @@ fn radii_are_counted_in_waves_only_where_the_gap_has_one_alone() {
             .events
             .iter()
             .any(|event| event.before.as_ref().unwrap().wave.is_some());
-        assert_eq!(has_crests, title.starts_with("s/λ"), "{preset}");
+        assert_eq!(has_crests, title.ends_with("s/λ"), "{preset}");
     }
 }
 
@@ -108,7 +108,7 @@ fn what_is_not_admissible_is_drawn_over_the_curve() {
     assert_eq!(drawn(&session, View::ForceApproach), 0);
     session.does(Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() });
     let parts = session.model.shown_inadmissible().len();
-    for view in [View::ForceApproach, View::RadiusForce, View::RadiusApproach, View::Unloading] {
+    for view in [View::ForceApproach, View::ForceRadius, View::RadiusApproach, View::Unloading] {
         assert!(parts > 3 && drawn(&session, view) == parts, "{view:?} {parts}");
     }
     // Over the curve, from end to end.

@@ -113,11 +113,13 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
             case.basis.size(),
             significant(furthest(&figure), 2)
         );
+        // The paper has the contact radius upward.
+        let figure = if view == View::ForceRadius { figure.transposed() } else { figure };
         Sheet { name, figure, caption }
     };
     Ok([
         sheet(names[0], View::ForceApproach, "the force over the approach"),
-        sheet(names[1], View::RadiusForce, "the contact radius over the force"),
+        sheet(names[1], View::ForceRadius, "the contact radius over the force"),
     ])
 }
 

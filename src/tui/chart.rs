@@ -46,8 +46,21 @@ pub struct Chart<'a> {
     pub cross: Option<(f64, f64)>,
     /// The state next to the cross-hair.
     pub nearest: Option<(f64, f64)>,
+    /// Whether it stands beside another with the same axis upward: both have a row for the legend, so that equal values stand on one row.
+    pub is_paired: bool,
     /// Whether parts of a contact in which the bodies pull look like the others.
     pub hides_tension: bool,
+}
+
+/// How many entries of a legend there is room for, with an ellipsis where some are left out.
+fn legend_count(legend: &[Entry], room: usize) -> usize {
+    let mut used = 0;
+    let fits = |(at, entry): &(usize, &Entry)| {
+        used += if *at == 0 { 0 } else { 2 } + entry.width();
+        let rest = if at + 1 < legend.len() { 2 } else { 0 };
+        used + rest <= room
+    };
+    legend.iter().enumerate().take_while(fits).count()
 }
 
 /// A chart with fewer rows inside has no row for its legend.
@@ -132,27 +145,34 @@ impl Chart<'_> {
     /// Whether the whole legend stands in the upper wall.
     fn legend_fits(&self, area: Rect) -> bool {
         let legend: usize = self.legend.iter().map(|entry| entry.width() + 2).sum();
-        self.heading() + legend + 4 <= usize::from(area.width)
+        !self.is_paired && self.heading() + legend + 4 <= usize::from(area.width)
+    }
+
+    /// Goes on with the legend of the chart beside it from where that has no more room; its own stays where that has shown all.
+    pub fn go_on_with_legend(&mut self, area: Rect, beside: Vec<Entry>) {
+        let Some(plot) = self.plot(area) else { return };
+        let is_new = |entry: &Entry| !beside.iter().any(|other| other.meaning == entry.meaning);
+        let own: Vec<Entry> = self.legend.iter().filter(|entry| is_new(entry)).cloned().collect();
+        let shown = legend_count(&beside, usize::from(plot.width));
+        let rest: Vec<Entry> = beside.into_iter().skip(shown).chain(own).collect();
+        if !rest.is_empty() {
+            self.legend = rest;
+        }
     }
 
     /// As many entries as there is room for; an ellipsis where some are left out.
     fn legend_spans(&self, room: usize) -> Vec<Span<'static>> {
         let theme = self.theme;
         let mut spans = Vec::new();
-        let mut used = 0;
-        for (at, entry) in self.legend.iter().enumerate() {
-            let gap = if at == 0 { 0 } else { 2 };
-            let rest = if at + 1 < self.legend.len() { 2 } else { 0 };
-            if used + gap + entry.width() + rest > room {
-                if used + 2 <= room {
-                    spans.push(Span::styled(theme.glyph(" …", " ."), theme.dim()));
-                }
-                break;
-            }
-            spans.push(Span::raw(" ".repeat(gap)));
+        let count = legend_count(&self.legend, room);
+        for (at, entry) in self.legend.iter().take(count).enumerate() {
+            spans.push(Span::raw(if at == 0 { "" } else { "  " }));
             spans.push(Span::styled(entry.glyph.clone(), entry.style));
             spans.push(Span::styled(format!(" {}", theme.text(&entry.meaning)), theme.dim()));
-            used += gap + entry.width();
+        }
+        let used: usize = spans.iter().map(Span::width).sum();
+        if count < self.legend.len() && used + 2 <= room {
+            spans.push(Span::styled(theme.glyph(" …", " ."), theme.dim()));
         }
         spans
     }

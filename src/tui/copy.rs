@@ -95,6 +95,8 @@ fn drawn(app: &App, content: Content) -> String {
     });
     let buffer = terminal.backend().buffer();
     let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));
+    // Its lower wall is that of what stands below, with the heading of that.
+    let chart = chart.map(|area| Rect { height: area.height.saturating_sub(1), ..area });
     lines(buffer, if content == Content::Chart { chart.unwrap_or(size) } else { size })
 }
 

@@ -4,10 +4,12 @@
 //! |---|---|---|---|
 //! | below 60 wide | nothing | one | below, from 18 rows on |
 //! | 60-99 | 26 | one | below |
-//! | 100-159 | 31 | one; two, one above the other, where events are folded and each has 14 rows of plot | below |
+//! | 100-159 | 31 | two of the force, side by side; of others one, or where events are folded two, one above the other | below |
 //! | from 160x45 | 36 | two, side by side | below |
 //! | from 200x60 | 36 | four, of at least 14 rows of plot each; the lower two over the whole width where the left has room | below |
 //! | from 240 wide, below 30 rows | 36 | two, side by side | a column of their own |
+//!
+//! Side by side, P over δ and P over s have one axis of P: an event stands on the same row in both.
 //!
 //! Events take the rows they need, as many as leave the charts theirs. The panel that `z` chose has the whole screen.
 
@@ -45,6 +47,8 @@ pub struct Wants {
 
 /// Width of the column of the events where they have one.
 const EVENTS_COLUMN: u16 = 88;
+/// From this width on two charts of the force stand side by side.
+const PAIR: u16 = 100;
 /// Rows of folded events: two walls, the upper one with their heading.
 const FOLDED: usize = 2;
 /// Rows of a chart that has a plot of 14: its walls, its legend, its labels.
@@ -138,11 +142,8 @@ fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: W
         (regions.problem, regions.walker) = (Some(problem), Some(walker));
     }
     let views = std::iter::once(wants.view).chain(wants.view.companions());
-    let half = |area: Rect| split_left(area, area.width / 2 + 1);
-    let places = if is_flat || (width >= 160 && height >= 45 && (width < 200 || height < 60)) {
-        let (left, right) = half(charts);
-        vec![left, right]
-    } else if width >= 200 && height >= 60 && charts.height >= 2 * CHART_ROWS {
+    let half = |area: Rect| <[Rect; 2]>::from(split_left(area, area.width / 2 + 1));
+    let places = if !is_flat && width >= 200 && height >= 60 && charts.height >= 2 * CHART_ROWS {
         let middle = charts.height / 2 + 1;
         let top = middle.max(wanted);
         let is_wide = charts.height + 1 >= top + CHART_ROWS;
@@ -154,11 +155,11 @@ fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: W
             let (problem, walker) = split_top(side, side.height + 1 - walker_rows);
             (regions.problem, regions.walker) = (Some(problem), Some(walker));
         }
-        let [(a, b), (c, d)] = [half(above), half(below)];
-        vec![a, b, c, d]
+        [half(above), half(below)].concat()
+    } else if is_flat || (width >= 160 && height >= 45) || (width >= PAIR && wants.view.is_of_force()) {
+        half(charts).to_vec()
     } else if wants.events.is_none() && charts.height + 1 >= 2 * CHART_ROWS {
-        let (above, below) = split_top(charts, charts.height / 2 + 1);
-        vec![above, below]
+        <[Rect; 2]>::from(split_top(charts, charts.height / 2 + 1)).to_vec()
     } else {
         vec![charts]
     };
@@ -204,12 +205,12 @@ mod tests {
                 }
                 let views = match (width, height) {
                     (200.., 60..) => 4,
-                    (160.., 45..) | (240.., ..30) => 2,
+                    (100.., _) => 2,
                     _ => 1,
                 };
                 assert_eq!(regions.charts.len(), views, "{width}x{height}");
                 for (_, chart) in &regions.charts {
-                    assert!(views == 1 || height < 30 || chart.height >= CHART_ROWS, "{width}x{height}");
+                    assert!(views < 4 || chart.height >= CHART_ROWS, "{width}x{height}");
                 }
             }
         }
@@ -218,7 +219,7 @@ mod tests {
     #[test]
     fn folded_events_leave_their_rows_to_the_charts() {
         let folded = Wants { events: None, ..wants(6) };
-        for (size, charts) in [((80, 24), 1), ((100, 30), 1), ((120, 40), 2), ((160, 45), 2), ((200, 60), 4)]
+        for (size, charts) in [((80, 24), 1), ((100, 30), 2), ((120, 40), 2), ((160, 45), 2), ((200, 60), 4)]
         {
             let area = Rect::new(0, 0, size.0, size.1);
             let [plain, folded] = [wants(6), folded].map(|wants| regions(area, wants).unwrap());
@@ -229,7 +230,7 @@ mod tests {
             };
             assert!(rows(&folded) > rows(&plain), "{size:?}");
             assert!(
-                charts == 1 || folded.charts.iter().all(|(_, chart)| chart.height >= CHART_ROWS),
+                charts < 4 || folded.charts.iter().all(|(_, chart)| chart.height >= CHART_ROWS),
                 "{size:?}"
             );
         }

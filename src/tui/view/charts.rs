@@ -15,9 +15,18 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-/// Draws one view; the first one has the cross-hair and the keys.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: bool) {
-    let model = &app.model;
+/// Where a view stands among those on the screen.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Whether it is the first one, which has the cross-hair and the keys.
+    pub first: bool,
+    /// The view beside it that has the same axis of the force.
+    pub beside: Option<View>,
+}
+
+/// Draws one view.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, place: Place) {
+    let (model, first) = (&app.model, place.first);
     let selected = first && is_selected(app, Panel::Charts);
     if view.is_table() {
         return states::draw(frame, area, app, selected);
@@ -45,6 +54,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, first: boo
     if view.is_curve() || matches!(view, View::Unloading | View::Map) {
         select_event(model, &mut chart);
     }
+    chart.is_paired = place.beside.is_some();
+    if let Some(beside) = place.beside.filter(|_| !first) {
+        let other = subject.figure(beside);
+        let bounds = other.bounds.part(&model.window(beside));
+        chart.go_on_with_legend(area, legend(&other, &bounds, app.theme));
+    }
     chart.draw(frame, area, selected);
 }
 
@@ -62,7 +77,8 @@ fn without_curve(app: &App) -> Figure {
 
 /// The part of a figure of `view` in a window, on the screen.
 pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) -> Chart<'a> {
-    let zoom = if window.is_whole() {
+    // A chart that is seen closer upward alone has the part of the axis of its neighbour, whose heading says so.
+    let zoom = if window.x == Window::WHOLE.x {
         String::new()
     } else {
         format!(", zoom {}x", short(window.magnification(), 3))
@@ -78,6 +94,7 @@ pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) 
         selected: None,
         cross: None,
         nearest: None,
+        is_paired: false,
         hides_tension: false,
     }
 }

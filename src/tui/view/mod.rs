@@ -60,10 +60,16 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
     if let Some(area) = regions.walker.filter(|_| is_due(Panel::Walker)) {
         walker::draw(frame, area, app);
     }
+    let pair = match &regions.charts[..] {
+        [a, b, ..] if a.0.is_of_force() && b.0.is_of_force() => Some([a.0, b.0]),
+        _ => None,
+    };
     for (i, (view, area)) in regions.charts.iter().enumerate() {
         // The keys are those of the first.
         if (i == 0 && is_selected(app, Panel::Charts)) == selected {
-            charts::draw(frame, *area, app, *view, i == 0);
+            let beside = pair.filter(|_| i < 2).map(|[a, b]| if i == 0 { b } else { a });
+            let place = charts::Place { first: i == 0, beside };
+            charts::draw(frame, *area, app, *view, place);
         }
     }
     if let Some(area) = regions.events.filter(|_| is_due(Panel::Events)) {

@@ -260,7 +260,7 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     let mut screen = Screen::new("wavy-sphere");
     for title in [
         "P/Pc over δ",
-        "s/λ over P/Pc",
+        "P/Pc over s/λ",
         "s/λ over δ",
         "p/E* over r/λ",
         "gap/R over r/λ",
@@ -282,10 +282,10 @@ fn views_follow_each_other_and_four_fit_on_a_wide_screen() {
     assert!(screen.text(80, 24).contains("lost 7.9"), "{}", screen.text(80, 24));
     screen.keys("ttttttt");
     let text = screen.text(200, 60);
-    for title in ["P/Pc over δ", "s/λ over P/Pc", "p/E* over r/λ", "U over s/λ"] {
+    for title in ["P/Pc over δ", "P/Pc over s/λ", "p/E* over r/λ", "U over s/λ"] {
         assert!(text.contains(title), "{title}: {text}");
     }
-    assert_eq!(text.matches("(t: radius-force)").count(), 1);
+    assert_eq!(text.matches("(t: force-radius)").count(), 1);
     // A jump's loss is hatched, in ASCII as well.
     screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();

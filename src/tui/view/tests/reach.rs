@@ -175,7 +175,7 @@ fn what_is_copied_is_text_that_steers_nothing() {
     let whole = text(&screen.app, Content::Screen);
     assert_eq!(whole, screen.text(120, 40));
     let chart = text(&screen.app, Content::Chart);
-    assert!(chart.starts_with("┬P/Pc over δ") && chart.trim_end().ends_with('┤'), "{chart}");
+    assert!(chart.starts_with("┬P/Pc over δ") && chart.trim_end().ends_with('│'), "{chart}");
     // Through the list: what was chosen goes out.
     screen.keys("Yj\r");
     assert_eq!(screen.app.clipboard.take().unwrap(), events);
