@@ -88,7 +88,8 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::OtherLimit(Control::Force) => stamp(MarkerShape::Square, ORANGE, 1.8, "limit of P"),
         Sign::OtherLimit(_) => stamp(MarkerShape::Diamond, ORANGE, 1.8, "limit of δ"),
         Sign::Limit | Sign::Event(_) => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
-        Sign::LastContact => stamp(MarkerShape::Cross, VERMILLION, 2.8, "last contact"),
+        // The name in the tables of the figures, which programs read.
+        Sign::LastContact => stamp(MarkerShape::Cross, VERMILLION, 2.8, "pull-off"),
         Sign::Landing => stamp(MarkerShape::Circle, GREEN, 2.2, "landing"),
         Sign::Touch => stamp(MarkerShape::Pentagon, BLACK, 2.4, "touch"),
         Sign::Turn => stamp(MarkerShape::Square, BLACK, 2.2, "turn"),

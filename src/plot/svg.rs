@@ -483,7 +483,7 @@ mod tests {
             Mark { sign: Sign::LastContact, at: (0.1, 0.1) },
         ];
         let names = |figure: &Figure| legend(figure).into_iter().map(|entry| entry.label).collect::<Vec<_>>();
-        assert_eq!(names(&figure), ["curve", "limit point", "last contact"]);
+        assert_eq!(names(&figure), ["curve", "limit point", "pull-off"]);
         let close = figure.across("0.5..".parse().unwrap()).unwrap();
         assert_eq!(names(&close), ["curve", "limit point"]);
         assert_eq!(names(&close.clone().naming("A 2")), ["A 2, curve", "limit point"]);
