@@ -17,7 +17,7 @@ use ratatui::style::Modifier;
 
 /// Where a view stands among those on the screen.
 #[derive(Debug, Clone, Copy)]
-pub struct Slot {
+pub struct Seat {
     /// Whether it is the first one, which has the cross-hair and the keys.
     pub first: bool,
     /// The view beside it that has the same axis of the force.
@@ -25,8 +25,8 @@ pub struct Slot {
 }
 
 /// Draws one view.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, slot: Slot) {
-    let (model, first) = (&app.model, slot.first);
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat) {
+    let (model, first) = (&app.model, seat.first);
     let selected = first && is_selected(app, Panel::Charts);
     if view.is_table() {
         return states::draw(frame, area, app, selected);
@@ -54,8 +54,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, slot: Slot
     if view.is_curve() || matches!(view, View::Unloading | View::Map) {
         select_event(model, &mut chart);
     }
-    chart.is_paired = slot.beside.is_some();
-    if let Some(beside) = slot.beside.filter(|_| !first) {
+    chart.is_paired = seat.beside.is_some();
+    if let Some(beside) = seat.beside.filter(|_| !first) {
         let other = subject.figure(beside);
         let bounds = other.bounds.part(&model.window(beside));
         chart.go_on_with_legend(area, legend(&other, &bounds, app.theme));

@@ -68,8 +68,8 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
         // The keys are those of the first.
         if (i == 0 && is_selected(app, Panel::Charts)) == selected {
             let beside = pair.filter(|_| i < 2).map(|[a, b]| if i == 0 { b } else { a });
-            let slot = charts::Slot { first: i == 0, beside };
-            charts::draw(frame, *area, app, *view, slot);
+            let seat = charts::Seat { first: i == 0, beside };
+            charts::draw(frame, *area, app, *view, seat);
         }
     }
     if let Some(area) = regions.events.filter(|_| is_due(Panel::Events)) {
