@@ -406,3 +406,89 @@ fn the_paths_and_names_of_the_architecture_are_those_of_the_code() {
         }
     }
 }
+
+/// The code of a file without its tests and comments: an item below `#[cfg(test)]` ends with its braces or its semicolon.
+fn without_tests(text: &str) -> String {
+    let mut rest = text;
+    let mut code = String::new();
+    while let Some((before, item)) = rest.split_once("#[cfg(test)]") {
+        code.push_str(before);
+        let body = item.find(['{', ';']).expect("an item");
+        let mut depth = 0;
+        let end = item[body..].char_indices().find(|&(_, c)| {
+            depth += i32::from(c == '{') - i32::from(c == '}');
+            depth == 0
+        });
+        rest = &item[body + end.map_or(item.len() - body, |(at, _)| at + 1)..];
+    }
+    code.push_str(rest);
+    code.lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .fold(String::new(), |all, line| all + line + "\n")
+}
+
+/// The files of a room that are code of its own: tests, examples and fixtures are not.
+fn files_of(room: &Path) -> Vec<PathBuf> {
+    if room.is_file() {
+        return vec![room.to_owned()];
+    }
+    let is_code = |path: &Path| {
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        !name.starts_with("tests") && name != "examples.rs" && (path.is_dir() || name.ends_with(".rs"))
+    };
+    let entries = fs::read_dir(room).expect("a room").map(|entry| entry.expect("an entry").path());
+    entries.filter(|path| is_code(path)).flat_map(|path| files_of(&path)).collect()
+}
+
+/// The rooms that a room names as `crate::ROOM` or `crate::{ROOM, …}`.
+fn rooms_used(room: &Path) -> BTreeSet<String> {
+    let is_in_name = |c: char| c.is_ascii_lowercase() || c == '_';
+    let mut used = BTreeSet::new();
+    for file in files_of(room) {
+        let code = without_tests(&fs::read_to_string(&file).expect("a source file"));
+        for after in code.split("crate::").skip(1) {
+            let list = after.strip_prefix('{').and_then(|list| list.split_once('}'));
+            let names =
+                list.map_or_else(|| vec![after], |(list, _)| list.split(',').map(str::trim).collect());
+            used.extend(
+                names
+                    .into_iter()
+                    .map(|name| name.split(|c| !is_in_name(c)).next().unwrap_or_default().to_owned()),
+            );
+        }
+    }
+    used
+}
+
+/// The tables of rooms say what each room uses, and a room uses only what stands above it: so there is no circle.
+#[test]
+fn the_tables_of_rooms_say_what_each_room_uses() {
+    const EVERYWHERE: [&str; 2] = ["elementary", "progress"];
+    let page = text("ARCHITECTURE.md");
+    for base in ["engine/src/", "src/"] {
+        let rows: Vec<(&str, &str)> = page
+            .lines()
+            .filter_map(|line| line.strip_prefix("| `")?.strip_prefix(base)?.split_once('`'))
+            .map(|(room, rest)| {
+                (room, rest.trim_end_matches('|').rsplit('|').next().unwrap_or_default().trim())
+            })
+            .collect();
+        assert!(rows.len() > 8, "{base}: {} rows", rows.len());
+        let names: Vec<&str> = rows.iter().map(|(room, _)| room.trim_end_matches(".rs")).collect();
+        for (index, &(room, uses)) in rows.iter().enumerate() {
+            let mut used = rooms_used(&root().join(base).join(room));
+            used.retain(|name| {
+                name != names[index] && names.contains(&name.as_str()) && !EVERYWHERE.contains(&name.as_str())
+            });
+            let said: BTreeSet<String> =
+                uses.split(", ").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+            assert_eq!(used, said, "{base}{room}: what it uses (left) and what ARCHITECTURE.md says (right)");
+            for name in &used {
+                assert!(
+                    names[..index].contains(&name.as_str()),
+                    "{base}{room} uses {name}, which stands below it"
+                );
+            }
+        }
+    }
+}
