@@ -51,8 +51,29 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     assert_eq!(rows["approach"], serde_json::json!({"contact": 191, "free": 159, "jump": 0, "dropped": 0}));
     assert_eq!(counted(rows, "contact") + counted(rows, "free"), 700);
     let residuals = home.text("r.csv");
-    assert!(residuals.starts_with("row,segment,part,"), "{residuals}");
+    assert!(residuals.starts_with("row,line,segment,part,"), "{residuals}");
     assert_eq!(residuals.matches(",retraction,free,").count(), counted(&rows["retraction"], "free"));
+    // Each row is that of its line, in JSON as in CSV.
+    let beside = document["residuals"].as_array().unwrap();
+    assert_eq!(beside.len(), 700);
+    let lines: Vec<&str> = LENS.lines().collect();
+    for (row, csv) in beside.iter().zip(residuals.lines().skip(1)) {
+        let line = usize::try_from(row["line"].as_u64().unwrap()).unwrap();
+        let [x, force] = ["x", "force"].map(|key| row[key].as_f64().unwrap());
+        let cells: Vec<&str> = lines[line - 1].split(", ").collect();
+        let told = [
+            format!("{:.3}", 1e6 * x),
+            format!("{:.1}", 1e6 * force),
+            row["segment"].as_str().unwrap().to_owned(),
+        ];
+        assert_eq!(cells, told, "{row}");
+        let [part, off] = [&row["part"], &row["residual"]];
+        assert!(
+            csv.starts_with(&format!("{},{line},{},{},", row["row"], told[2], part.as_str().unwrap())),
+            "{csv}"
+        );
+        assert!(csv.contains(&format!(",{off},")) && off.as_f64().unwrap().abs() < 6.0, "{row} {csv}");
+    }
     assert_eq!(document["correlations"].as_array().unwrap().len(), 4);
     assert_eq!(home.text("r.csv").lines().count(), 701);
     // The fitted preset is a preset, and fits as it is.

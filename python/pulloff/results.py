@@ -328,7 +328,7 @@ class Fit(Result):
 
     @property
     def residuals(self) -> Table:
-        """The points beside the fit: ``row``, ``segment``, ``part``, ``x``, ``force``, ``residual`` in standard deviations, ``outlier``,
+        """The points beside the fit: ``row``, ``line`` of the file, ``segment``, ``part``, ``x``, ``force``, ``residual`` in standard deviations, ``outlier``,
         each of the shape (points,). x and the force are in SI or reduced units, their signs put right."""
         return Table(_columns_of(self._points))
 

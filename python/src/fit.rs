@@ -8,7 +8,8 @@ use pulloff_engine::fit::{FitError, Options, fit_own};
 use pulloff_engine::measured::{Asked, Source, Span};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
-use pulloff_engine::report::fit::{FitReport, residuals};
+use pulloff_engine::report::fit::FitReport;
+use pulloff_engine::report::residuals;
 use pulloff_engine::report::rows::{RowsError, Table};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -139,6 +140,6 @@ pub fn fitted(
     })?;
     let report = FitReport::new(&name, &made, wanted.poisson);
     let (ended, direction) = (report.ended, report.direction.clone());
-    let beside = residuals(&made.residuals);
+    let beside = residuals::csv(&report.residuals);
     Ok((Document::new(report), Problem { preset: made.preset }, ended, direction, beside))
 }

@@ -172,13 +172,13 @@ fn sandwich(
     (points * (found / expected), at.jacobian.tr_mul(&scaled(&|[inside, _]| *inside)))
 }
 
-/// `JᵀRJ`: the rows of a branch in the order of the file, those in contact and those apart.
+/// `JᵀRJ`: the rows of a branch in the order of measurement, those in contact and those apart.
 fn together(problem: &Problem, jacobian: &DMatrix<f64>, correlation: &Correlation) -> DMatrix<f64> {
     let (per, p) = (problem.per_point(), jacobian.ncols());
     let mut crossed = DMatrix::zeros(p, p);
     for branch in 0..problem.branches() {
         let of = problem.data.iter().enumerate().filter(|(_, datum)| datum.branch == branch);
-        let mut rows: Vec<(usize, usize)> = of.map(|(index, datum)| (datum.point.row, index)).collect();
+        let mut rows: Vec<(usize, usize)> = of.map(|(index, datum)| (datum.point.at, index)).collect();
         rows.sort_unstable();
         for part in 0..per {
             // Σ ρ^(i − k) J_k over the rows before.

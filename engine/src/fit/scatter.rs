@@ -109,8 +109,8 @@ pub struct Scatter {
 }
 
 impl Problem {
-    /// The residuals of one branch, in contact along the path or apart in the order of the file, without outliers. Radii that go one way
-    /// in the file are in its order: the noise of a radius would shuffle rows whose forces differ.
+    /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers. Radii that go
+    /// one way in it are in that order: the noise of a radius would shuffle rows whose forces differ.
     pub(super) fn rows(&self, solved: &Solved, branch: usize, free: bool, part: usize) -> Vec<Row> {
         let per = self.per_point();
         let residuals = &solved.minimum.at.residuals;
@@ -118,7 +118,7 @@ impl Problem {
         let of = self.data.iter().enumerate().filter(|(_, datum)| is_wanted(datum));
         let mut rows: Vec<Row> =
             of.map(|(index, _)| Row { index, residual: residuals[per * index + part] }).collect();
-        let by_file = |row: &Row| self.data[row.index].point.row;
+        let by_file = |row: &Row| self.data[row.index].point.at;
         if free {
             rows.sort_by_key(by_file);
         } else if self.abscissa == Abscissa::Radius {

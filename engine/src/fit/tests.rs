@@ -76,6 +76,7 @@ impl Body<'_> {
             radius: None,
             steps: [1e-30; 3],
             segments: Some(Vec::new()),
+            time: None,
         };
         for segment in [Segment::Approach, Segment::Retraction] {
             for i in 0..n / 2 {
@@ -199,8 +200,15 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
     let radii: Vec<f64> = (0..200).map(|i| 1.6 - 0.005 * f64::from(i)).collect();
     let (x, force): (Vec<f64>, Vec<f64>) = radii.iter().map(|s| truth(*s)).unzip();
     let segments = Some(vec![Segment::Retraction; 200]);
-    let three =
-        Points { abscissa: Abscissa::Approach, x, force, radius: Some(radii), steps: [1e-30; 3], segments };
+    let three = Points {
+        abscissa: Abscissa::Approach,
+        x,
+        force,
+        radius: Some(radii),
+        steps: [1e-30; 3],
+        segments,
+        time: None,
+    };
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
     assert!(fit.direction.is_none());

@@ -49,7 +49,7 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
     let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
     let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
     let segments = Some(vec![Segment::Retraction; n]);
-    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments }
+    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments, time: None }
 }
 
 /// Our own loop of a preset up to the control value `top`, `n` samples each way, evenly by δ or by the way of the device, both from apart.
@@ -93,6 +93,7 @@ fn looped(preset: &Preset, top: f64, n: usize) -> Points {
         radius: None,
         steps: [1e-30; 3],
         segments: Some(Vec::new()),
+        time: None,
     };
     for (segment, direction) in
         [(Segment::Approach, Direction::Loading), (Segment::Retraction, Direction::Unloading)]
@@ -148,6 +149,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
         radius: None,
         steps: [1e-30; 3],
         segments: Some(Vec::new()),
+        time: None,
     };
     let mut add = |x: f64, force: f64, segment: Segment| {
         points.x.push(x);

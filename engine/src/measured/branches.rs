@@ -20,7 +20,7 @@ use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::sigma::noise;
 use super::signs::{Direction, Seen};
-use super::turns::{one_way, rises, runs};
+use super::turns::{by_time, one_way, rises, runs};
 use thiserror::Error;
 
 /// Steps of x from row to row beyond this share of its range, in the median, are no order.
@@ -108,7 +108,8 @@ impl Points {
     /// # Errors
     /// [`BranchError`].
     pub fn branches(&self, asked: &Asked) -> Result<Branches, BranchError> {
-        let mut points = self.used(asked);
+        let mut notes = Vec::new();
+        let mut points = self.used(asked, &mut notes);
         if points.len() < END_ROWS {
             return Err(BranchError::Few(points.len()));
         }
@@ -116,7 +117,6 @@ impl Points {
         if let Some(point) = points.iter().find(|point| radius(point) < 0.0) {
             return Err(BranchError::NegativeRadius { row: point.row, radius: radius(point) });
         }
-        let mut notes = Vec::new();
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());
         let repeated = without_repeats(&mut points);
         if repeated > 0 {
@@ -127,7 +127,16 @@ impl Points {
         let free = self.free_part(&points, asked.free, turned)?;
         // Of radii, which are zero while apart, none are turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
-        let parts = self.parts(&points, ordered, &mut notes)?;
+        let mut parts = self.parts(&points, ordered, &mut notes)?;
+        for (_, part) in &mut parts {
+            let goes_back = |pair: &[Point]| pair[1].time < pair[0].time;
+            // A time that begins again within a branch is none.
+            if part.windows(2).any(goes_back) {
+                for point in part {
+                    point.time = f64::NAN;
+                }
+            }
+        }
         let (rows, pauses) = self.counted(&parts);
         let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
         let mut list: Vec<(Branch, Vec<Point>)> = parts
@@ -168,18 +177,29 @@ impl Points {
         Ok(Branches { abscissa, list, noise, baseline, turned, or, ranges, notes, rows, pauses, clipped })
     }
 
-    /// The points that are asked for, in the order of the file, with its signs.
-    fn used(&self, asked: &Asked) -> Vec<Point> {
-        let point = |i: usize| Point {
+    /// The points that are asked for, in the order in which they were measured, with the signs of the file.
+    fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Vec<Point> {
+        let point = |(at, i): (usize, usize)| Point {
             x: self.x[i],
             force: self.force[i],
             radius: self.radius.as_ref().map_or(f64::NAN, |s| s[i]),
+            time: self.time.as_ref().map_or(f64::NAN, |time| time[i]),
             row: i + 1,
+            at: at + 1,
         };
-        (asked.skip..self.x.len())
-            .filter(|&i| asked.x.is_none_or(|span| span.holds(self.x[i])))
-            .filter(|&i| asked.force.is_none_or(|span| span.holds(self.force[i])))
-            .filter(|&i| self.segments.as_ref().is_none_or(|of| of[i] != Segment::Other))
+        let by_time = self.time.as_deref().and_then(|times| by_time(times, &self.x));
+        if by_time.is_some() {
+            notes.push(
+                "the rows are not in the order of their times: they are taken in that order".to_owned(),
+            );
+        }
+        let in_order = by_time.unwrap_or_else(|| (0..self.x.len()).collect());
+        let numbered = in_order.into_iter().enumerate();
+        numbered
+            .filter(|&(_, i)| i >= asked.skip)
+            .filter(|&(_, i)| asked.x.is_none_or(|span| span.holds(self.x[i])))
+            .filter(|&(_, i)| asked.force.is_none_or(|span| span.holds(self.force[i])))
+            .filter(|&(_, i)| self.segments.as_ref().is_none_or(|of| of[i] != Segment::Other))
             .map(point)
             .collect()
     }
@@ -303,7 +323,7 @@ impl Points {
 /// The end of the range of a converter at which rows in contact stand.
 fn at_an_end(list: &[(Branch, Vec<Point>)], step: Option<f64>) -> Option<Clipped> {
     let mut rows: Vec<Point> = list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
-    rows.sort_by_key(|point| point.row);
+    rows.sort_by_key(|point| point.at);
     let attached = list.iter().flat_map(|(branch, _)| branch.attached.iter().map(|point| point.row));
     let mut attached: Vec<usize> = attached.collect();
     attached.sort_unstable();

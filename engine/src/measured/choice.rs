@@ -14,6 +14,8 @@ pub(super) struct Wanted {
     pub role: Role,
     pub at: usize,
     pub unit: Option<Unit>,
+    /// Whether a person names it: then it must be there in each row.
+    pub is_said: bool,
 }
 
 /// A column whose name is known.
@@ -45,18 +47,24 @@ fn candidates(header: &Header) -> Vec<Candidate> {
 /// column of neither belongs to both.
 pub(super) fn sides(header: &Header) -> Option<[Vec<Wanted>; 2]> {
     let known = candidates(header);
-    let [approach, retraction] = [Segment::Approach, Segment::Retraction].map(|segment| {
+    let [mut approach, mut retraction] = [Segment::Approach, Segment::Retraction].map(|segment| {
         let mut wanted: Vec<Wanted> = Vec::new();
         let of = |side: Option<Segment>| known.iter().filter(move |column| column.side == side);
         for column in of(Some(segment)).chain(of(None)) {
             let is_new = wanted.iter().all(|other| other.role != column.role);
             if let (true, Ok(unit)) = (is_new && column.role != Role::Segment, &column.unit) {
-                wanted.push(Wanted { role: column.role, at: column.at, unit: unit.clone() });
+                wanted.push(Wanted { role: column.role, at: column.at, unit: unit.clone(), is_said: false });
             }
         }
         wanted
     });
     let has = |wanted: &[Wanted], is: &dyn Fn(Role) -> bool| wanted.iter().any(|column| is(column.role));
+    // A time of one branch alone says nothing of the other.
+    if has(&approach, &is_time) != has(&retraction, &is_time) {
+        for side in [&mut approach, &mut retraction] {
+            side.retain(|column| !is_time(column.role));
+        }
+    }
     let is_whole = |wanted: &[Wanted]| has(wanted, &is_way) && has(wanted, &is_force);
     let has_side = |segment| known.iter().any(|column| column.side == Some(segment) && column.unit.is_ok());
     let same = |column: &Wanted| {
@@ -66,6 +74,10 @@ pub(super) fn sides(header: &Header) -> Option<[Vec<Wanted>; 2]> {
     let fits =
         is_both && is_whole(&approach) && approach.len() == retraction.len() && approach.iter().all(same);
     fits.then_some([approach, retraction])
+}
+
+fn is_time(role: Role) -> bool {
+    role == Role::Time
 }
 
 fn is_force(role: Role) -> bool {
@@ -91,7 +103,7 @@ pub(super) fn wanted(
                 "there is no header: the first column is taken for the approach, the second for the force"
                     .to_owned(),
             );
-            let of = |(at, role)| Wanted { role, at, unit: None };
+            let of = |(at, role)| Wanted { role, at, unit: None, is_said: false };
             [(0, Role::Approach), (1, Role::Force)].map(of).into()
         }
         None => Vec::new(),
@@ -150,7 +162,7 @@ fn of_person(
             }
             (None, None) => None,
         };
-        Ok(Wanted { role: said.role, at, unit })
+        Ok(Wanted { role: said.role, at, unit, is_said: true })
     };
     spec.0.iter().map(column).collect()
 }
@@ -185,7 +197,7 @@ fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, 
                 continue;
             }
         };
-        let new = Wanted { role: column.role, at: column.at, unit };
+        let new = Wanted { role: column.role, at: column.at, unit, is_said: false };
         let Some((rank, known)) = wanted.iter_mut().find(|(_, known)| known.role == new.role) else {
             wanted.push((column.rank, new));
             continue;

@@ -100,7 +100,14 @@ mod tests {
         assert!((quantum(&steps).unwrap() - 0.03).abs() < 1e-9);
         let smooth: Vec<f64> = (0..50_u32).map(|i| f64::from(i).sqrt()).collect();
         assert_eq!(quantum(&smooth), None);
-        let point = |(i, force): (usize, f64)| Point { x: i as f64, force, radius: 0.0, row: i + 1 };
+        let point = |(i, force): (usize, f64)| Point {
+            x: i as f64,
+            force,
+            radius: 0.0,
+            time: f64::NAN,
+            row: i + 1,
+            at: i + 1,
+        };
         let rows = |least: f64| -> Vec<Point> {
             let force = (0..60_u32).map(|i| (f64::from(i) - 30.3).powi(2));
             force.map(|force| force.max(least)).enumerate().map(point).collect()

@@ -30,7 +30,7 @@ pub(super) struct Named {
 
 /// The roles with the names by which a header says them, letters and digits alone, in lower case. Names of rank 1 may mean
 /// something else beside others, those of rank 2 are not what was reached but what was asked for.
-const NAMES: [(Role, u8, &[&str]); 15] = [
+const NAMES: [(Role, u8, &[&str]); 17] = [
     (
         Role::Approach,
         0,
@@ -170,6 +170,8 @@ const NAMES: [(Role, u8, &[&str]); 15] = [
     (Role::Diameter, 0, &["contactdiameter", "diameterofcontact"]),
     (Role::Diameter, 1, &["diameter"]),
     (Role::Area, 0, &["contactarea", "areaofcontact", "area", "kontaktfläche"]),
+    (Role::Time, 0, &["seriestime", "elapsedtime", "totaltime"]),
+    (Role::Time, 1, &["time", "t", "zeit", "standardzeit", "prüfzeit"]),
     (Role::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
 ];
 

@@ -38,8 +38,12 @@ pub struct Point {
     pub force: f64,
     /// s, where it is measured beside x; not a number elsewhere.
     pub radius: f64,
+    /// When it was measured; not a number where nothing says it.
+    pub time: f64,
     /// The row of the file, from 1, header not counted.
     pub row: usize,
+    /// Its place in the order in which the rows were measured, from 1: that of the file, unless their times tell another.
+    pub at: usize,
 }
 
 /// Whether the signs of x and of P are turned.
@@ -68,6 +72,8 @@ pub struct Points {
     pub steps: [f64; 3],
     /// The branch of each, where the file says it.
     pub segments: Option<Vec<Segment>>,
+    /// When each was measured, in seconds, or in reduced units; `None` where the file does not say it.
+    pub time: Option<Vec<f64>>,
 }
 
 /// Why columns give no points.
@@ -198,7 +204,9 @@ impl Measured {
     /// # Errors
     /// [`PointsError::Reduced`].
     pub fn check_units(&self, units: &UnitSystem) -> Result<(), PointsError> {
-        let named = self.columns.iter().find_map(|column| Some((column, column.unit.as_ref()?)));
+        // A time is left out where it has a unit and the problem has none.
+        let columns = self.columns.iter().filter(|column| column.role != Role::Time);
+        let named = columns.into_iter().find_map(|column| Some((column, column.unit.as_ref()?)));
         match named {
             Some((column, unit)) if *units == UnitSystem::Reduced => Err(PointsError::Reduced {
                 header: self.header,
@@ -248,7 +256,9 @@ impl Measured {
         let radius = radius.filter(|_| abscissa != Abscissa::Radius);
         let steps = [x_step, force_step, radius.as_ref().map_or(0.0, |(_, step)| *step)];
         let radius = radius.map(|(values, _)| values);
-        Ok(Points { abscissa, x, force, radius, steps, segments: self.segments.clone() })
+        let time = column(Role::Time).filter(|time| *units != UnitSystem::Reduced || time.unit.is_none());
+        let time = time.map(|time| base(time).0);
+        Ok(Points { abscissa, x, force, radius, steps, segments: self.segments.clone(), time })
     }
 }
 

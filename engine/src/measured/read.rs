@@ -95,6 +95,7 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
         return Err(ReadError::Rows { rows, skipped: measured.skipped });
     }
     measured.in_radii();
+    measured.without_gaps_of_time();
     (measured.stiffness, measured.radius) = (settings.stiffness, settings.radius);
     Ok(measured)
 }

@@ -23,6 +23,8 @@ pub enum Role {
     Area,
     /// Which branch a row belongs to.
     Segment,
+    /// When a row was taken, a time; its zero may be anywhere.
+    Time,
 }
 
 /// Which branch a row belongs to.
@@ -98,7 +100,7 @@ impl Segment {
 
 impl Role {
     /// All, in the order in which messages name them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Approach,
         Self::Position,
         Self::Deflection,
@@ -107,6 +109,7 @@ impl Role {
         Self::Diameter,
         Self::Area,
         Self::Segment,
+        Self::Time,
     ];
 
     /// The word by which `--columns` says it; `x` says [`Role::Approach`] too.
@@ -120,6 +123,7 @@ impl Role {
             Self::Diameter => "diameter",
             Self::Area => "area",
             Self::Segment => "segment",
+            Self::Time => "time",
         }
     }
 
@@ -129,6 +133,7 @@ impl Role {
             Self::Force => Some(Quantity::Force.dimension()),
             Self::Area => Some(Quantity::Length.dimension() * 2),
             Self::Segment => None,
+            Self::Time => Some(TIME),
             _ => Some(Quantity::Length.dimension()),
         }
     }
@@ -139,14 +144,18 @@ impl Role {
             Self::Force => Quantity::Force.si(),
             Self::Area => Some("m^2"),
             Self::Segment => None,
+            Self::Time => Some("s"),
             _ => Quantity::Length.si(),
         }
     }
 }
 
+/// The dimension of a time.
+const TIME: Dimension = Dimension::new(0, 0, 1);
+
 /// The dimensions that units in a header have.
-pub(super) fn dimensions() -> [Dimension; 3] {
-    [Quantity::Length.dimension(), Quantity::Force.dimension(), Quantity::Length.dimension() * 2]
+pub(super) fn dimensions() -> [Dimension; 4] {
+    [Quantity::Length.dimension(), Quantity::Force.dimension(), Quantity::Length.dimension() * 2, TIME]
 }
 
 /// Where a column stands.
@@ -181,8 +190,8 @@ pub enum SpecError {
     Form(String),
     /// An unknown role.
     #[error(
-        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius, diameter, area or \
-         segment{}",
+        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius, diameter, area, \
+         segment or time{}",
         meant.map_or_else(String::new, |word| format!("; did you mean {word}?"))
     )]
     Role {
@@ -251,6 +260,7 @@ pub(super) fn unit_of(role: Role, text: &str) -> Result<Unit, SpecError> {
         Role::Force => "a unit of force",
         Role::Area => "a unit of area",
         Role::Segment => "known: a segment has no unit",
+        Role::Time => "a unit of time",
         _ => "a unit of length",
     };
     let unit = unit_named(text, role == Role::Force);
@@ -263,8 +273,16 @@ pub(super) fn unit_of(role: Role, text: &str) -> Result<Unit, SpecError> {
 
 /// The unit that `text` names, spelt out perhaps; the grams of a balance are forces where `is_force`.
 pub(super) fn unit_named(text: &str, is_force: bool) -> Option<Unit> {
-    const SPELT: [(&str, &str); 6] =
-        [("newton", "N"), ("meter", "m"), ("metre", "m"), ("gramforce", "gf"), ("gramm", "g"), ("gram", "g")];
+    const SPELT: [(&str, &str); 8] = [
+        ("newton", "N"),
+        ("meter", "m"),
+        ("metre", "m"),
+        ("gramforce", "gf"),
+        ("gramm", "g"),
+        ("gram", "g"),
+        ("second", "s"),
+        ("sec", "s"),
+    ];
     const PREFIXES: [(&str, &str); 6] =
         [("nano", "n"), ("micro", "u"), ("milli", "m"), ("centi", "c"), ("kilo", "k"), ("pico", "p")];
     let text = text.trim();

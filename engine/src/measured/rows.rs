@@ -38,6 +38,8 @@ pub struct Measured {
     pub radius: Option<Stated>,
     /// The line of the header, from 1.
     pub header: Option<usize>,
+    /// The line of each row, from 1.
+    pub lines: Vec<usize>,
     /// How many rows have no number in a column that is used; they are left out.
     pub skipped: usize,
     /// What was assumed, in words.
@@ -71,7 +73,9 @@ impl State {
         let mut is_whole = true;
         for want in wanted {
             let text = cells.get(want.at).copied().unwrap_or_default();
-            if is_gap(text) {
+            if want.role == Role::Time && !want.is_said {
+                row.push((time(text), f64::INFINITY));
+            } else if is_gap(text) {
                 is_whole = false;
             } else if want.role == Role::Segment {
                 segment = Segment::of(text);
@@ -91,6 +95,7 @@ impl State {
             self.skipped = self.skipped.or(Some(line));
             return;
         }
+        measured.lines.push(line);
         for (column, (value, step)) in measured.columns.iter_mut().zip(row) {
             column.values.push(value);
             column.step = column.step.min(step);
@@ -136,6 +141,15 @@ impl State {
     }
 }
 
+/// The time in a cell; NaN where it is none, as the time of day is.
+fn time(text: &str) -> f64 {
+    text.replace(',', ".")
+        .parse()
+        .ok()
+        .filter(|time: &f64| time.abs() <= cells::LARGEST_NUMBER)
+        .unwrap_or(f64::NAN)
+}
+
 impl Measured {
     /// Makes the columns; `all` is the branch of all rows, where no column says it.
     pub(super) fn begins(&mut self, wanted: &[Wanted], all: Option<Segment>) {
@@ -155,12 +169,23 @@ impl Measured {
         let mut segments = vec![Segment::Approach; rows(self)];
         segments.resize(rows(self) + rows(retraction), Segment::Retraction);
         self.segments = Some(segments);
+        self.lines.extend_from_slice(&retraction.lines);
         for column in &mut self.columns {
             let Some(other) = retraction.columns.iter().find(|other| other.role == column.role) else {
                 continue;
             };
             column.values.extend_from_slice(&other.values);
             column.step = column.step.min(other.step);
+        }
+    }
+
+    /// Leaves a time out that is not a number in each row: nothing else needs it.
+    pub(super) fn without_gaps_of_time(&mut self) {
+        let is_left =
+            |column: &Column| column.role == Role::Time && column.values.iter().any(|time| time.is_nan());
+        if let Some(at) = self.columns.iter().position(is_left) {
+            let Column { number, .. } = self.columns.remove(at);
+            self.notes.push(format!("column {number} is a time, but no number in each row: it is left out"));
         }
     }
 

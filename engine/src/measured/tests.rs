@@ -1,5 +1,6 @@
 //! Files good, bad and damaged; signs, branches, noise.
 
+use super::points::Point;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::problem::Control;
@@ -457,4 +458,82 @@ fn a_free_part_on_one_branch_alone_is_said_and_none_is_made_up() {
     let attached: Vec<_> = cut.iter().filter(|(x, _, back)| *back || *x >= 0.0).copied().collect();
     let found = taken(&attached, &Asked::default()).unwrap();
     assert!(found.baseline.is_none() && parts(&found).iter().all(|part| part[2] == 0), "{:?}", parts(&found));
+}
+
+/// The rows of [`jkr`] with their times, one millisecond from each to the next, in this order.
+fn timed(order: impl Iterator<Item = usize>, clock: impl Fn(usize) -> String) -> String {
+    let rows = jkr(1e-4);
+    order.fold("delta,force,time (ms)\n".to_owned(), |mut text, i| {
+        let (x, p, _) = rows[i];
+        writeln!(text, "{x:?},{p:?},{}", clock(i)).unwrap();
+        text
+    })
+}
+
+#[test]
+fn times_are_read_in_seconds_and_tell_the_order() {
+    let read = |text: &str| parse(text.as_bytes(), &Spec::default()).unwrap().points(&si(), None).unwrap();
+    let ms = |i: usize| format!("{}", 3 * i + 100);
+    let right = read(&timed(0..602, ms));
+    let time = right.time.as_ref().unwrap();
+    assert!((time[0] - 0.1).abs() < 1e-12 && (time[601] - 1.903).abs() < 1e-12, "{} {}", time[0], time[601]);
+    let expected = right.branches(&Asked::default()).unwrap();
+    assert!(
+        expected
+            .list
+            .iter()
+            .flat_map(|b| &b.attached)
+            .all(|p| (p.time - 1e-3 * (3 * p.row + 97) as f64).abs() < 1e-12)
+    );
+    // The retraction before the approach, and rows in no order at all, are those in order.
+    for order in [(301..602).chain(0..301).collect::<Vec<_>>(), (0..602).map(|i| i * 101 % 602).collect()] {
+        let points = read(&timed(order.iter().copied(), ms));
+        let found = points.branches(&Asked::default()).unwrap();
+        assert!(found.notes[0].contains("in the order of their times"), "{:?}", found.notes);
+        assert_eq!(found.noise, expected.noise);
+        for (found, expected) in found.list.iter().zip(&expected.list) {
+            let ats = |of: &[Point]| of.iter().map(|p| (p.at, p.time.to_bits())).collect::<Vec<_>>();
+            assert_eq!(ats(&found.attached), ats(&expected.attached));
+            assert_eq!(ats(&found.free), ats(&expected.free));
+            assert!(
+                found.attached.iter().all(|p| order[p.row - 1] == p.at - 1),
+                "rows stay those of the file"
+            );
+        }
+    }
+}
+
+#[test]
+fn times_that_tell_nothing_are_left_out() {
+    let read = |text: &str| parse(text.as_bytes(), &Spec::default()).unwrap();
+    // The time of day, and one that is not there everywhere.
+    for clock in [
+        |i: usize| format!("14:23:{:02}", i % 60),
+        |i: usize| if i == 7 { String::new() } else { i.to_string() },
+    ] {
+        let measured = read(&timed(0..602, clock));
+        assert!(
+            measured.notes.iter().any(|note| note.contains("column 3 is a time, but no number in each row"))
+        );
+        assert_eq!(measured.lines.len(), 602, "no row is lost");
+        assert_eq!(measured.points(&si(), None).unwrap().time, None);
+    }
+    // One that begins again with the retraction leaves the order as it is, and holds within each branch.
+    let points = read(&timed(0..602, |i| (i % 301).to_string())).points(&si(), None).unwrap();
+    let found = points.branches(&Asked::default()).unwrap();
+    assert!(!found.notes.iter().any(|note| note.contains("times")), "{:?}", found.notes);
+    assert!(found.list.iter().flat_map(|b| &b.attached).all(|p| p.at == p.row && p.time.is_finite()));
+    // One that a person names must be there.
+    let spec = Spec::parse("x=1,force=2,time=3 [ms]").unwrap();
+    let gap = timed(0..602, |i| if i == 7 { "x".to_owned() } else { i.to_string() });
+    let refused = parse(gap.as_bytes(), &spec).unwrap_err().to_string();
+    assert!(refused.contains("line 9: column 3: the time \"x\" is no number"), "{refused}");
+    let wrong = Spec::parse("x=1,force=2,time=3 [nm]").unwrap_err().to_string();
+    assert!(wrong.contains("is not a unit of time"), "{wrong}");
+    // In reduced units a time with a unit is none, and one without is taken.
+    let text = timed(0..602, |i| i.to_string());
+    assert_eq!(read(&text).points(&UnitSystem::Reduced, None).unwrap().time, None);
+    let text = text.replace(" (ms)", "");
+    let time = read(&text).points(&UnitSystem::Reduced, None).unwrap().time.unwrap();
+    assert_eq!(time[5].to_bits(), 5.0_f64.to_bits());
 }

@@ -62,6 +62,30 @@ pub(super) fn runs(points: &[Point], segments: &[Segment], segment: Segment) -> 
     runs
 }
 
+/// The order of the rows by their times, where those of the file have another; `None` where they do not, or where the times begin again for
+/// each branch or table: x would go to and fro in their order.
+pub(super) fn by_time(times: &[f64], x: &[f64]) -> Option<Vec<usize>> {
+    /// The way of x must be this much shorter in the order of times that overlap.
+    const SHORTER: f64 = 0.5;
+    let mut pieces: Vec<[f64; 2]> = Vec::new();
+    for (i, time) in times.iter().enumerate() {
+        match pieces.last_mut() {
+            Some(piece) if i > 0 && *time >= piece[1] => piece[1] = *time,
+            _ => pieces.push([*time; 2]),
+        }
+    }
+    if pieces.len() < 2 {
+        return None;
+    }
+    pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let are_apart = pieces.windows(2).all(|pair| pair[0][1] < pair[1][0]);
+    let mut order: Vec<usize> = (0..times.len()).collect();
+    order.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
+    let way: f64 = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+    let by_time: f64 = order.windows(2).map(|pair| (x[pair[1]] - x[pair[0]]).abs()).sum();
+    (are_apart || by_time < SHORTER * way).then_some(order)
+}
+
 /// Whether x grows from the beginning of `points` to their end.
 pub(super) fn rises(points: &[Point]) -> bool {
     let third = (points.len() / 3).max(1);
@@ -78,7 +102,10 @@ mod tests {
         // Three ways in and three back, with rows that go back a little.
         let way =
             |i: u32| f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 }) + 3.0 * f64::from(i % 2);
-        let point = |i: u32| Point { x: way(i), force: 0.0, radius: 0.0, row: i as usize + 1 };
+        let point = |i: u32| {
+            let row = i as usize + 1;
+            Point { x: way(i), force: 0.0, radius: 0.0, time: 0.0, row, at: row }
+        };
         let points: Vec<Point> = (0..300).map(point).collect();
         let parts = one_way(&points);
         assert_eq!(

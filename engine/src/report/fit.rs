@@ -1,14 +1,15 @@
 //! A fit to a measured curve as a document, as text for a terminal and as CSV.
 
 use super::number::{exact, short, significant};
+use super::residuals::{ResidualRow, rows};
 use super::table::aligned;
 use crate::fit::fitted::quantity;
 use crate::fit::intervals::FEW_DEGREES;
 use crate::fit::least_squares::Ending;
 use crate::fit::options::letter;
-use crate::fit::run::{Fit, Given, Residual};
+use crate::fit::run::{Fit, Given};
 use crate::fit::{Reason, Rows, Verdict};
-use crate::measured::{Abscissa, Origin, Segment};
+use crate::measured::{Abscissa, Origin};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -44,6 +45,8 @@ pub struct FitReport {
     pub degrees_of_freedom: f64,
     /// The rows of the file by branch and part.
     pub rows: Rows,
+    /// The rows that are fitted, with their distances from the curve.
+    pub residuals: Vec<ResidualRow>,
     /// Points more than four times their scale away.
     pub outliers: usize,
     /// Whether the points determine the values.
@@ -179,6 +182,7 @@ impl FitReport {
             rows_that_count_as_one: fit.scatter.correlation.rows(),
             degrees_of_freedom: fit.degrees,
             rows: fit.rows,
+            residuals: rows(fit),
             outliers: fit.outliers,
             determined: fit.direction.is_none(),
             direction: fit.direction.clone(),
@@ -398,34 +402,4 @@ impl FitReport {
         }
         [header, row]
     }
-}
-
-/// The header of [`residuals`].
-pub const RESIDUALS: &str = "row,segment,part,x,force,residual,outlier";
-
-/// The points beside a fit as CSV: row, segment, x, P, part, residual in σ, outlier; x and P in base units, signs put right.
-#[must_use]
-pub fn residuals(residuals: &[Residual]) -> String {
-    let mut rows: Vec<&Residual> = residuals.iter().collect();
-    rows.sort_by_key(|residual| residual.datum.point.row);
-    let mut text = format!("{RESIDUALS}\n");
-    for residual in rows {
-        let datum = &residual.datum;
-        let segment = match datum.segment {
-            Segment::Approach => "approach",
-            _ => "retraction",
-        };
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{},{segment},{},{},{},{},{}",
-            datum.point.row,
-            if datum.free { "free" } else { "contact" },
-            exact(datum.point.x),
-            exact(datum.point.force),
-            exact(residual.residual),
-            residual.outlier
-        );
-    }
-    text
 }

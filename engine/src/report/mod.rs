@@ -10,6 +10,7 @@
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
+//! | [`residuals`] | its points row by row |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`rows`] | nested rows as CSV |
 //! | [`path_table`] | a path as text for a terminal |
@@ -25,6 +26,7 @@ pub mod overlap;
 pub mod path;
 pub mod path_table;
 pub mod problem;
+pub mod residuals;
 pub mod rows;
 pub mod stability;
 pub mod table;

@@ -10,8 +10,7 @@ use crate::store::Loaded;
 use crate::store::atomic::folder_of;
 use pulloff_engine::fit::{Fit, Options, Verdict};
 use pulloff_engine::preset::{Value, data, write};
-use pulloff_engine::report::fit::{FitReport, residuals};
-use pulloff_engine::report::json;
+use pulloff_engine::report::{FitReport, json, residuals};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -61,7 +60,7 @@ impl<'a> Done<'a> {
             table.add(path, Some(&fingerprint), &report.row())?;
         }
         if let Some(sink) = &self.sinks.residuals {
-            sink.write(residuals(&found.residuals))?;
+            sink.write(residuals::csv(&report.residuals))?;
         }
         if let Some(sink) = &self.sinks.fitted {
             let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));

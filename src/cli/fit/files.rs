@@ -4,7 +4,7 @@ use super::table;
 use crate::cli::Failure;
 use crate::cli::console::Console;
 use crate::store::file::first_line;
-use pulloff_engine::report::fit::RESIDUALS;
+use pulloff_engine::report::residuals;
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ fn written_by_a_fit(path: &Path) -> Option<&'static str> {
     let line = path.is_file().then(|| first_line(path).ok()).flatten()?;
     if table::is_header(&line) {
         Some("a table of fits")
-    } else if line.trim_end() == RESIDUALS {
+    } else if line.trim_end() == residuals::HEADER {
         Some("the residuals of a fit")
     } else {
         None

@@ -25,6 +25,7 @@ fn meaning(role: Role) -> &'static str {
         Role::Force => "force",
         Role::Deflection => "deflection of the spring",
         Role::Segment => "branch: approach or retraction",
+        Role::Time => "time",
     }
 }
 

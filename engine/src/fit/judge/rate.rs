@@ -2,7 +2,7 @@
 //! (1972); D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
 //!
 //! ```text
-//! G = γ (v/v_max)ⁿ       v = −ds/dt of a retraction whose rows are even in time
+//! G = γ (v/v_max)ⁿ       v = −ds/dt of a retraction, whose rows are even in time where no column says it
 //! ```
 //!
 //! v is the slope of a line through a window of rows. The noise of a row's own radius has no weight in that of a window around it, so
@@ -50,7 +50,7 @@ pub(super) fn of_rate(
             datum.branch == branch && !datum.free && datum.segment == Segment::Retraction
         };
         let mut rows: Vec<usize> = (0..problem.data.len()).filter(is_wanted).collect();
-        rows.sort_by_key(|i| problem.data[*i].point.row);
+        rows.sort_by_key(|i| problem.data[*i].point.at);
         for (i, speed) in rows.iter().zip(of_edge(problem, &rows)) {
             speeds[*i] = Some(speed);
         }
@@ -76,7 +76,7 @@ pub(super) fn of_rate(
     })
 }
 
-/// Marks the rows, in the order of the file, which are off by more than `limit` to a side where neither of the rows beside them is. The
+/// Marks the rows, in the order of measurement, which are off by more than `limit` to a side where neither of the rows beside them is. The
 /// first and the last have one such row: nothing says that they are off alone.
 fn off_alone(problem: &Problem, solved: &Solved, limit: f64, rows: &[usize], alone: &mut [bool]) {
     let per = problem.per_point();
@@ -92,12 +92,14 @@ fn off_alone(problem: &Problem, solved: &Solved, limit: f64, rows: &[usize], alo
     }
 }
 
-/// −ds/d(row) at each of the rows, in the order of the file, by lines through windows of rows.
+/// −ds/dt at each of the rows, in the order of measurement, by lines through windows of rows; a unit of time is that from row to row where
+/// nothing else says it.
 fn of_edge(problem: &Problem, rows: &[usize]) -> Vec<f64> {
+    let is_timed = rows.iter().all(|i| problem.data[*i].point.time.is_finite());
     let of = |i: &usize| {
         let point = problem.data[*i].point;
         let radius = if problem.abscissa == Abscissa::Radius { point.x } else { point.radius };
-        [point.row as f64, radius]
+        [if is_timed { point.time } else { point.at as f64 }, radius]
     };
     let rows: Vec<[f64; 2]> = rows.iter().map(of).collect();
     let n = rows.len();
@@ -120,7 +122,7 @@ fn of_edge(problem: &Problem, rows: &[usize]) -> Vec<f64> {
         let [tt, ts] = of
             .iter()
             .fold([0.0; 2], |[tt, ts], row| [tt + (row[0] - t).powi(2), ts + (row[0] - t) * (row[1] - s)]);
-        -ts / tt
+        if tt > 0.0 { -ts / tt } else { 0.0 }
     };
     (0..n).map(slope).collect()
 }
