@@ -46,9 +46,9 @@ fn the_archive_holds_the_program_with_its_papers_and_its_sum() {
     }
     let sums = run(Command::new("sha256sum").arg("-c").arg("SHA256SUMS").current_dir(folder.path()));
     assert!(sums.status.success() && !sums.stdout.is_empty());
-    // Unpacked as the README says, by what it runs on the other machine, it runs.
-    let readme = include_str!("../README.md");
-    let there = readme.split_once("| ssh NODE '").unwrap().1.split_once('\'').unwrap().0;
+    // Unpacked as the book says, by what it runs on the other machine, it runs.
+    let page = include_str!("../docs/src/first-steps.md");
+    let there = page.split_once("| ssh NODE '").unwrap().1.split_once('\'').unwrap().0;
     let home = folder.path().join("home");
     fs::create_dir(&home).unwrap();
     let bytes = fs::File::open(folder.path().join(&archive)).unwrap();
